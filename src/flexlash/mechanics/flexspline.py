@@ -1,0 +1,120 @@
+"""The flexspline as an ordered list of segments, from the open end to the clamped hub or bolt circle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from flexlash.arrays import Array
+from flexlash.mechanics import windup
+
+__all__ = ["CYLINDER_SEGMENTS", "DISK_SEGMENTS", "backlash", "modulus_of", "radius_of", "windups"]
+
+CYLINDER_SEGMENTS = ("rim", "wall", "junction_fillet")
+DISK_SEGMENTS = ("disk_body", "hub_fillet")
+
+Dimensions = Mapping[str, Array | float]
+
+
+def radius_of(dimensions: Dimensions) -> Array:
+    """Mean radius [m], as given or from bore and wall."""
+    if "mean_radius" in dimensions:
+        return np.asarray(dimensions["mean_radius"])
+    return windup.mean_radius_from_bore(dimensions["bore_diameter"], dimensions["wall_thickness"])
+
+
+def modulus_of(dimensions: Dimensions) -> Array:
+    """Shear modulus [Pa], as given or from Young's modulus and Poisson's ratio."""
+    if "shear_modulus" in dimensions:
+        return np.asarray(dimensions["shear_modulus"])
+    return windup.shear_modulus(dimensions["youngs_modulus"], dimensions["poisson_ratio"])
+
+
+def _cylinder_integrals(dimensions: Dimensions, mean_radius: Array) -> dict[str, Array]:
+    """Integrals of rim, plain wall and junction fillet [1/m³]."""
+    thickness = dimensions["wall_thickness"]
+    plain = dimensions["cylinder_length"]
+    integrals = {}
+    if "rim_length" in dimensions:
+        rim_length = dimensions["rim_length"]
+        integrals["rim"] = windup.rim_integral(
+            rim_length, mean_radius, thickness, dimensions["rim_thickness"]
+        )
+        plain = plain - rim_length
+    if "junction_fillet_radius" in dimensions:
+        fillet = dimensions["junction_fillet_radius"]
+        integrals["junction_fillet"] = windup.junction_fillet_integral(mean_radius, thickness, fillet)
+        plain = plain - fillet
+    return integrals | {"wall": windup.wall_integral(plain, mean_radius, thickness)}
+
+
+def _disk_integrals(dimensions: Dimensions, mean_radius: Array) -> dict[str, Array]:
+    """Integrals of disk or flange and of the hub fillet [1/m³]; blanks are the same dimension elsewhere."""
+    inner = dimensions.get("disk_inner_radius", mean_radius)
+    outer = dimensions.get("disk_outer_radius", mean_radius)
+    thickness = dimensions.get("disk_thickness", dimensions["wall_thickness"])
+    hub_thickness = dimensions.get("disk_hub_thickness", thickness)
+    integrals = {}
+    start, start_thickness = inner, hub_thickness
+    if "hub_fillet_radius" in dimensions:
+        fillet = dimensions["hub_fillet_radius"]
+        slope = (thickness - hub_thickness) / (outer - inner)
+        integrals["hub_fillet"] = windup.hub_fillet_integral(inner, fillet, hub_thickness, slope)
+        start, start_thickness = inner + fillet, hub_thickness + slope * fillet
+    if "disk_hub_thickness" in dimensions:
+        body = windup.tapered_disk_integral(start, outer, start_thickness, thickness)
+    else:
+        body = windup.annulus_integral(start, outer, thickness)
+    return integrals | {"disk_body": body}
+
+
+def windups(flexspline_type: str, dimensions: Dimensions) -> dict[str, Array]:
+    """Wind-up of each segment that the flexspline has [rad].
+
+    Equation: U_i = c_i T/(2πG) · I_i, with c the calibration of cylinder or disk, 1 unless given
+    Arguments: flexspline_type `cup`, `hat` or `cylinder`; dimensions in SI by name, of any one shape
+        (variants,) or (variants, draws). A blank disk thickness is the wall's, a blank disk radius the mean
+        radius: the same array, so the same random variable.
+    Valid: axisymmetric load; hub fillet within the disk, rim and junction fillet within the cylinder.
+    Source: the meridian integral; without refinements it is the two-term formula of the B3-160 article.
+
+    >>> b3_160 = {"torque": 800.0, "cylinder_length": 0.16, "mean_radius": 0.08, "wall_thickness": 0.0016,
+    ...           "disk_inner_radius": 0.04, "youngs_modulus": 211e9, "poisson_ratio": 0.3}
+    >>> {segment: f"{angle:.7e}" for segment, angle in windups("cup", b3_160).items()}
+    {'wall': '3.0642984e-04', 'disk_body': '2.2982238e-04'}
+    """
+    mean_radius = radius_of(dimensions)
+    integrals = _cylinder_integrals(dimensions, mean_radius)
+    if flexspline_type != "cylinder":
+        integrals |= _disk_integrals(dimensions, mean_radius)
+    torque, modulus = dimensions["torque"], modulus_of(dimensions)
+    calibration = {
+        segment: dimensions.get("cylinder_calibration" if segment in CYLINDER_SEGMENTS else "disk_calibration", 1.0)
+        for segment in integrals
+    }
+    return {
+        segment: windup.segment_windup(torque, modulus, integrals[segment]) * calibration[segment]
+        for segment in (*CYLINDER_SEGMENTS, *DISK_SEGMENTS)
+        if segment in integrals
+    }
+
+
+def backlash(flexspline_type: str, dimensions: Dimensions) -> Array:
+    """Backlash from torsional deformation: the lag of the output when the torque reverses [rad].
+
+    Equation: 2U = 2 Σ U_i
+    Arguments: as for `windups`.
+    Valid: as for `windups`; clearances and hysteresis come on top.
+    Source: B3-160 article.
+
+    >>> b3_160 = {"torque": 800.0, "cylinder_length": 0.16, "mean_radius": 0.08, "wall_thickness": 0.0016,
+    ...           "disk_inner_radius": 0.04, "youngs_modulus": 211e9, "poisson_ratio": 0.3}
+    >>> f"{backlash('cup', b3_160):.10e}"
+    '1.0725044299e-03'
+    """
+    first, *others = windups(flexspline_type, dimensions).values()
+    total = first
+    for angle in others:
+        total = total + angle
+    return np.asarray(2 * total)

@@ -1,0 +1,101 @@
+"""The fields of the report: one `Column` per heading of Results and Findings."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flexlash.columns import Column
+
+__all__ = ["FINDINGS", "RESULTS"]
+
+
+def _result(key: str, label: str, text: str, unit: str = "", quantity: str = "", **rest: Any) -> Column:
+    """Return a numeric Results column; angles and percentiles say so in their unit."""
+    heading = f"{label} [{unit}]" if unit else label
+    return Column(sheet="Results", key=key, label=heading, help=text, unit=unit, quantity=quantity, **rest)
+
+
+def _angle(key: str, label: str, text: str, unit: str = "arcmin") -> Column:
+    return _result(f"{key}_{unit}", label, text, unit, "angle")
+
+
+def _percentile(key: str, share: str) -> Column:
+    return _angle(key, f"P{share}", f"Backlash that {share} % of units stay below (quantile type 7).")
+
+
+RESULTS = (
+    _result("variant", "Variant", "Name of the variant as submitted.", type="text"),
+    _result(
+        "status",
+        "Status",
+        "error: not computed. warning: computed, see Findings. ok: no error, no warning.",
+        type="choice",
+        choices=("error", "warning", "ok"),
+    ),
+    _angle("cylinder_windup", "Cylinder wind-up", "Wind-up of wall, junction fillet and tooth rim.", "rad"),
+    _angle("disk_windup", "Disk wind-up", "Wind-up of disk or flange, taper and hub fillet.", "rad"),
+    _angle("windup", "Wind-up", "Cylinder and disk together.", "rad"),
+    _angle("backlash", "Backlash", "Twice the wind-up, at the entered dimensions.", "rad"),
+    _angle("backlash", "Backlash", "Twice the wind-up, at the entered dimensions."),
+    _angle("backlash", "Backlash", "Twice the wind-up, at the entered dimensions.", "arcsec"),
+    _result("disk_share", "Disk share", "Disk wind-up over wind-up, a fraction."),
+    _angle(
+        "cylinder_only_backlash",
+        "Cylinder-only backlash",
+        "What the classical formula gives: 2Tl/(G 2π r_m³ Δ), no disk, no refinements.",
+    ),
+    _result("stiffness_Nm_per_rad", "Stiffness", "Torque over wind-up.", "N·m/rad"),
+    _result("stiffness_Nm_per_arcmin", "Stiffness", "Torque over wind-up.", "N·m/arcmin"),
+    _result("wall_shear_MPa", "Wall shear", "T/(2π r_m² Δ).", "MPa", "stress"),
+    _result("hub_shear_MPa", "Hub shear", "Greatest T/(2π r² t) in the disk.", "MPa", "stress"),
+    _angle("lost_motion", "Lost motion", "2U at the set per cent of the rated torque."),
+    _angle("mean", "Mean", "Mean backlash over the tolerances."),
+    _angle("sd", "Standard deviation", "Standard deviation of the backlash over the tolerances."),
+    _percentile("p0_135", "0.135"),
+    _percentile("p2_5", "2.5"),
+    _percentile("p5", "5"),
+    _percentile("p50", "50"),
+    _percentile("p95", "95"),
+    _percentile("p97_5", "97.5"),
+    _percentile("p99_865", "99.865"),
+    _angle("p97_5_standard_error", "P97.5 standard error", "Standard error of P97.5 from replicates."),
+    _angle("p99_865_standard_error", "P99.865 standard error", "Standard error of P99.865 from replicates."),
+    _angle("coverage_low", "Coverage low", "Lower end of the coverage interval (Settings: coverage_percent)."),
+    _angle("coverage_high", "Coverage high", "Upper end of the coverage interval."),
+    _angle("worst_case_low", "Worst case low", "Every dimension at the limit that lowers the backlash."),
+    _angle("worst_case_high", "Worst case high", "Every dimension at the limit that raises the backlash."),
+    _angle("first_order_sd", "First-order sd", "First-order (GUM) standard uncertainty at mid-limits."),
+    _result("probability_over_limit", "Probability over limit", "Share of units over the limit, a fraction."),
+    _result("probability_over_limit_low", "Probability low", "Lower end of its 95 % interval."),
+    _result("probability_over_limit_high", "Probability high", "Upper end of its 95 % interval."),
+    _result("ppm_over_limit", "Over limit", "Units over the limit per million.", "ppm"),
+    _result("ppk", "Ppk upper", "(limit − P50)/(P99.865 − P50), ISO 22514-2."),
+    _result("main_contributor", "Main contributor", "Dimension that causes most of the spread.", type="text"),
+    _result("main_contributor_share", "Main contributor share", "Its share of the variance, a fraction."),
+    _angle("backlash_limit", "Backlash limit", "The limit as submitted."),
+    _angle("rim_windup", "Rim wind-up", "Part of the wind-up in the tooth rim.", "rad"),
+    _angle("wall_windup", "Wall wind-up", "Part of the wind-up in the plain wall.", "rad"),
+    _angle("junction_fillet_windup", "Junction fillet wind-up", "Part in the junction fillet.", "rad"),
+    _angle("disk_body_windup", "Disk body wind-up", "Part in the disk outside its hub fillet, or flange.", "rad"),
+    _angle("hub_fillet_windup", "Hub fillet wind-up", "Part of the wind-up in the hub fillet.", "rad"),
+    _result("von_mises_MPa", "Von Mises stress", "√3 times the greater shear stress.", "MPa", "stress"),
+    _angle("mean_standard_error", "Mean standard error", "Standard error of the mean from replicates."),
+    _angle("sd_standard_error", "Sd standard error", "Standard error of the standard deviation."),
+    _result("findings", "Findings", "Codes and cells of the errors and warnings of this row.", type="text"),
+)
+
+FINDINGS = tuple(
+    Column(sheet="Findings", key=key, label=label, help=text, type="text")
+    for key, label, text in (
+        ("level", "Level", "error: row not computed. warning: computed and flagged. info: repaired or noted."),
+        ("code", "Code", "E1xx workbook, E2xx cell, E3xx relation, W4xx engineering, I5xx repair."),
+        ("sheet", "Sheet", "Sheet of the submission."),
+        ("cell", "Cell", "Address in the submission."),
+        ("variant", "Variant", "Variant of that row."),
+        ("column", "Column", "Key of the column."),
+        ("value", "Value", "What the cell holds, as entered."),
+        ("message", "Message", "Where, what was found, what is required."),
+        ("fix", "Fix", "How to mend it."),
+        ("suggestion", "Suggestion", "What was probably meant."),
+    )
+)

@@ -1,0 +1,1 @@
+"""Tables of materials, ISO tolerances and catalogue stiffness, as CSV files beside this module."""
