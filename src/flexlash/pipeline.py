@@ -1,0 +1,248 @@
+"""The one natural way through: read → validate → limits → nominal → spread → results → report."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from flexlash.assessment import Computed, assess
+from flexlash.columns import DIMENSIONS
+from flexlash.findings import Finding, finding
+from flexlash.mechanics.flexspline import backlash
+from flexlash.results import result_record, results_frame
+from flexlash.submission.gate import Refusal, admit, read_bytes
+from flexlash.submission.read import RawSheet, Submission, read_submission, read_table
+from flexlash.submission.validate import Validated, validate
+from flexlash.tolerance.sampling import UnitPoints
+from flexlash.tolerance.variation import variation_of
+from flexlash.variant import Settings
+
+if TYPE_CHECKING:
+    import polars as pl
+
+__all__ = ["Options", "Outcome", "check", "run"]
+
+Progress = Callable[[int, int], None]
+
+_ROWS_PER_TASK = 8
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """What the caller decides; None leaves it to the submission's settings."""
+
+    seed: int | None = None
+    method: str | None = None
+    samples: int | None = None
+    strict: bool = False
+    jobs: int = 1
+    tolerances: Path | None = None
+    materials: Path | None = None
+    progress: Progress | None = None
+
+
+@dataclass(kw_only=True)
+class Outcome:
+    """What came out of one submission.
+
+    `results` is the Results table; `findings` all findings in the order of the submission; `outputs` the
+    files written. `computed` holds, by row number, what the report draws on. `skipped` says that the file
+    is a report or a marked copy, not a submission.
+    """
+
+    submission: Submission
+    results: pl.DataFrame
+    findings: list[Finding]
+    settings: Settings
+    validated: Validated | None = None
+    computed: dict[int, Computed] = field(default_factory=dict)
+    outputs: list[Path] = field(default_factory=list)
+    skipped: bool = False
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Submitted and computed rows, error and warning findings."""
+        levels = Counter(found.level for found in self.findings)
+        rows = len(self.validated.submitted) if self.validated else 0
+        return {
+            "rows": rows,
+            "computed": len(self.computed),
+            "errors": levels["error"],
+            "warnings": levels["warning"],
+        }
+
+    @property
+    def exit_code(self) -> int:
+        """0 every row fine, 3 some rows not computed, 4 nothing computable."""
+        if self.skipped:
+            return 0
+        if not self.computed:
+            return 4
+        return 3 if self.counts["errors"] else 0
+
+
+def check(submission: str | Path, **options: Any) -> Outcome:
+    """Return the outcome of validation and nominal calculation alone; nothing is sampled or written.
+
+    Raises OSError when the file cannot be opened. A file that is no submission gives an outcome whose only
+    finding says why.
+    """
+    return _examine(Path(submission), Options(**options))
+
+
+def run(submission: str | Path, output: str | Path | None = None, **options: Any) -> Outcome:
+    """Return the outcome of a submission and write it to `output`, unless that is None.
+
+    Options are those of the command line: seed, method, samples, strict, jobs, tolerances, materials. The
+    output's ending decides its form: .xlsx, .csv, .parquet or .json.
+
+    Raises OSError when a file cannot be opened or written, ValueError for an unknown ending.
+    """
+    chosen = Options(**options)
+    outcome = _examine(Path(submission), chosen)
+    _spread(outcome, chosen)
+    if output is not None and outcome.computed:
+        from flexlash.report.output import write_outcome
+
+        outcome.outputs.append(write_outcome(outcome, Path(output)))
+    return outcome
+
+
+def _examine(path: Path, options: Options) -> Outcome:
+    """Read, validate and compute at the entered dimensions."""
+    try:
+        submission = read_submission(path)
+        if submission.role and submission.role != "template":
+            skipped = [finding("I508", file=path.name)]
+            return Outcome(
+                submission=submission, results=results_frame([]), findings=skipped, settings=Settings(), skipped=True
+            )
+        return _validated(_with_tables(submission, options), options)
+    except Refusal as refusal:
+        facts: dict[str, Any] = {"file": path.name, **refusal.facts}
+        refused = Submission(name=path.name, sha256="", kind="refused")
+        return Outcome(
+            submission=refused,
+            results=results_frame([]),
+            findings=[finding(refusal.code, **facts)],
+            settings=Settings(),
+        )
+
+
+def _with_tables(submission: Submission, options: Options) -> Submission:
+    """Put the tables given beside a submission in the place of its own."""
+    given: dict[str, RawSheet] = {}
+    for name, path in (("Tolerances", options.tolerances), ("Materials", options.materials)):
+        if path is not None:
+            given[name], _ = read_table(admit(read_bytes(path)).data, name)
+    return replace(submission, sheets=submission.sheets | given)
+
+
+def _validated(submission: Submission, options: Options) -> Outcome:
+    """Validate, set the limits and compute at the entered dimensions."""
+    validated = validate(submission)
+    overrides = {
+        name: getattr(options, name)
+        for name in ("seed", "method", "samples")
+        if getattr(options, name) is not None
+    }
+    settings = replace(validated.settings, **overrides)
+    computed = assess(validated, settings)
+    findings = sorted(validated.ledger.findings, key=_place_order(submission))
+    if options.strict and any(found.level == "error" for found in findings):
+        computed = {}
+    outcome = Outcome(
+        submission=submission,
+        results=results_frame([]),
+        findings=findings,
+        settings=settings,
+        validated=validated,
+        computed=computed,
+    )
+    outcome.results = _results(outcome)
+    return outcome
+
+
+def _place_order(submission: Submission) -> Callable[[Finding], tuple[int, int, int, str]]:
+    """Return the sort key of findings: sheet, row, column, code."""
+    sheets = {name: place for place, name in enumerate(submission.sheets)}
+
+    def key(found: Finding) -> tuple[int, int, int, str]:
+        letters = found.cell.rstrip("0123456789")
+        row = int(found.cell[len(letters) :] or 0)
+        column = sum((ord(letter) - 64) * 26**power for power, letter in enumerate(reversed(letters)))
+        return sheets.get(found.sheet, -1), row, column, found.code
+
+    return key
+
+
+def _spread(outcome: Outcome, options: Options) -> None:
+    """Put the tolerance spread into every computed row; the same points serve all rows."""
+    if not outcome.computed:
+        return
+    settings = outcome.settings
+    points = UnitPoints(
+        list(DIMENSIONS),
+        method="random" if settings.method == "random" else "sobol",
+        samples=settings.samples,
+        seed=settings.seed,
+    )
+    rows = list(outcome.computed.values())
+    vary = partial(_vary, points=points, coverage=settings.coverage_percent / 100)
+    done = 0
+    with ThreadPoolExecutor(options.jobs) as pool:
+        for batch in pool.map(vary, _batches(rows)):
+            outcome.computed.update({one.variant.row: one for one in batch})
+            done += len(batch)
+            if options.progress:
+                options.progress(done, len(rows))
+    outcome.results = _results(outcome)
+
+
+def _batches(rows: Sequence[Computed]) -> Iterator[Sequence[Computed]]:
+    for start in range(0, len(rows), _ROWS_PER_TASK):
+        yield rows[start : start + _ROWS_PER_TASK]
+
+
+def _vary(batch: Sequence[Computed], points: UnitPoints, coverage: float) -> list[Computed]:
+    """Return computed rows with their spread."""
+    return [
+        replace(
+            one,
+            variation=variation_of(
+                partial(backlash, one.variant.flexspline_type),
+                one.variant.dimensions,
+                one.limits,
+                points,
+                limit=one.variant.backlash_limit,
+                coverage=coverage,
+            ),
+        )
+        for one in batch
+    ]
+
+
+def _results(outcome: Outcome) -> pl.DataFrame:
+    """Return the Results table, one row per submitted variant in submitted order."""
+    if outcome.validated is None:
+        return results_frame([])
+    by_row: dict[int, list[Finding]] = {}
+    sheet = outcome.validated.table.sheet if outcome.validated.table else ""
+    for found in outcome.findings:
+        if found.sheet == sheet and found.cell and found.level != "info":
+            row = int(found.cell.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
+            by_row.setdefault(row, []).append(found)
+    records = []
+    for row, name in outcome.validated.submitted:
+        mine = by_row.get(row, [])
+        listed = ", ".join(f"{found.code} {found.cell}" for found in mine)
+        one = outcome.computed.get(row)
+        record = result_record(one.variant, one.nominal, one.variation) if one else {}
+        status = "error" if one is None else "warning" if mine else "ok"
+        records.append({**record, "variant": name, "status": status, "findings": listed or None})
+    return results_frame(records)

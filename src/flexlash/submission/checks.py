@@ -1,0 +1,108 @@
+"""The pandera schemas that derive from the columns, and their failures turned into findings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pandera.polars as pandera
+import polars as pl
+from pandera.errors import SchemaErrors
+
+from flexlash.columns import Column, columns_of
+from flexlash.submission.headers import closest
+from flexlash.submission.ledger import Ledger
+from flexlash.submission.relations import RELATIONS, Relation
+from flexlash.submission.tabulate import Table
+
+__all__ = ["check_cells", "check_relations"]
+
+
+def _checks(column: Column) -> list[pandera.Check]:
+    """Return a column's bounds and list as checks whose error is the finding's code."""
+    checks = []
+    if column.minimum is not None and column.is_number:
+        bound = pandera.Check.gt if column.exclusive_minimum else pandera.Check.ge
+        checks.append(bound(column.minimum, error="E207"))
+    if column.maximum is not None and column.is_number:
+        checks.append(pandera.Check.le(column.maximum, error="E208"))
+    if column.choices:
+        checks.append(pandera.Check.isin(column.choices, error="E209"))
+    return checks
+
+
+def _cell_schema(schema: str) -> pandera.DataFrameSchema:
+    return pandera.DataFrameSchema(
+        {
+            key: pandera.Column(
+                pl.Float64 if column.is_number else pl.String,
+                checks=_checks(column),
+                nullable=not column.required,
+            )
+            for key, column in columns_of(schema).items()
+        }
+    )
+
+
+def _relation_check(place: int, relation: Relation) -> pandera.Check:
+    """Return a frame-wide check that holds where the relation is not broken or cannot be judged."""
+
+    def holds(data: Any) -> pl.LazyFrame:
+        return data.lazyframe.select(~relation.broken.fill_null(value=False))  # type: ignore[no-any-return]
+
+    return pandera.Check(holds, error=str(place))
+
+
+def _failures(schema: pandera.DataFrameSchema, frame: pl.DataFrame) -> Iterator[tuple[str, str, int]]:
+    """Yield check, column and frame index of every failure, in row order."""
+    try:
+        schema.validate(frame, lazy=True)
+    except SchemaErrors as errors:
+        cases = errors.failure_cases.sort("index", maintain_order=True)
+        yield from cases.select("check", pl.col("column").fill_null(""), "index").iter_rows()
+
+
+def check_cells(table: Table, ledger: Ledger) -> None:
+    """Check every cell by itself: required, bounds, lists."""
+    columns = columns_of(table.schema)
+    for check, key, index in _failures(_cell_schema(table.schema), table.frame):
+        row = table.frame["row"][index]
+        column = columns[key]
+        if (row, key) in table.faulty or key not in table.heading.places:
+            continue
+        value = table.frame[key][index]
+        table.faulty.add((row, key))
+        ledger.add(
+            "E201" if check == "not_nullable" else check,
+            sheet=table.sheet,
+            cell=table.address(row, key),
+            column=key,
+            name=column.name,
+            requirement=column.requirement,
+            value="" if value is None else value,
+            suggestion=closest(value, list(column.choices)) if check == "E209" else "",
+            rows=[row] if table.schema == "Variants" else [],
+        )
+
+
+def check_relations(table: Table, ledger: Ledger) -> None:
+    """Check what the cells of a Variants row must be to one another."""
+    columns = columns_of("Variants")
+    checks = [_relation_check(place, relation) for place, relation in enumerate(RELATIONS)]
+    for check, _, index in _failures(pandera.DataFrameSchema(checks=checks), table.frame):
+        relation = RELATIONS[int(check)]
+        record = table.frame.row(index, named=True)
+        row = record["row"]
+        if any((row, key) in table.faulty for key in relation.keys):
+            continue
+        value = record[relation.key]
+        facts = {"value": "" if value is None else value, **relation.facts(record)}
+        ledger.add(
+            relation.code,
+            sheet=table.sheet,
+            cell=table.address(row, relation.key),
+            column=relation.key,
+            name=columns[relation.key].name,
+            rows=[row],
+            **facts,
+        )

@@ -1,0 +1,265 @@
+"""Bytes → what kind of submission they are, or a refusal by name; judged by content, never by the ending.
+
+The gate also looks at each sheet's XML for what the workbook reader cannot tell: formulas without a stored
+result, and rows or cells out of order, which the reader would drop without a word.
+"""
+
+from __future__ import annotations
+
+import io
+import zipfile
+import zlib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+from xml.parsers import expat
+
+__all__ = ["Admitted", "Refusal", "admit", "read_bytes"]
+
+Kind = Literal["workbook", "parquet", "csv"]
+
+MAXIMUM_BYTES = 20 * 2**20
+MAXIMUM_PARTS = 1_000
+MAXIMUM_PART_BYTES = 100 * 2**20
+MAXIMUM_INFLATED_BYTES = 200 * 2**20
+MAXIMUM_RATIO = 100
+MAXIMUM_ROW = 1_048_576
+MAXIMUM_COLUMN = 16_384
+MAXIMUM_CELLS = 1_000_000
+MAXIMUM_DEPTH = 64
+
+_OLE2 = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+_STRICT = "http://purl.oclc.org/ooxml/"
+_RELATIONS = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
+
+
+class Refusal(Exception):
+    """The submission as a whole cannot be used: a finding code and what its message needs."""
+
+    def __init__(self, code: str, **facts: object) -> None:
+        super().__init__(code)
+        self.code = code
+        self.facts = facts
+
+
+@dataclass(frozen=True, kw_only=True)
+class Admitted:
+    """Bytes that passed the gate; `unstored` names the formula cells without a stored result by sheet."""
+
+    kind: Kind
+    data: bytes
+    unstored: dict[str, frozenset[str]] = field(default_factory=dict)
+
+
+def read_bytes(path: Path) -> bytes:
+    """Return the bytes of a regular file of acceptable size.
+
+    Raises OSError when it cannot be opened, Refusal when it is empty or too large.
+    """
+    if not path.is_file():
+        raise FileNotFoundError(f"{path.name} is not a file" if path.exists() else f"{path.name} does not exist")
+    with path.open("rb") as file:
+        data = file.read(MAXIMUM_BYTES + 1)
+    if not data:
+        raise Refusal("E101", found="the file is empty")
+    if len(data) > MAXIMUM_BYTES and not data.startswith(b"PAR1"):
+        raise Refusal("E110", what="the file", limit=f"{MAXIMUM_BYTES // 2**20} MiB")
+    return data if len(data) <= MAXIMUM_BYTES else path.read_bytes()
+
+
+def admit(data: bytes) -> Admitted:
+    """Return the submission's kind and what its XML tells; raise Refusal for anything unfit."""
+    if data.startswith(b"PK\x03\x04"):
+        try:
+            return Admitted(kind="workbook", data=data, unstored=_inspect(data))
+        except (zipfile.BadZipFile, zlib.error, expat.ExpatError, EOFError, OSError, NotImplementedError) as fault:
+            raise Refusal("E102") from fault
+        except (KeyError, RuntimeError, UnicodeError, ValueError, OverflowError) as fault:
+            raise Refusal("E102") from fault
+    if data.startswith(_OLE2):
+        locked = "EncryptedPackage".encode("utf-16-le") in data
+        raise Refusal("E103") if locked else Refusal("E104", found="an old Excel file (.xls)")
+    if data.startswith(b"PAR1"):
+        return Admitted(kind="parquet", data=data)
+    if b"\0" in data[:4096] or data.startswith((b"PK", b"%PDF", b"{\\rtf", b"<")):
+        raise Refusal("E101", found="the content is neither a workbook nor a table")
+    return Admitted(kind="csv", data=data)
+
+
+def _inspect(data: bytes) -> dict[str, frozenset[str]]:
+    """Check the archive and each worksheet; return formula cells without a stored result by sheet name."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        _check_archive(archive)
+        names = set(archive.namelist())
+        if "xl/workbook.bin" in names:
+            raise Refusal("E104", found="a binary workbook (.xlsb)")
+        if "mimetype" in names and archive.read("mimetype").startswith(b"application/vnd.oasis"):
+            raise Refusal("E104", found="an OpenDocument file (.ods)")
+        start = _workbook_part(archive, names)
+        sheets = _sheets(archive.read(start))
+        targets = _targets(archive, start)
+        return {
+            title: frozenset(_Sheet(archive.read(targets[relation])).unstored)
+            for title, relation in sheets
+            if relation in targets
+        }
+
+
+def _check_archive(archive: zipfile.ZipFile) -> None:
+    """Refuse archives that are too large, that hide parts, or whose parts fail their checksum."""
+    parts = archive.infolist()
+    if len(parts) > MAXIMUM_PARTS:
+        raise Refusal("E110", what="the number of parts", limit=f"{MAXIMUM_PARTS:,}")
+    if len({part.filename.casefold() for part in parts}) < len(parts):
+        raise Refusal("E102")
+    total = 0
+    for part in parts:
+        total += part.file_size
+        if part.flag_bits & 1:
+            raise Refusal("E103")
+        if part.file_size > MAXIMUM_PART_BYTES or total > MAXIMUM_INFLATED_BYTES:
+            limit = f"{MAXIMUM_PART_BYTES // 2**20} MiB a part, {MAXIMUM_INFLATED_BYTES // 2**20} MiB in all"
+            raise Refusal("E110", what="the unpacked size", limit=limit)
+        if part.file_size > 2**20 and part.file_size > MAXIMUM_RATIO * part.compress_size:
+            raise Refusal("E110", what="the compression", limit=f"{MAXIMUM_RATIO} to 1")
+    if archive.testzip() is not None:
+        raise Refusal("E102")
+
+
+class _Elements:
+    """Feeds a part to expat and calls back for each element; no DOCTYPE, no deep nesting."""
+
+    def __init__(self, data: bytes) -> None:
+        self.depth = 0
+        parser = expat.ParserCreate(namespace_separator=" ")
+        parser.StartDoctypeDeclHandler = self._refuse
+        parser.StartElementHandler = self._open
+        parser.EndElementHandler = self._close
+        parser.CharacterDataHandler = self.text
+        parser.buffer_text = True
+        parser.Parse(data, True)
+
+    @staticmethod
+    def _refuse(*_: object) -> None:
+        raise Refusal("E105")
+
+    def _open(self, name: str, attributes: dict[str, str]) -> None:
+        self.depth += 1
+        if self.depth > MAXIMUM_DEPTH:
+            raise Refusal("E102")
+        self.start(name.rpartition(" ")[2], attributes, name)
+
+    def _close(self, name: str) -> None:
+        self.depth -= 1
+        self.end(name.rpartition(" ")[2])
+
+    def start(self, name: str, attributes: dict[str, str], qualified: str) -> None:
+        """React to an opening element."""
+
+    def end(self, name: str) -> None:
+        """React to a closing element."""
+
+    def text(self, text: str) -> None:
+        """React to character data."""
+
+
+class _Listing(_Elements):
+    """Collects the attributes of elements of one name."""
+
+    def __init__(self, data: bytes, wanted: str) -> None:
+        self.wanted = wanted
+        self.root = ""
+        self.found: list[dict[str, str]] = []
+        super().__init__(data)
+
+    def start(self, name: str, attributes: dict[str, str], qualified: str) -> None:
+        self.root = self.root or qualified
+        if name == self.wanted:
+            self.found.append(attributes)
+
+
+def _workbook_part(archive: zipfile.ZipFile, names: set[str]) -> str:
+    """Name of the part that lists the sheets."""
+    if "_rels/.rels" not in names:
+        raise Refusal("E101", found="the archive holds no workbook")
+    for relation in _Listing(archive.read("_rels/.rels"), "Relationship").found:
+        if relation.get("Type", "").endswith("/officeDocument"):
+            part = relation.get("Target", "").lstrip("/")
+            if part in names and _Listing(archive.read(part), "sheets").root.endswith(" workbook"):
+                return part
+    raise Refusal("E101", found="the archive holds no workbook")
+
+
+def _sheets(workbook: bytes) -> list[tuple[str, str]]:
+    """Titles and relation ids of the sheets, in order."""
+    listing = _Listing(workbook, "sheet")
+    if listing.root.startswith(_STRICT):
+        raise Refusal("E106")
+    return [(sheet["name"], sheet.get(f"{_RELATIONS} id", "")) for sheet in listing.found]
+
+
+def _targets(archive: zipfile.ZipFile, workbook: str) -> dict[str, str]:
+    """Parts of the worksheets by relation id."""
+    folder, _, name = workbook.rpartition("/")
+    listing = _Listing(archive.read(f"{folder}/_rels/{name}.rels"), "Relationship")
+    targets = {}
+    for relation in listing.found:
+        if relation.get("Type", "").endswith("/worksheet"):
+            target = relation["Target"]
+            targets[relation["Id"]] = target.lstrip("/") if target.startswith("/") else f"{folder}/{target}"
+    return targets
+
+
+class _Sheet(_Elements):
+    """Finds formula cells without a stored result; refuses rows and cells that do not rise strictly."""
+
+    def __init__(self, data: bytes) -> None:
+        self.unstored: list[str] = []
+        self.row = 0
+        self.column = 0
+        self.cells = 0
+        self.reference = ""
+        self.is_text = self.is_formula = self.has_result = self.in_value = False
+        super().__init__(data)
+
+    def start(self, name: str, attributes: dict[str, str], qualified: str) -> None:  # noqa: ARG002
+        if name == "c":
+            self._place_cell(attributes.get("r"))
+            self.is_text = attributes.get("t") == "str"
+            self.is_formula = self.has_result = False
+        elif name == "row":
+            number = int(attributes.get("r", self.row + 1))
+            if not self.row < number <= MAXIMUM_ROW:
+                raise Refusal("E102")
+            self.row, self.column = number, 0
+        elif name == "f":
+            self.is_formula = True
+        elif name == "v":
+            self.in_value = True
+
+    def _place_cell(self, reference: str | None) -> None:
+        """Check a cell's own address against its row and the cell before."""
+        self.cells += 1
+        if self.cells > MAXIMUM_CELLS:
+            raise Refusal("E110", what="the number of cells", limit=f"{MAXIMUM_CELLS:,}")
+        if reference is None:
+            self.column += 1
+            self.reference = ""
+            return
+        letters = reference.rstrip("0123456789")
+        column = 0
+        for letter in letters:
+            column = column * 26 + ord(letter) - 64
+        if not self.column < column <= MAXIMUM_COLUMN or reference[len(letters) :] != str(self.row):
+            raise Refusal("E102")
+        self.column, self.reference = column, reference
+
+    def end(self, name: str) -> None:
+        if name == "v":
+            self.in_value = False
+        elif name == "c" and self.is_formula and not (self.has_result or self.is_text):
+            self.unstored.append(self.reference)
+
+    def text(self, text: str) -> None:
+        if self.in_value and text:
+            self.has_result = True

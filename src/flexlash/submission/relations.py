@@ -1,0 +1,165 @@
+"""What cells of one Variants row must be to one another, each relation with the cell it blames."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import polars as pl
+
+__all__ = ["RELATIONS", "Relation"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Relation:
+    """A code, the key of the cell it blames, an expression that is true where it is broken, and its facts.
+
+    A relation is silent for a row in which one of the columns of its expression has a finding already.
+    """
+
+    code: str
+    key: str
+    broken: pl.Expr
+    facts: Callable[[Mapping[str, Any]], dict[str, Any]] = lambda _: {}
+
+    @property
+    def keys(self) -> set[str]:
+        """The columns that the relation looks at."""
+        return {self.key, *self.broken.meta.root_names()}
+
+
+def _is(*types: str) -> pl.Expr:
+    return pl.col("flexspline_type").fill_null("cup").is_in(types)
+
+
+_RADIUS = pl.coalesce(
+    "mean_radius_mm", (pl.col("bore_diameter_mm") + pl.col("wall_thickness_mm")) / 2
+)
+_INNER = pl.when(_is("hat")).then(pl.coalesce("disk_inner_radius_mm", _RADIUS)).otherwise("disk_inner_radius_mm")
+_OUTER = pl.coalesce("disk_outer_radius_mm", _RADIUS)
+_RIM = pl.col("rim_length_mm").fill_null(0)
+
+
+def radius(row: Mapping[str, Any]) -> float:
+    """Mean radius [mm] of a row, as given or from its bore."""
+    given = row["mean_radius_mm"]
+    return float(given) if given is not None else (row["bore_diameter_mm"] + row["wall_thickness_mm"]) / 2
+
+
+def _outer(row: Mapping[str, Any]) -> float:
+    given = row["disk_outer_radius_mm"]
+    return float(given) if given is not None else radius(row)
+
+
+def _foreign(key: str, *types: str) -> Relation:
+    """Return the relation that a dimension must be blank (or 0) for these flexspline types."""
+    return Relation(
+        code="E310",
+        key=key,
+        broken=_is(*types) & (pl.col(key) > 0),
+        facts=lambda row: {"other": row["flexspline_type"]},
+    )
+
+
+RELATIONS = (
+    Relation(
+        code="E301",
+        key="mean_radius_mm",
+        broken=pl.col("mean_radius_mm").is_null() & pl.col("bore_diameter_mm").is_null(),
+    ),
+    Relation(
+        code="E302",
+        key="mean_radius_mm",
+        broken=pl.col("mean_radius_mm").is_not_null() & pl.col("bore_diameter_mm").is_not_null(),
+        facts=lambda row: {"other": f"{row['bore_diameter_mm']:g}"},
+    ),
+    _foreign("disk_thickness_mm", "cylinder"),
+    _foreign("disk_inner_radius_mm", "cylinder"),
+    _foreign("disk_outer_radius_mm", "cylinder"),
+    _foreign("disk_hub_thickness_mm", "cylinder", "hat"),
+    _foreign("hub_fillet_radius_mm", "cylinder", "hat"),
+    _foreign("junction_fillet_radius_mm", "cylinder", "hat"),
+    Relation(
+        code="E311",
+        key="disk_inner_radius_mm",
+        broken=_is("cup") & pl.col("disk_inner_radius_mm").is_null(),
+        facts=lambda _: {"other": "cup"},
+    ),
+    Relation(
+        code="E311",
+        key="disk_outer_radius_mm",
+        broken=_is("hat") & pl.col("disk_outer_radius_mm").is_null(),
+        facts=lambda _: {"other": "hat"},
+    ),
+    Relation(
+        code="E303",
+        key="disk_inner_radius_mm",
+        broken=_is("cup") & (_INNER >= _OUTER),
+        facts=lambda row: {"other": _outer(row)},
+    ),
+    Relation(
+        code="E303",
+        key="disk_inner_radius_mm",
+        broken=_is("hat") & (_INNER >= pl.col("disk_outer_radius_mm")),
+        facts=lambda row: {
+            "other": row["disk_outer_radius_mm"],
+            "value": radius(row) if row["disk_inner_radius_mm"] is None else row["disk_inner_radius_mm"],
+        },
+    ),
+    Relation(
+        code="E304",
+        key="rim_thickness_mm",
+        broken=pl.col("rim_length_mm").is_not_null() & pl.col("rim_thickness_mm").is_null(),
+    ),
+    Relation(
+        code="E304",
+        key="rim_length_mm",
+        broken=pl.col("rim_thickness_mm").is_not_null() & pl.col("rim_length_mm").is_null(),
+    ),
+    Relation(
+        code="E305",
+        key="rim_length_mm",
+        broken=pl.col("rim_length_mm") >= pl.col("cylinder_length_mm"),
+        facts=lambda row: {"other": row["cylinder_length_mm"]},
+    ),
+    Relation(
+        code="E306",
+        key="rim_thickness_mm",
+        broken=pl.col("rim_thickness_mm") < pl.col("wall_thickness_mm"),
+        facts=lambda row: {"other": row["wall_thickness_mm"]},
+    ),
+    Relation(
+        code="E312",
+        key="hub_fillet_radius_mm",
+        broken=_is("cup") & (_INNER < _OUTER) & (pl.col("hub_fillet_radius_mm") > _OUTER - _INNER),
+        facts=lambda row: {"other": _outer(row) - row["disk_inner_radius_mm"]},
+    ),
+    Relation(
+        code="E313",
+        key="junction_fillet_radius_mm",
+        broken=_is("cup")
+        & (pl.col("junction_fillet_radius_mm") > 0)
+        & (_RIM < pl.col("cylinder_length_mm"))
+        & (pl.col("junction_fillet_radius_mm") + _RIM > pl.col("cylinder_length_mm")),
+        facts=lambda row: {"other": row["cylinder_length_mm"]},
+    ),
+    Relation(
+        code="W401",
+        key="disk_outer_radius_mm",
+        broken=_is("cup") & ((pl.col("disk_outer_radius_mm") / _RADIUS - 1).abs() > 1e-9),  # noqa: PLR2004
+        facts=lambda row: {"other": radius(row)},
+    ),
+    Relation(
+        code="W403",
+        key="wall_thickness_mm",
+        broken=pl.col("wall_thickness_mm") / _RADIUS > 0.2,  # noqa: PLR2004
+        facts=lambda row: {"value": f"{row['wall_thickness_mm'] / radius(row):.2g}"},
+    ),
+    Relation(
+        code="I506",
+        key="wall_thickness_mm",
+        broken=(pl.col("wall_thickness_mm") / _RADIUS).is_between(0.1, 0.2, closed="right"),
+        facts=lambda row: {"value": f"{row['wall_thickness_mm'] / radius(row):.2g}"},
+    ),
+)

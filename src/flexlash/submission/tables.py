@@ -1,0 +1,245 @@
+"""Materials, Tolerances and Settings: from typed tables, or built in, to records in SI."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import Any
+
+from flexlash import tables
+from flexlash.columns import DIMENSIONS, MATERIALS, SETTINGS, TOLERANCES
+from flexlash.submission.cells import Fault, as_number, as_text
+from flexlash.submission.headers import closest, plain
+from flexlash.submission.ledger import Ledger
+from flexlash.submission.tabulate import Table
+from flexlash.tolerance.grades import is_grade
+from flexlash.units import find_unit
+from flexlash.variant import Material, Settings, ToleranceRow
+
+__all__ = ["built_in_materials", "materials_of", "settings_of", "standard_class", "tolerance_classes_of"]
+
+_MATERIAL = {column.key: column for column in MATERIALS}
+_TOLERANCE = {column.key: column for column in TOLERANCES}
+_CONSTANTS = ("youngs_modulus_GPa", "poisson_ratio", "shear_modulus_GPa")
+_UNGRADED = frozenset({"hub_fillet_radius", "junction_fillet_radius"})
+
+
+def built_in_materials() -> dict[str, Material]:
+    """Return the materials of the template by plain name."""
+    numeric = {key for key, column in _MATERIAL.items() if column.is_number}
+    return {
+        plain(row["material"]): _material(
+            {key: float(text) for key, text in row.items() if key in numeric and text}, row["material"]
+        )
+        for row in tables.rows("materials")
+    }
+
+
+def _material(record: dict[str, Any], name: str) -> Material:
+    """Return a material in SI."""
+    constants = {
+        _MATERIAL[key].dimension: record[key] * _MATERIAL[key].si_unit.si
+        for key in _CONSTANTS
+        if record.get(key) is not None
+    }
+    strength = record.get("yield_MPa")
+    return Material(
+        name=name,
+        constants=constants,
+        yield_strength=None if strength is None else strength * _MATERIAL["yield_MPa"].si_unit.si,
+    )
+
+
+def materials_of(table: Table, ledger: Ledger) -> dict[str, Material]:
+    """Return the materials of a sheet by plain name; faulty ones are named in the ledger."""
+    found: dict[str, Material] = {}
+    first: dict[str, int] = {}
+    for record in table.frame.iter_rows(named=True):
+        row, name = record["row"], record["material"]
+        if name is None:
+            continue
+        key = plain(name)
+        if any((row, column) in table.faulty for column in _MATERIAL):
+            ledger.materials.add(key)
+        if key in first:
+            ledger.materials.add(key)
+            _blame(table, ledger, "E321", row, "material", value=name, other=table.address(first[key], "material"))
+        first.setdefault(key, row)
+        found.setdefault(key, _material(record, name))
+        _check_constants(table, ledger, record, key)
+    return found
+
+
+def _check_constants(table: Table, ledger: Ledger, record: dict[str, Any], material: str) -> None:
+    """Require G, or E and ν, and tell when all three are given and disagree."""
+    row = record["row"]
+    if any((row, key) in table.faulty for key in _CONSTANTS):
+        return
+    young, poisson, shear = (record[key] for key in _CONSTANTS)
+    if shear is None:
+        for key, value in (("youngs_modulus_GPa", young), ("poisson_ratio", poisson)):
+            if value is None:
+                ledger.materials.add(material)
+                _blame(table, ledger, "E322", row, key)
+    elif young is not None and poisson is not None:
+        implied = young / (2 * (1 + poisson))
+        if abs(shear / implied - 1) > 5e-4:  # noqa: PLR2004
+            _blame(table, ledger, "W404", row, "shear_modulus_GPa", value=shear, other=implied)
+
+
+def _blame(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts: Any) -> None:
+    """Record a finding at a cell of a Materials, Tolerances or Settings row."""
+    columns = _MATERIAL if table.schema == "Materials" else _TOLERANCE
+    name = columns[key].name if key in columns else "Setting"
+    ledger.add(code, sheet=table.sheet, cell=table.address(row, key), column=key, name=name, **facts)
+
+
+def standard_class() -> list[ToleranceRow]:
+    """Return the built-in class `standard`."""
+    found = []
+    for row in tables.rows("standard_class"):
+        record: dict[str, Any] = {key: text or None for key, text in row.items()}
+        for key in ("lower_deviation", "upper_deviation", "limits_sigma"):
+            record[key] = float(record[key]) if record[key] else None
+        found.append(_tolerance_row({"row": 0, "tolerance_class": "standard", **record}))
+    return found
+
+
+def _tolerance_row(record: dict[str, Any]) -> ToleranceRow:
+    """Return a valid tolerance row in SI."""
+    column = DIMENSIONS[record["dimension"]]
+    text = (record["deviation_unit"] or "").strip()
+    relative = text == "%"
+    unit = column.si_unit if relative or not text else find_unit(text, column.quantity)
+    factor = 0.01 if relative else unit.si if unit else 1.0
+    return ToleranceRow(
+        row=record["row"],
+        tolerance_class=record["tolerance_class"],
+        dimension=record["dimension"],
+        lower=(record["lower_deviation"] or 0.0) * factor,
+        upper=(record["upper_deviation"] or 0.0) * factor,
+        relative=relative,
+        grade=record["grade"],
+        distribution=record["distribution"] or "normal",
+        limits_sigma=record["limits_sigma"] or 3.0,
+    )
+
+
+def tolerance_classes_of(table: Table, ledger: Ledger) -> dict[str, list[ToleranceRow]]:
+    """Return the tolerance classes of a sheet by plain name; faulty ones are named in the ledger."""
+    classes: dict[str, list[ToleranceRow]] = defaultdict(list)
+    first: dict[tuple[str, str], int] = {}
+    for record in table.frame.iter_rows(named=True):
+        row, name, dimension = record["row"], record["tolerance_class"], record["dimension"]
+        if name is None:
+            ledger.everything = True
+            continue
+        key = plain(name)
+        classes[key] += []
+        sound = not any((row, column) in table.faulty for column in _TOLERANCE)
+        if sound and (key, dimension) in first:
+            other = table.address(first[key, dimension], "dimension")
+            _blame(table, ledger, "E319", row, "dimension", value=dimension, other=other)
+            sound = False
+        if sound:
+            first[key, dimension] = row
+            sound = _check_tolerance(table, ledger, record)
+        if sound:
+            classes[key].append(_tolerance_row(record))
+        else:
+            ledger.classes.add(key)
+    return dict(classes)
+
+
+def _check_tolerance(table: Table, ledger: Ledger, record: dict[str, Any]) -> bool:
+    """Check the cells of a tolerance row against one another; return whether they are sound."""
+    row, dimension, grade = record["row"], record["dimension"], record["grade"]
+    column = DIMENSIONS[dimension]
+    lower, upper = record["lower_deviation"], record["upper_deviation"]
+    before = len(ledger.findings)
+    unit = record["deviation_unit"]
+    if unit and unit.strip() != "%" and find_unit(unit, column.quantity) is None:
+        _blame(table, ledger, "E211", row, "deviation_unit", value=unit, dimension=dimension, unit=column.unit)
+    if grade is not None:
+        if lower is not None or upper is not None:
+            _blame(table, ledger, "E316", row, "grade", value=grade)
+        elif not is_grade(grade):
+            _blame(table, ledger, "E210", row, "grade", value=grade, suggestion=_meant_grade(grade))
+        elif column.quantity != "length" or dimension in _UNGRADED:
+            _blame(table, ledger, "E320", row, "grade", value=grade, other=dimension)
+    else:
+        for key in ("lower_deviation", "upper_deviation"):
+            if record[key] is None:
+                _blame(table, ledger, "E317", row, key)
+        if lower is not None and upper is not None and lower > upper:
+            _blame(table, ledger, "E318", row, "lower_deviation", value=lower, other=upper)
+    return len(ledger.findings) == before
+
+
+def _meant_grade(text: str) -> str:
+    """Return the grade that a text probably means, or an empty text."""
+    kept = text.replace(" ", "").replace("ISO", "")
+    for candidate in (kept, kept.upper(), kept.lower(), kept.replace("2768", "2768-"), f"IT{kept}"):
+        if is_grade(candidate):
+            return candidate
+    return ""
+
+
+def settings_of(table: Table, ledger: Ledger, *, from_text: bool) -> Settings:
+    """Return the settings of a sheet; a faulty one leaves nothing computable."""
+    columns = {column.key: column for column in SETTINGS}
+    values: dict[str, Any] = {}
+    first: dict[str, int] = {}
+    before = len(ledger.findings)
+    place = table.heading.places.get("value", 2)
+    for record in table.frame.iter_rows(named=True):
+        row, name = record["row"], record["setting"]
+        if name is None or (row, "setting") in table.faulty:
+            continue
+        if name in first:
+            other = table.address(first[name], "setting")
+            _blame(table, ledger, "E323", row, "setting", value=name, other=other)
+            continue
+        first[name] = row
+        raw = table.cells[row].get(place)
+        if raw is None:
+            continue
+        column = columns[name]
+        value = as_number(raw, from_text=from_text) if column.is_number else as_text(raw)
+        if column.choices and isinstance(value, str):
+            value = value.casefold()
+        fault = value if isinstance(value, Fault) else _setting_fault(name, value)
+        if fault is None:
+            values[name] = value
+        elif (row, "value") not in table.faulty:
+            facts: dict[str, Any] = {"suggestion": fault.suggestion, "requirement": column.requirement}
+            cell = table.address(row, "value")
+            ledger.add(fault.code, sheet=table.sheet, cell=cell, column=name, name=name, value=fault.value, **facts)
+    if any(one.level == "error" for one in ledger.findings[before:]):
+        ledger.everything = True
+    return settings_from(values)
+
+
+def _setting_fault(name: str, value: str | float) -> Fault | None:
+    """Return why a setting's value is out of its bounds or list, or None."""
+    column = next(column for column in SETTINGS if column.key == name)
+    if isinstance(value, str):
+        known = value in column.choices
+        return None if known else Fault(code="E209", value=value, suggestion=closest(value, list(column.choices)))
+    low, high = column.minimum, column.maximum
+    if column.type == "integer" and value != int(value):
+        return Fault(code="E212", value=value)
+    if low is not None and (value < low or (column.exclusive_minimum and value == low)):
+        return Fault(code="E207", value=value)
+    return Fault(code="E208", value=value) if high is not None and value > high else None
+
+
+def settings_from(values: dict[str, Any]) -> Settings:
+    """Return settings from valid values by name; absent ones take their default."""
+    plain_values = {key: value for key, value in values.items() if not key.endswith("calibration")}
+    for key in ("seed", "samples"):
+        if plain_values.get(key) is not None:
+            plain_values[key] = int(plain_values[key])
+    calibrations = {
+        key: float(values.get(key, 1.0)) for key in ("cylinder_calibration", "disk_calibration")
+    }
+    return Settings(**plain_values, calibrations=calibrations)

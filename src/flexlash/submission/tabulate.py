@@ -1,0 +1,142 @@
+"""A raw sheet → a table: typed columns in a frame, each row with the row number that its user sees."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import polars as pl
+
+from flexlash.columns import Column, columns_of
+from flexlash.submission.cells import Fault, as_number, as_text
+from flexlash.submission.headers import Heading, find_headings, plain
+from flexlash.submission.ledger import Ledger
+from flexlash.submission.read import RawSheet, RawValue, column_letters
+
+__all__ = ["Table", "tabulate"]
+
+_BLANK = " \t\r\n\u00a0\u200b\ufeff"
+
+
+@dataclass(kw_only=True)
+class Table:
+    """Typed cells of an entry sheet in the template's units.
+
+    `frame` has the column `row` and one column per key of the schema, null where blank or unreadable;
+    `cells` are the raw cells by row and place; `faulty` holds (row, key) of cells that already have a finding; `extra` the other columns as texts.
+    """
+
+    sheet: str
+    schema: str
+    heading: Heading
+    frame: pl.DataFrame
+    cells: dict[int, dict[int, RawValue]] = field(default_factory=dict)
+    faulty: set[tuple[int, str]] = field(default_factory=set)
+    extra: dict[str, list[str]] = field(default_factory=dict)
+
+    def address(self, row: int, key: str) -> str:
+        """Return a cell's address; a column that the sheet lacks stands at the row's first cell."""
+        return f"{column_letters(self.heading.places.get(key, 1))}{row}"
+
+
+def tabulate(sheet: RawSheet, schema: str, ledger: Ledger, *, from_text: bool) -> Table | None:
+    """Return the typed table of an entry sheet, or None (with a finding) when it has no header row."""
+    heading = find_headings(sheet, schema, ledger)
+    if heading is None:
+        return None
+    columns = columns_of(schema)
+    table = Table(sheet=sheet.name, schema=schema, heading=heading, frame=pl.DataFrame())
+    read = {place: columns[key] for key, place in heading.places.items()}
+    records: list[dict[str, Any]] = []
+    for number, cells in _data_rows(sheet, heading, next(iter(columns)), ledger):
+        record: dict[str, Any] = {"row": number}
+        for place, value in cells.items():
+            if place in read:
+                record[read[place].key] = _typed(table, read[place], number, value, ledger, from_text=from_text)
+            elif place in heading.doubtful:
+                _spoil(ledger, schema, number)
+                table.faulty.add((number, heading.doubtful[place]))
+        records.append(record)
+        table.cells[number] = cells
+    types = {key: pl.Float64 if column.is_number else pl.String for key, column in columns.items()}
+    table.frame = pl.DataFrame(records, schema={"row": pl.Int64, **types}, orient="row")
+    table.extra = {
+        header: [_as_shown(cells.get(place)) for cells in table.cells.values()]
+        for place, header in heading.extra.items()
+    }
+    return table
+
+
+def _spoil(ledger: Ledger, schema: str, row: int) -> None:
+    """Mark what a value under an unreadable header spoils."""
+    if schema == "Variants":
+        ledger.rows.add(row)
+    else:
+        ledger.everything = True
+
+
+def _data_rows(
+    sheet: RawSheet, heading: Heading, first_key: str, ledger: Ledger
+) -> Iterator[tuple[int, dict[int, RawValue]]]:
+    """Yield the rows below the header that hold data; a lone cell elsewhere than in the first column is none."""
+    named = {*heading.places.values(), *heading.extra, *heading.doubtful}
+    first = heading.places.get(first_key)
+    for number, every in sheet.rows.items():
+        if number <= heading.row:
+            continue
+        cells = {
+            place: value
+            for place, value in every.items()
+            if place not in heading.ignored and not (isinstance(value, str) and not value.strip(_BLANK))
+        }
+        entered = {place: value for place, value in cells.items() if place in named}
+        if len(entered) > 1 or first in entered:
+            yield number, entered
+        elif cells:
+            place, value = next(iter((entered or cells).items()))
+            address = f"{column_letters(place)}{number}"
+            ledger.add("W408", sheet=sheet.name, cell=address, value=_as_shown(value))
+
+
+def _typed(
+    table: Table, column: Column, row: int, value: RawValue, ledger: Ledger, *, from_text: bool
+) -> str | float | None:
+    """Return a cell's typed value; None, with a finding, when it has none."""
+    found = as_number(value, from_text=from_text) if column.is_number else as_text(value)
+    address = table.address(row, column.key)
+    place = {"sheet": table.sheet, "cell": address, "column": column.key, "name": column.name}
+    if isinstance(found, Fault):
+        table.faulty.add((row, column.key))
+        ledger.add(
+            found.code,
+            value=found.value,
+            suggestion=found.suggestion,
+            requirement=column.requirement,
+            rows=[row] if table.schema == "Variants" else [],
+            **place,
+        )
+        return None
+    if isinstance(found, float):
+        factor = table.heading.factors[column.key]
+        return found if factor == 1 else found * factor
+    meant = _choice(column, found)
+    if meant != found or (isinstance(value, str) and found != value):
+        ledger.add("I504", value=value, suggestion=meant, **place)
+    return meant or None
+
+
+def _choice(column: Column, text: str) -> str:
+    """Return the list entry that a text names in other case or spacing, or the text itself."""
+    for choice in column.choices:
+        if plain(choice) == plain(text):
+            return choice
+    return text
+
+
+def _as_shown(value: RawValue | None) -> str:
+    """Return a cell of an extra column as a text."""
+    if value is None:
+        return ""
+    found = as_text(value)
+    return str(found.value) if isinstance(found, Fault) else found

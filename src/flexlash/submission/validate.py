@@ -1,0 +1,209 @@
+"""Cells → variants in SI and findings: every cell, every relation, all at once."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import Any
+
+from flexlash.columns import ENTRY_SHEETS, columns_of
+from flexlash.submission.checks import check_cells, check_relations
+from flexlash.submission.gate import Refusal
+from flexlash.submission.headers import closest, plain
+from flexlash.submission.ledger import Ledger
+from flexlash.submission.read import RawSheet, Submission
+from flexlash.submission.tables import (
+    built_in_materials,
+    materials_of,
+    settings_of,
+    standard_class,
+    tolerance_classes_of,
+)
+from flexlash.submission.tabulate import Table, tabulate
+from flexlash.variant import Material, Settings, ToleranceRow, Variant
+
+__all__ = ["TEMPLATE_VERSION", "Validated", "validate"]
+
+TEMPLATE_VERSION = 1
+
+_OTHER_SOURCES = "Other sources"
+
+
+@dataclass(kw_only=True)
+class Validated:
+    """A submission after validation.
+
+    `table` is Variants as read, one row per submitted variant; `variants` are the rows without an error;
+    `ledger` holds the findings and what they spoil, for the stages that add engineering findings.
+    """
+
+    ledger: Ledger
+    table: Table | None = None
+    variants: list[Variant] = field(default_factory=list)
+    classes: dict[str, list[ToleranceRow]] = field(default_factory=dict)
+    materials: dict[str, Material] = field(default_factory=dict)
+    settings: Settings = field(default_factory=Settings)
+
+    @property
+    def submitted(self) -> list[tuple[int, str]]:
+        """Row number and name of every submitted variant, in submitted order."""
+        if self.table is None:
+            return []
+        return list(self.table.frame.select("row", "variant").fill_null("").iter_rows())
+
+
+def validate(submission: Submission) -> Validated:
+    """Return the variants of a submission and all that is wrong with it.
+
+    Raises Refusal when there is no Variants sheet or the template is newer than this program.
+    """
+    ledger = Ledger(submission.name)
+    result = Validated(ledger=ledger)
+    _check_version(submission)
+    sheets = _entry_sheets(submission)
+    tables: dict[str, Table] = {}
+    for schema, sheet in sheets.items():
+        table = tabulate(sheet, schema, ledger, from_text=_from_text(submission, schema))
+        if table is not None:
+            check_cells(table, ledger)
+            tables[schema] = table
+    if submission.delimiter not in {"", ","}:
+        ledger.add("I507", value={";": "semicolon", "\t": "tab"}[submission.delimiter])
+    _fill_tables(result, submission, tables)
+    result.table = tables.get("Variants")
+    if result.table is not None:
+        _check_rows(result, result.table)
+    _tell_other_sources(submission, ledger)
+    if result.table is not None and not ledger.everything:
+        result.variants = [
+            _variant(record, result)
+            for record in result.table.frame.iter_rows(named=True)
+            if record["row"] not in ledger.rows
+        ]
+    ledger.name_variants(result.table.sheet if result.table else "", dict(result.submitted))
+    return result
+
+
+def _from_text(submission: Submission, schema: str) -> bool:
+    """Whether a sheet's numbers are texts: in CSV, also in a CSV given beside another kind."""
+    return submission.kind == "csv" or (submission.kind == "parquet" and schema != "Variants")
+
+
+def _check_version(submission: Submission) -> None:
+    """Refuse a template of a later version."""
+    version = submission.template_version
+    if version.isdecimal() and int(version) > TEMPLATE_VERSION:
+        raise Refusal("E116", found=version, known=TEMPLATE_VERSION)
+
+
+def _entry_sheets(submission: Submission) -> dict[str, RawSheet]:
+    """Return the entry sheets by schema; letter case and spaces of their names do not matter."""
+    by_plain = {plain(name): sheet for name, sheet in submission.sheets.items()}
+    if plain("Variants") not in by_plain:
+        names = list(submission.sheets)
+        listed = "the sheets " + ", ".join(names[:8]) if names else "no sheet"
+        raise Refusal("E108", found=listed, suggestion=closest("Variants", names))
+    return {schema: by_plain[plain(schema)] for schema in ENTRY_SHEETS if plain(schema) in by_plain}
+
+
+def _fill_tables(result: Validated, submission: Submission, tables: dict[str, Table]) -> None:
+    """Take materials, tolerance classes and settings from the submission, else the built-in ones."""
+    ledger = result.ledger
+    if "Materials" in tables:
+        result.materials = materials_of(tables["Materials"], ledger)
+    else:
+        result.materials = built_in_materials()
+        if submission.kind == "workbook":
+            ledger.add("I505", value="sheet Materials", other="materials")
+    if "Tolerances" in tables:
+        result.classes = tolerance_classes_of(tables["Tolerances"], ledger)
+    if "standard" not in result.classes:
+        result.classes["standard"] = standard_class()
+        if submission.kind == "workbook":
+            ledger.add("I505", value="rows for tolerance class standard", other="class")
+    if "Settings" in tables:
+        from_text = _from_text(submission, "Settings")
+        result.settings = settings_of(tables["Settings"], ledger, from_text=from_text)
+
+
+def _check_rows(result: Validated, table: Table) -> None:
+    """Check relations, duplicates and references of the Variants rows."""
+    ledger = result.ledger
+    if table.frame.is_empty():
+        cell = table.address(table.heading.row + 1, "variant")
+        ledger.add("E115", sheet=table.sheet, cell=cell)
+        ledger.everything = True
+        return
+    check_relations(table, ledger)
+    _check_duplicates(table, ledger)
+    known_materials = [material.name for material in result.materials.values()]
+    known_classes = [rows[0].tolerance_class if rows else key for key, rows in result.classes.items()]
+    for record in table.frame.iter_rows(named=True):
+        row = record["row"]
+        for key, code, known, faulty, names in (
+            ("material", "E307", result.materials, ledger.materials, known_materials),
+            ("tolerance_class", "E309", result.classes, ledger.classes, known_classes),
+        ):
+            value = record[key]
+            if value is None or (row, key) in table.faulty:
+                continue
+            if plain(value) not in known:
+                _blame(table, ledger, code, row, key, value=value, suggestion=closest(value, names, 0.5))
+            elif plain(value) in faulty:
+                ledger.rows.add(row)
+        if record["tolerance_class"] is None and "standard" in ledger.classes:
+            ledger.rows.add(row)
+
+
+def _check_duplicates(table: Table, ledger: Ledger) -> None:
+    """Mark every row of a name that is used more than once, each with its partners."""
+    partners: dict[str, list[int]] = defaultdict(list)
+    for row, name in table.frame.select("row", "variant").iter_rows():
+        if name is not None:
+            partners[name].append(row)
+    for name, rows in partners.items():
+        for row in rows if len(rows) > 1 else ():
+            others = [table.address(other, "variant") for other in rows if other != row]
+            listed = ", ".join(others[:10]) + (f" and {len(others) - 10} more" if len(others) > 10 else "")  # noqa: PLR2004
+            _blame(table, ledger, "E308", row, "variant", value=name, other=listed)
+
+
+def _blame(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts: Any) -> None:
+    """Record a finding at a cell of Variants."""
+    name = columns_of("Variants")[key].name
+    cell = table.address(row, key)
+    ledger.add(code, sheet=table.sheet, cell=cell, column=key, name=name, rows=[row], **facts)
+
+
+def _tell_other_sources(submission: Submission, ledger: Ledger) -> None:
+    """Warn when the sheet of a later version is filled."""
+    for name, sheet in submission.sheets.items():
+        if plain(name) == plain(_OTHER_SOURCES) and len(sheet.rows) > 1:
+            ledger.add("W406", sheet=name, cell=f"A{min(sheet.rows)}")
+
+
+def _variant(record: dict[str, Any], result: Validated) -> Variant:
+    """Return a sound row as a variant in SI; dimensions that equal another are left out."""
+    columns = columns_of("Variants")
+    dimensions = {
+        column.dimension: record[key] * column.si_unit.si
+        for key, column in columns.items()
+        if column.is_number and record[key] is not None and not (column.minimum == 0 and record[key] == 0)
+    }
+    rated_torque = dimensions.pop("rated_torque", None)
+    backlash_limit = dimensions.pop("backlash_limit", None)
+    material = result.materials[plain(record["material"])]
+    constants = dict(material.constants)
+    if "shear_modulus" in constants:
+        constants = {"shear_modulus": constants["shear_modulus"]}
+    return Variant(
+        row=record["row"],
+        name=record["variant"],
+        flexspline_type=record["flexspline_type"] or "cup",
+        material=material.name,
+        tolerance_class=record["tolerance_class"] or "standard",
+        dimensions=dimensions | constants | result.settings.calibrations,
+        rated_torque=rated_torque,
+        backlash_limit=backlash_limit,
+        yield_strength=material.yield_strength,
+    )

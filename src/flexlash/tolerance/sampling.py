@@ -1,0 +1,89 @@
+"""Points in the unit cube: independent replicates, the same points for every variant.
+
+A coordinate belongs to a *name*, not to a place in a list, so that two variants with different dimensions
+meet the same wall thickness in the same draw.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+
+from flexlash.arrays import Array
+from flexlash.tolerance.distributions import Distribution
+
+__all__ = ["DEFAULT_SAMPLES", "REPLICATES", "UnitPoints"]
+
+REPLICATES = 16
+"""Independent replicates behind every standard error: 15 degrees of freedom."""
+
+DEFAULT_SAMPLES = {"sobol": 2**15, "random": 2**17}
+"""Points per variant when none are asked for."""
+
+PointSet = Literal["all", "leading", "second"]
+
+_SHARE_POINTS = 512
+_CACHED_SHAPES = 256
+
+
+class UnitPoints:
+    """Points in the unit cube, one coordinate per name, as arrays of shape (replicates, points).
+
+    `all` of them make the spread. The shares of variance cross their leading part, `leading`, with a second
+    independent set of the same length, `second`.
+    """
+
+    def __init__(
+        self, names: Sequence[str], *, method: Literal["sobol", "random"], samples: int | None, seed: int
+    ) -> None:
+        wanted = samples or DEFAULT_SAMPLES[method]
+        self.method = method
+        self.count = 1 << max(0, -(-wanted // REPLICATES) - 1).bit_length()
+        self.share_count = min(self.count, _SHARE_POINTS)
+        streams = np.random.SeedSequence(seed).spawn(REPLICATES)
+        draw = _sobol if method == "sobol" else _random
+        width = len(names)
+        self._sets: dict[PointSet, dict[str, Array]] = {
+            "all": {name: np.empty((REPLICATES, self.count)) for name in names},
+            "second": {name: np.empty((REPLICATES, self.share_count)) for name in names},
+        }
+        for replicate, stream in enumerate(streams):
+            points = draw(2 * width, self.count, np.random.default_rng(stream))
+            for place, name in enumerate(names):
+                self._sets["all"][name][replicate] = points[:, place]
+                self._sets["second"][name][replicate] = points[: self.share_count, width + place]
+        self._sets["leading"] = {
+            name: np.ascontiguousarray(values[:, : self.share_count])
+            for name, values in self._sets["all"].items()
+        }
+        self._standard: dict[tuple[PointSet, str, tuple[str | float, ...]], Array] = {}
+
+    @property
+    def size(self) -> int:
+        """Points in all replicates together."""
+        return REPLICATES * self.count
+
+    def standard(self, name: str, distribution: Distribution, points: PointSet = "all") -> Array:
+        """Return the standard values of a distribution at a name's points, (replicates, points)."""
+        key = (points, name, distribution.shape)
+        known = self._standard.get(key)
+        if known is None:
+            known = distribution.standard(self._sets[points][name])
+            if len(self._standard) < _CACHED_SHAPES:
+                self._standard[key] = known
+        return known
+
+
+def _sobol(width: int, count: int, generator: np.random.Generator) -> Array:
+    """Return scrambled Sobol' points (count, width), none of them on a face of the cube."""
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(width, scramble=True, rng=generator).random(count)
+    return np.clip(points, 2.0**-53, 1 - 2.0**-53)
+
+
+def _random(width: int, count: int, generator: np.random.Generator) -> Array:
+    """Return independent uniform points (count, width), none of them on a face of the cube."""
+    return np.clip(generator.random((count, width)), 2.0**-53, 1 - 2.0**-53)

@@ -1,0 +1,65 @@
+"""The records that travel from submission to report: a variant, its tolerance rows, the settings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+__all__ = ["Material", "Settings", "ToleranceRow", "Variant"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material:
+    """A material of the submission; elastic constants and yield strength in Pa."""
+
+    name: str
+    constants: dict[str, float]
+    yield_strength: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variant:
+    """One valid row of Variants in SI; `dimensions` holds those it has itself, by name.
+
+    A dimension that is blank because it equals another is absent: mean_radius when a bore is given,
+    disk_thickness, disk radii, a fillet of 0, E and ν when the material gives G.
+    """
+
+    row: int
+    name: str
+    flexspline_type: str
+    material: str
+    tolerance_class: str
+    dimensions: dict[str, float]
+    rated_torque: float | None = None
+    backlash_limit: float | None = None
+    yield_strength: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToleranceRow:
+    """One row of Tolerances: deviations in SI (or a fraction when relative), or a grade."""
+
+    row: int
+    tolerance_class: str
+    dimension: str
+    lower: float = 0.0
+    upper: float = 0.0
+    relative: bool = False
+    grade: str | None = None
+    distribution: str = "normal"
+    limits_sigma: float = 3.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """What holds for all variants of a submission."""
+
+    seed: int = 0
+    coverage_percent: float = 95.0
+    method: Literal["line", "sobol", "random"] = "line"
+    samples: int | None = None
+    lost_motion_percent: float = 4.0
+    calibrations: dict[str, float] = field(
+        default_factory=lambda: {"cylinder_calibration": 1.0, "disk_calibration": 1.0}
+    )
