@@ -1,2 +1,41 @@
-"""Excel in, tolerance-spread report out."""
+"""Excel in, tolerance-spread report out: torsional backlash of strain wave gear flexsplines.
+
+Data flows one way, and each stage is one folder or module:
+
+    template ─► (an engineer fills it) ─► submission ─► mechanics ─► tolerance ─► report
+                                          read, validate   numbers      spread       workbook
+
+`pipeline` alone knows the order. `columns` is the one truth about every field, `findings` about every
+message. A submission goes through like this:
+
+>>> import flexlash, pathlib, tempfile
+>>> from flexlash.submission.template import study, template_bytes
+>>> folder = pathlib.Path(tempfile.mkdtemp())
+>>> _ = (folder / "study.xlsx").write_bytes(template_bytes(study()))
+>>> outcome = flexlash.run(folder / "study.xlsx")
+>>> outcome.counts
+{'rows': 11, 'computed': 11, 'errors': 0, 'warnings': 2}
+>>> row = outcome.results.row(0, named=True)
+>>> row["variant"], round(row["backlash_arcmin"], 3), row["main_contributor"]
+('B3-160 case 1', 3.687, 'youngs_modulus')
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from flexlash.pipeline import Outcome, check, run
+
+__all__ = ["Outcome", "__version__", "check", "run"]
+
 __version__ = "0.1.0"
+
+
+def __getattr__(name: str) -> Any:
+    """Load the pipeline only when it is used, so that the command line answers at once."""
+    if name in {"Outcome", "check", "run"}:
+        from flexlash import pipeline
+
+        return getattr(pipeline, name)
+    raise AttributeError(f"module 'flexlash' has no attribute {name!r}")

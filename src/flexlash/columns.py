@@ -76,12 +76,12 @@ class Column:
         if not self.is_number:
             return "a text"
         words = "a whole number" if self.type == "integer" else "a number"
-        if self.unit:
+        if self.unit not in {"", "-"}:
             words += f" in {self.unit}"
         if self.minimum is not None:
-            words += f" {'greater than' if self.exclusive_minimum else 'of at least'} {self.minimum:g}"
+            words += f" {'greater than' if self.exclusive_minimum else 'of at least'} {self.minimum:.15g}"
         if self.maximum is not None:
-            words += f"{' and' if self.minimum is not None else ''} at most {self.maximum:g}"
+            words += f"{' and' if self.minimum is not None else ''} at most {self.maximum:.15g}"
         return words
 
     def as_dictionary(self) -> dict[str, Any]:
@@ -331,7 +331,7 @@ SETTINGS = (
         label="seed",
         type="integer",
         minimum=0,
-        maximum=2**53,
+        maximum=2**32 - 1,
         default=0,
         help="Start of the random numbers. The same seed gives the same report.",
     ),
@@ -362,7 +362,7 @@ SETTINGS = (
         label="samples",
         type="integer",
         minimum=1,
-        maximum=2**24,
+        maximum=2**22,
         help="Points per variant. Blank: chosen by the program.",
     ),
     Column(

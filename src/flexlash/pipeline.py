@@ -8,8 +8,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
+from flexlash import __version__
 from flexlash.assessment import Computed, assess
 from flexlash.columns import DIMENSIONS
 from flexlash.findings import Finding, finding
@@ -75,6 +76,24 @@ class Outcome:
             "errors": levels["error"],
             "warnings": levels["warning"],
         }
+
+    def as_dictionary(self) -> dict[str, Any]:
+        """Return the object that `--json` prints."""
+        return {
+            "submission": self.submission.name,
+            "sha256": self.submission.sha256,
+            "version": __version__,
+            "seed": self.settings.seed,
+            "method": self.method,
+            "counts": self.counts,
+            "findings": [found.as_dictionary() for found in self.findings],
+            "outputs": [str(path) for path in self.outputs],
+        }
+
+    @property
+    def method(self) -> Literal["sobol", "random"]:
+        """The method that made the spread, which is not always the one asked for."""
+        return "random" if self.settings.method == "random" else "sobol"
 
     @property
     def exit_code(self) -> int:
@@ -188,7 +207,7 @@ def _spread(outcome: Outcome, options: Options) -> None:
     settings = outcome.settings
     points = UnitPoints(
         list(DIMENSIONS),
-        method="random" if settings.method == "random" else "sobol",
+        method=outcome.method,
         samples=settings.samples,
         seed=settings.seed,
     )

@@ -1,0 +1,5 @@
+"""`python -m flexlash` is the command `flexlash`."""
+
+from flexlash.cli import main
+
+main()

@@ -1,0 +1,103 @@
+"""The outcome → a file, whole or not at all: report workbook, or Results as CSV, Parquet or JSON."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+if TYPE_CHECKING:
+    from flexlash.pipeline import Outcome
+
+__all__ = ["ENDINGS", "write_bytes", "write_outcome"]
+
+ENDINGS = (".xlsx", ".csv", ".parquet", ".json")
+
+_FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
+_COPIES = 100
+
+
+def write_outcome(outcome: Outcome, path: Path) -> Path:
+    """Write the outcome in the form that the path's ending names and return where it was written.
+
+    A report that is open in another program is not touched: the new one gets ` (2)`. Raises OSError when
+    nothing can be written, ValueError for an unknown ending.
+    """
+    ending = path.suffix.lower()
+    if ending == ".xlsx":
+        from flexlash.report.workbook import report_bytes
+
+        data = report_bytes(outcome)
+    elif ending == ".csv":
+        data = _as_csv(outcome.results)
+    elif ending == ".parquet":
+        buffer = io.BytesIO()
+        outcome.results.write_parquet(buffer)
+        data = buffer.getvalue()
+    elif ending == ".json":
+        data = (json.dumps(outcome.results.to_dicts(), ensure_ascii=False, indent=1) + "\n").encode()
+    else:
+        raise ValueError(f"the output must end in {', '.join(ENDINGS)}, not {path.suffix or 'nothing'}")
+    return write_bytes(data, path)
+
+
+def _as_csv(results: pl.DataFrame) -> bytes:
+    """Return the Results as CSV; texts that a spreadsheet would take for a formula get an apostrophe."""
+    texts = pl.col(pl.String)
+    starts = texts.str.slice(0, 1).is_in(_FORMULA_STARTS)
+    inert = results.with_columns(pl.when(starts).then(pl.lit("'") + texts).otherwise(texts).name.keep())
+    return inert.write_csv().encode()
+
+
+def write_bytes(data: bytes, path: Path) -> Path:
+    """Write a file by way of a temporary one beside it, so that it is whole or absent."""
+    handle, name = tempfile.mkstemp(prefix=".flexlash-", suffix=".tmp", dir=path.parent)
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.chmod(0o666 & ~_umask())
+        return _move(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _move(temporary: Path, path: Path) -> Path:
+    """Put the temporary file in its place, or beside a file that another program holds open."""
+    for copy in range(1, _COPIES):
+        target = path if copy == 1 else path.with_name(f"{path.stem} ({copy}){path.suffix}")
+        if copy > 1 and target.exists():
+            continue
+        try:
+            temporary.replace(target)
+        except PermissionError:
+            if os.name != "nt":
+                raise
+            continue
+        _sync_folder(target.parent)
+        return target
+    raise PermissionError(f"{path.name} and its copies cannot be replaced")
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make the rename durable where folders can be synchronised."""
+    if os.name == "nt":
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

@@ -1,0 +1,146 @@
+"""The outcome in words: plain sentences for the terminal and the report's first page."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from flexlash.findings import CATALOGUE, Finding
+
+if TYPE_CHECKING:
+    from flexlash.pipeline import Outcome
+
+__all__ = ["cell_ranges", "finding_lines", "rounded", "share_words", "summary_lines"]
+
+_SHOWN_MESSAGES = 3
+_LEVELS = ("error", "warning", "info")
+
+
+def cell_ranges(cells: Sequence[str]) -> str:
+    """Return cell addresses with runs in a column drawn together.
+
+    >>> cell_ranges(["D6", "D7", "D8", "D14", "E3"])
+    'D6:D8, D14, E3'
+    """
+    by_column: dict[str, list[int]] = defaultdict(list)
+    for cell in cells:
+        letters = cell.rstrip("0123456789")
+        by_column[letters].append(int(cell[len(letters) :] or 0))
+    found = []
+    for letters, numbers in by_column.items():
+        start = last = None
+        for number in [*sorted(set(numbers)), math.inf]:
+            if last is not None and number == last + 1:
+                last = number
+                continue
+            if start is not None:
+                found.append(f"{letters}{start}" if start == last else f"{letters}{start}:{letters}{last}")
+            start = last = number
+    return ", ".join(found)
+
+
+def finding_lines(findings: Sequence[Finding]) -> Iterator[tuple[str, str]]:
+    """Yield level (empty for details) and line: findings grouped by rule, worst first, with their ranges."""
+    groups: dict[tuple[int, str, str], list[Finding]] = defaultdict(list)
+    for found in findings:
+        groups[_LEVELS.index(found.level), found.code, found.sheet].append(found)
+    for (_, code, sheet), group in sorted(groups.items()):
+        level = group[0].level
+        places = cell_ranges([found.cell for found in group if found.cell])
+        where = f": {sheet}!{places}" if places else ""
+        yield level, f"{level} {code} {CATALOGUE[code].title}{where}"
+        if level == "info" and len(group) > 1:
+            continue
+        for found in group[:_SHOWN_MESSAGES]:
+            yield "", f"    {found.message}"
+        if len(group) > _SHOWN_MESSAGES:
+            yield "", f"    … and {len(group) - _SHOWN_MESSAGES} more of the same kind"
+        if level != "info":
+            yield "", f"    Mend: {group[0].fix}"
+
+
+def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
+    """Yield the closing lines of the terminal: what was computed, what it says, what to do next."""
+    counts = outcome.counts
+    if outcome.skipped:
+        return
+    if not counts["rows"]:
+        yield f"{name}: nothing to compute."
+        return
+    ready = f"{counts['computed']} of {counts['rows']} rows {'computed' if ran else 'ready'}"
+    fixes = f"; {counts['errors']} error{_s(counts['errors'])} to fix" if counts["errors"] else ""
+    warned = f"; {counts['warnings']} warning{_s(counts['warnings'])}" if counts["warnings"] else ""
+    yield f"{name}: {ready}{fixes}{warned}."
+    if ran:
+        yield from over_limit_lines(outcome)
+        for path in outcome.outputs:
+            yield f"Written: {path}"
+        if not outcome.outputs:
+            yield "Nothing was written: there is no computed row."
+    elif outcome.computed:
+        yield f"Next: flexlash run {name}"
+
+
+def _s(count: int) -> str:
+    return "" if count == 1 else "s"
+
+
+def over_limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
+    """Yield how the variants stand to their limits, the worst by name."""
+    rows = [
+        row
+        for row in outcome.results.iter_rows(named=True)
+        if row["probability_over_limit"] is not None
+    ]
+    if not rows:
+        return
+    over = [row for row in rows if row["p97_5_arcmin"] > row["backlash_limit_arcmin"]]
+    yield f"P97.5 is over the backlash limit for {len(over)} of {len(rows)} variants with a limit."
+    worst = sorted(over, key=lambda row: -row["probability_over_limit"])[:most]
+    for row in worst:
+        yield f"  {row['variant']}: {share_words(row)} of units are over {row['backlash_limit_arcmin']:g}′."
+
+
+def share_words(row: dict[str, Any]) -> str:
+    """Return the probability over limit of a Results row with its interval, never as a bare 0 or 100 %.
+
+    >>> share_words({"probability_over_limit": 0.0, "probability_over_limit_low": 0.0,
+    ...              "probability_over_limit_high": 1.1e-4})
+    'at most 110 ppm'
+    >>> share_words({"probability_over_limit": 0.412, "probability_over_limit_low": 0.407,
+    ...              "probability_over_limit_high": 0.417})
+    '41.2 % (40.7 to 41.7 %)'
+    """
+    value, low, high = (row[f"probability_over_limit{end}"] for end in ("", "_low", "_high"))
+    if low == high:
+        return "all" if value else "none"
+    if value == 0:
+        return f"at most {_share(high)}"
+    if value == 1:
+        return f"at least {_share(low)}"
+    unit = " ppm" if high < 1e-3 else " %"  # noqa: PLR2004
+    factor = 1e6 if high < 1e-3 else 100  # noqa: PLR2004
+    half = (high - low) / 2 * factor
+    words = [rounded(end * factor, half) for end in (value, low, high)]
+    return f"{words[0]}{unit} ({words[1]} to {words[2]}{unit})"
+
+
+def _share(value: float) -> str:
+    """Return one bound in ppm or per cent."""
+    if value < 1e-3:  # noqa: PLR2004
+        return f"{value * 1e6:.3g} ppm"
+    return f"{100 * value:.4g} %"
+
+
+def rounded(value: float, error: float) -> str:
+    """Return a number with no more digits than its standard error justifies.
+
+    >>> rounded(3.684217, 0.0021), rounded(3.684217, 0.0), rounded(41.23, 0.3)
+    ('3.684', '3.6842', '41.2')
+    """
+    if not error > 0:
+        return f"{value:.5g}"
+    digits = max(0, min(8, -math.floor(math.log10(error))))
+    return f"{value:.{digits}f}"
