@@ -6,7 +6,7 @@ import json
 import os
 import sys
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +23,8 @@ __all__ = ["cli", "main"]
 
 INTERNAL, USAGE, SOME_ROWS, NOTHING, NO_FILE, INTERRUPTED = 1, 2, 3, 4, 5, 130
 
+Command = Callable[..., None]
+
 _SEVERITY = (INTERNAL, NO_FILE, NOTHING, SOME_ROWS, 0)
 
 
@@ -33,7 +35,7 @@ _SEVERITY = (INTERNAL, NO_FILE, NOTHING, SOME_ROWS, 0)
 )
 @click.version_option(__version__, prog_name="flexlash")
 def cli() -> None:
-    """Excel in, tolerance-spread report out: backlash of strain wave gear flexsplines.
+    r"""Excel in, tolerance-spread report out: backlash of strain wave gear flexsplines.
 
     \b
     Examples:
@@ -101,7 +103,7 @@ _JSON = click.option("--json", "as_json", is_flag=True, help="Machine-readable o
 _STRICT = click.option("--strict", is_flag=True, help="Compute nothing when any row has an error.")
 
 
-def _table_option(name: str) -> Any:
+def _table_option(name: str) -> Callable[[Command], Command]:
     return click.option(
         f"--{name}",
         type=click.Path(path_type=Path),
@@ -120,7 +122,7 @@ def check(submissions: tuple[Path, ...], *, as_json: bool, **options: Any) -> No
     """Validate submissions and print what was found; nothing is sampled or written."""
     from flexlash.pipeline import check as check_one
 
-    codes = []
+    codes: list[int] = []
     for path in submissions:
         with _one_submission(path, codes, as_json=as_json):
             outcome = check_one(path, **options)
@@ -145,9 +147,7 @@ def check(submissions: tuple[Path, ...], *, as_json: bool, **options: Any) -> No
 @click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")
 @_table_option("tolerances")
 @_table_option("materials")
-def run(
-    submissions: tuple[Path, ...], output: Path | None, *, as_json: bool, quiet: bool, **options: Any
-) -> None:
+def run(submissions: tuple[Path, ...], output: Path | None, *, as_json: bool, quiet: bool, **options: Any) -> None:
     """Validate, compute the tolerance spread, write the report."""
     from flexlash.pipeline import run as run_one
 

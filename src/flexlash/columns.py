@@ -22,6 +22,7 @@ __all__ = [
     "VARIANTS",
     "Column",
     "columns_of",
+    "is_symbol",
 ]
 
 
@@ -48,6 +49,11 @@ class Column:
     def name(self) -> str:
         """The label without its unit, as a sentence names it."""
         return self.label.split(" [")[0]
+
+    @cached_property
+    def plain_name(self) -> str:
+        """The label without unit and symbol: `Cylinder length`."""
+        return " ".join(word for word in self.name.split(" ") if not is_symbol(word)) or self.name
 
     @cached_property
     def dimension(self) -> str:
@@ -90,6 +96,11 @@ class Column:
         entry["choices"] = list(self.choices)
         order = ("sheet", "key", "label", "unit", "type", "required", "minimum", "maximum")
         return {key: entry[key] for key in (*order, "choices", "default", "help", "exclusive_minimum", "group")}
+
+
+def is_symbol(word: str) -> bool:
+    """Whether a word of a label is its symbol, such as Δ or r_ci."""
+    return len(word) == 1 or word.startswith("r_")
 
 
 def _length(key: str, label: str, text: str, **rest: Any) -> Column:

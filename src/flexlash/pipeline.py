@@ -52,8 +52,8 @@ class Outcome:
     """What came out of one submission.
 
     `results` is the Results table; `findings` all findings in the order of the submission; `outputs` the
-    files written. `computed` holds, by row number, what the report draws on. `skipped` says that the file
-    is a report or a marked copy, not a submission.
+    files written; `points` those drawn per variant. `computed` holds, by row number, what the report draws on.
+    `skipped` says that the file is a report or a marked copy, not a submission.
     """
 
     submission: Submission
@@ -63,6 +63,7 @@ class Outcome:
     validated: Validated | None = None
     computed: dict[int, Computed] = field(default_factory=dict)
     outputs: list[Path] = field(default_factory=list)
+    points: int = 0
     skipped: bool = False
 
     @property
@@ -139,7 +140,11 @@ def _examine(path: Path, options: Options) -> Outcome:
         if submission.role and submission.role != "template":
             skipped = [finding("I508", file=path.name)]
             return Outcome(
-                submission=submission, results=results_frame([]), findings=skipped, settings=Settings(), skipped=True
+                submission=submission,
+                results=results_frame([]),
+                findings=skipped,
+                settings=Settings(),
+                skipped=True,
             )
         return _validated(_with_tables(submission, options), options)
     except Refusal as refusal:
@@ -166,9 +171,7 @@ def _validated(submission: Submission, options: Options) -> Outcome:
     """Validate, set the limits and compute at the entered dimensions."""
     validated = validate(submission)
     overrides = {
-        name: getattr(options, name)
-        for name in ("seed", "method", "samples")
-        if getattr(options, name) is not None
+        name: getattr(options, name) for name in ("seed", "method", "samples") if getattr(options, name) is not None
     }
     settings = replace(validated.settings, **overrides)
     computed = assess(validated, settings)
@@ -211,6 +214,7 @@ def _spread(outcome: Outcome, options: Options) -> None:
         samples=settings.samples,
         seed=settings.seed,
     )
+    outcome.points = points.size
     rows = list(outcome.computed.values())
     vary = partial(_vary, points=points, coverage=settings.coverage_percent / 100)
     done = 0

@@ -87,7 +87,11 @@ RESULTS = (
 FINDINGS = tuple(
     Column(sheet="Findings", key=key, label=label, help=text, type="text")
     for key, label, text in (
-        ("level", "Level", "error: row not computed. warning: computed and flagged. info: repaired or noted."),
+        (
+            "level",
+            "Level",
+            "error: row not computed. warning: computed and flagged. info: repaired or noted.",
+        ),
         ("code", "Code", "E1xx workbook, E2xx cell, E3xx relation, W4xx engineering, I5xx repair."),
         ("sheet", "Sheet", "Sheet of the submission."),
         ("cell", "Cell", "Address in the submission."),

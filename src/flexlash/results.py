@@ -14,9 +14,7 @@ from flexlash.variant import Variant
 
 __all__ = ["result_record", "results_frame"]
 
-_STEMS = {
-    column.key: (column.dimension, column.si_unit.si) for column in RESULTS if column.quantity
-} | {
+_STEMS = {column.key: (column.dimension, column.si_unit.si) for column in RESULTS if column.quantity} | {
     "stiffness_Nm_per_rad": ("stiffness", 1.0),
     "stiffness_Nm_per_arcmin": ("stiffness", 1 / ARCMIN),
     "ppm_over_limit": ("probability_over_limit", 1e-6),
@@ -24,9 +22,7 @@ _STEMS = {
 """Result key → its SI number's name and the size of the printed unit."""
 
 
-def result_record(
-    variant: Variant, nominal: Mapping[str, float | None], variation: Variation | None
-) -> dict[str, Any]:
+def result_record(variant: Variant, nominal: Mapping[str, float | None], variation: Variation | None) -> dict[str, Any]:
     """Return the Results of a computed variant in printed units."""
     numbers: dict[str, Any] = dict(nominal)
     if variation is not None:

@@ -7,12 +7,21 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+from flexlash.columns import DIMENSIONS
 from flexlash.findings import CATALOGUE, Finding
 
 if TYPE_CHECKING:
     from flexlash.pipeline import Outcome
 
-__all__ = ["cell_ranges", "finding_lines", "rounded", "share_words", "summary_lines"]
+__all__ = [
+    "cell_ranges",
+    "dimension_words",
+    "finding_lines",
+    "rounded",
+    "share_words",
+    "summary_lines",
+    "worst_first",
+]
 
 _SHOWN_MESSAGES = 3
 _LEVELS = ("error", "warning", "info")
@@ -39,6 +48,16 @@ def cell_ranges(cells: Sequence[str]) -> str:
                 found.append(f"{letters}{start}" if start == last else f"{letters}{start}:{letters}{last}")
             start = last = number
     return ", ".join(found)
+
+
+def dimension_words(name: str) -> str:
+    """Return a dimension's name as a sentence uses it.
+
+    >>> dimension_words("wall_thickness"), dimension_words("youngs_modulus")
+    ('wall thickness', "Young's modulus")
+    """
+    text = DIMENSIONS[name].plain_name.replace("_", " ")
+    return text if text.startswith(("Young", "Poisson")) else text[0].lower() + text[1:]
 
 
 def finding_lines(findings: Sequence[Finding]) -> Iterator[tuple[str, str]]:
@@ -89,18 +108,25 @@ def _s(count: int) -> str:
 
 def over_limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
     """Yield how the variants stand to their limits, the worst by name."""
-    rows = [
-        row
-        for row in outcome.results.iter_rows(named=True)
-        if row["probability_over_limit"] is not None
-    ]
+    rows = [row for row in worst_first(outcome) if row["probability_over_limit"] is not None]
     if not rows:
         return
     over = [row for row in rows if row["p97_5_arcmin"] > row["backlash_limit_arcmin"]]
     yield f"P97.5 is over the backlash limit for {len(over)} of {len(rows)} variants with a limit."
-    worst = sorted(over, key=lambda row: -row["probability_over_limit"])[:most]
-    for row in worst:
+    for row in over[:most]:
         yield f"  {row['variant']}: {share_words(row)} of units are over {row['backlash_limit_arcmin']:g}′."
+
+
+def worst_first(outcome: Outcome) -> list[dict[str, Any]]:
+    """Return the computed Results rows, greatest probability over limit first, then greatest P97.5."""
+    rows = [row for row in outcome.results.iter_rows(named=True) if row["p97_5_arcmin"] is not None]
+
+    def badness(row: dict[str, Any]) -> tuple[float, float]:
+        limit = row["backlash_limit_arcmin"]
+        share = -1.0 if limit is None else row["probability_over_limit"]
+        return share, row["p99_865_arcmin"] / (limit or 1.0)
+
+    return sorted(rows, key=badness, reverse=True)
 
 
 def share_words(row: dict[str, Any]) -> str:

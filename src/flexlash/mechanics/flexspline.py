@@ -38,9 +38,7 @@ def _cylinder_integrals(dimensions: Dimensions, mean_radius: Array) -> dict[str,
     integrals = {}
     if "rim_length" in dimensions:
         rim_length = dimensions["rim_length"]
-        integrals["rim"] = windup.rim_integral(
-            rim_length, mean_radius, thickness, dimensions["rim_thickness"]
-        )
+        integrals["rim"] = windup.rim_integral(rim_length, mean_radius, thickness, dimensions["rim_thickness"])
         plain = plain - rim_length
     if "junction_fillet_radius" in dimensions:
         fillet = dimensions["junction_fillet_radius"]

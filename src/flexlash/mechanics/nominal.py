@@ -68,10 +68,10 @@ def _hub_shear(dimensions: dict[str, Array], radius: Array) -> Array:
     """Greatest shear stress in the disk [Pa], of shape (variants,)."""
     thickness = dimensions.get("disk_thickness", dimensions["wall_thickness"])
     return strength.hub_shear(
-        dimensions["torque"],
-        dimensions.get("disk_inner_radius", radius),
-        dimensions.get("disk_outer_radius", radius),
-        dimensions.get("disk_hub_thickness", thickness),
-        thickness,
-        dimensions.get("hub_fillet_radius", np.zeros(len(radius))),
+        torque=dimensions["torque"],
+        inner_radius=dimensions.get("disk_inner_radius", radius),
+        outer_radius=dimensions.get("disk_outer_radius", radius),
+        hub_thickness=dimensions.get("disk_hub_thickness", thickness),
+        thickness=thickness,
+        fillet_radius=dimensions.get("hub_fillet_radius", np.zeros(len(radius))),
     )

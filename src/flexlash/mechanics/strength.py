@@ -26,6 +26,7 @@ def shear_stress(torque: Array | float, radius: Array | float, thickness: Array 
 
 
 def hub_shear(
+    *,
     torque: Array | float,
     inner_radius: Array | float,
     outer_radius: Array | float,
@@ -41,7 +42,9 @@ def hub_shear(
     Valid: thin disk; searched at 400 stations, so low by less than 1e-5 where the greatest lies in between.
     Source: equilibrium of a ring.
 
-    >>> f"{hub_shear(800.0, 0.04, 0.08, 0.0016, 0.0016, 0.0) / 1e6:.3f}"
+    >>> stress = hub_shear(torque=800.0, inner_radius=0.04, outer_radius=0.08, hub_thickness=0.0016,
+    ...                    thickness=0.0016, fillet_radius=0.0)
+    >>> f"{stress / 1e6:.3f}"
     '49.736'
     """
     fraction = np.linspace(0, 1, _STATIONS)[:, np.newaxis]

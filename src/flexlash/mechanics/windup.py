@@ -86,9 +86,7 @@ def wall_integral(length: Array | float, mean_radius: Array | float, thickness: 
     return np.asarray(length / (mean_radius * mean_radius * mean_radius * thickness))
 
 
-def annulus_integral(
-    inner_radius: Array | float, outer_radius: Array | float, thickness: Array | float
-) -> Array:
+def annulus_integral(inner_radius: Array | float, outer_radius: Array | float, thickness: Array | float) -> Array:
     """Integral of a flat disk or flange of even thickness [1/m³].
 
     Equation: I = (1/r_i² − 1/r_o²) / (2 t)
@@ -99,9 +97,7 @@ def annulus_integral(
     >>> float(annulus_integral(0.5, 1.0, 1.0))
     1.5
     """
-    return np.asarray(
-        (1 / (inner_radius * inner_radius) - 1 / (outer_radius * outer_radius)) / (2 * thickness)
-    )
+    return np.asarray((1 / (inner_radius * inner_radius) - 1 / (outer_radius * outer_radius)) / (2 * thickness))
 
 
 def cone_integral(
@@ -123,9 +119,7 @@ def cone_integral(
     return annulus_integral(inner_radius, outer_radius, thickness) / np.sin(semi_angle)
 
 
-def power_law_disk_integral(
-    inner_radius: float, outer_radius: float, inner_thickness: float, exponent: float
-) -> float:
+def power_law_disk_integral(inner_radius: float, outer_radius: float, inner_thickness: float, exponent: float) -> float:
     """Integral of a disk that thins with a power of the radius [1/m³].
 
     Equation: I = ∫ dr/(r³ t), t = t_i (r_i/r)^n: (r_o^(n−2) − r_i^(n−2)) / ((n − 2) t_i r_i^n), ln at n = 2

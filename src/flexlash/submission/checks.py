@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import pandera.polars as pandera
+import pandera.polars as pa
 import polars as pl
 from pandera.errors import SchemaErrors
 
@@ -18,23 +18,23 @@ from flexlash.submission.tabulate import Table
 __all__ = ["check_cells", "check_relations"]
 
 
-def _checks(column: Column) -> list[pandera.Check]:
+def _checks(column: Column) -> list[pa.Check]:
     """Return a column's bounds and list as checks whose error is the finding's code."""
     checks = []
     if column.minimum is not None and column.is_number:
-        bound = pandera.Check.gt if column.exclusive_minimum else pandera.Check.ge
+        bound = pa.Check.gt if column.exclusive_minimum else pa.Check.ge
         checks.append(bound(column.minimum, error="E207"))
     if column.maximum is not None and column.is_number:
-        checks.append(pandera.Check.le(column.maximum, error="E208"))
+        checks.append(pa.Check.le(column.maximum, error="E208"))
     if column.choices:
-        checks.append(pandera.Check.isin(column.choices, error="E209"))
+        checks.append(pa.Check.isin(column.choices, error="E209"))
     return checks
 
 
-def _cell_schema(schema: str) -> pandera.DataFrameSchema:
-    return pandera.DataFrameSchema(
+def _cell_schema(schema: str) -> pa.DataFrameSchema:
+    return pa.DataFrameSchema(
         {
-            key: pandera.Column(
+            key: pa.Column(
                 pl.Float64 if column.is_number else pl.String,
                 checks=_checks(column),
                 nullable=not column.required,
@@ -44,16 +44,16 @@ def _cell_schema(schema: str) -> pandera.DataFrameSchema:
     )
 
 
-def _relation_check(place: int, relation: Relation) -> pandera.Check:
+def _relation_check(place: int, relation: Relation) -> pa.Check:
     """Return a frame-wide check that holds where the relation is not broken or cannot be judged."""
 
     def holds(data: Any) -> pl.LazyFrame:
         return data.lazyframe.select(~relation.broken.fill_null(value=False))  # type: ignore[no-any-return]
 
-    return pandera.Check(holds, error=str(place))
+    return pa.Check(holds, error=str(place))
 
 
-def _failures(schema: pandera.DataFrameSchema, frame: pl.DataFrame) -> Iterator[tuple[str, str, int]]:
+def _failures(schema: pa.DataFrameSchema, frame: pl.DataFrame) -> Iterator[tuple[str, str, int]]:
     """Yield check, column and frame index of every failure, in row order."""
     try:
         schema.validate(frame, lazy=True)
@@ -89,7 +89,7 @@ def check_relations(table: Table, ledger: Ledger) -> None:
     """Check what the cells of a Variants row must be to one another."""
     columns = columns_of("Variants")
     checks = [_relation_check(place, relation) for place, relation in enumerate(RELATIONS)]
-    for check, _, index in _failures(pandera.DataFrameSchema(checks=checks), table.frame):
+    for check, _, index in _failures(pa.DataFrameSchema(checks=checks), table.frame):
         relation = RELATIONS[int(check)]
         record = table.frame.row(index, named=True)
         row = record["row"]

@@ -72,7 +72,14 @@ def admit(data: bytes) -> Admitted:
     if data.startswith(b"PK\x03\x04"):
         try:
             return Admitted(kind="workbook", data=data, unstored=_inspect(data))
-        except (zipfile.BadZipFile, zlib.error, expat.ExpatError, EOFError, OSError, NotImplementedError) as fault:
+        except (
+            zipfile.BadZipFile,
+            zlib.error,
+            expat.ExpatError,
+            EOFError,
+            OSError,
+            NotImplementedError,
+        ) as fault:
             raise Refusal("E102") from fault
         except (KeyError, RuntimeError, UnicodeError, ValueError, OverflowError) as fault:
             raise Refusal("E102") from fault

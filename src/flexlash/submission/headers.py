@@ -6,10 +6,11 @@ import difflib
 import re
 import unicodedata
 from dataclasses import dataclass, field
+from typing import Any
 
 from flexlash.columns import Column, columns_of
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.read import RawSheet, column_letters
+from flexlash.submission.read import RawSheet, RawValue, column_letters
 from flexlash.units import Unit, find_unit
 
 __all__ = ["STATUS_HEADER", "Heading", "closest", "find_headings", "plain"]
@@ -54,15 +55,9 @@ def _spellings(columns: dict[str, Column]) -> dict[str, str]:
     """Every accepted header without its unit → key: key, label, label without symbol."""
     found = {}
     for key, column in columns.items():
-        words = column.name.split(" ")
-        short = " ".join(words[:-1]) if len(words) > 1 and _is_symbol(words[-1]) else column.name
-        for spelling in (key, column.dimension, column.name, short):
+        for spelling in (key, column.dimension, column.name, column.plain_name):
             found[plain(spelling)] = key
     return found
-
-
-def _is_symbol(word: str) -> bool:
-    return len(word) == 1 or "_" in word
 
 
 def _split(header: str) -> tuple[str, str | None]:
@@ -73,79 +68,91 @@ def _split(header: str) -> tuple[str, str | None]:
 
 def find_headings(sheet: RawSheet, schema: str, ledger: Ledger) -> Heading | None:
     """Return the columns of a sheet, or None (with a finding) when it has no header row."""
-    columns = columns_of(schema)
-    spellings = _spellings(columns)
-    counts = {
-        number: sum(isinstance(cell, str) and plain(_split(cell)[0]) in spellings for cell in cells.values())
-        for number, cells in sheet.rows.items()
-        if number <= _LAST_HEADER_ROW
-    }
-    best = max(counts, key=lambda number: counts[number], default=0)
-    if not counts or counts[best] < min(2, len(columns)):
-        ledger.add("E109", sheet=sheet.name, cell="A1")
-        ledger.everything = True
-        return None
-    heading = Heading(row=best)
-    for place, cell in sheet.rows[best].items():
-        if isinstance(cell, str) and plain(cell) == plain(STATUS_HEADER):
-            heading.ignored.add(place)
-        elif isinstance(cell, str):
-            _place(heading, place, cell, sheet.name, columns, spellings, ledger)
-    for key, column in columns.items():
-        if column.required and key not in heading.places and key not in heading.doubtful.values():
-            address = f"{column_letters(max(sheet.rows[best]) + 1)}{best}"
-            ledger.add("E111", sheet=sheet.name, cell=address, column=key, name=column.name, label=column.label)
-            ledger.everything = True
-    return heading
+    return _Recogniser(sheet, schema, ledger).recognise()
 
 
-def _place(
-    heading: Heading,
-    place: int,
-    header: str,
-    sheet: str,
-    columns: dict[str, Column],
-    spellings: dict[str, str],
-    ledger: Ledger,
-) -> None:
-    """Recognise one header cell, or say what is wrong with it."""
-    name, unit_text = _split(header)
-    key = spellings.get(plain(name))
-    address = f"{column_letters(place)}{heading.row}"
-    meant = key or _resembled(name, spellings)
-    if meant is None:
-        heading.extra[place] = header.strip()
-        ledger.add("I502", sheet=sheet, cell=address, value=header.strip())
-        return
-    column = columns[meant]
-    facts = {
-        "sheet": sheet,
-        "cell": address,
-        "column": meant,
-        "value": header.strip(),
-        "name": column.name,
-        "label": column.label,
-        "unit": column.unit or "the unit that Deviation unit names",
-    }
-    if key is None:
-        heading.doubtful[place] = meant
-        ledger.add("E112", suggestion=column.label, **facts)
-    elif key in heading.places:
-        heading.doubtful[place] = key
-        ledger.add("E114", other=column_letters(heading.places[key]), **facts)
-        ledger.everything = True
-    else:
-        unit = _unit(column, unit_text, by_key=plain(name) == plain(key))
-        if unit is None and unit_text is not None and column.is_number:
-            heading.doubtful[place] = key
-            ledger.add("E113", suggestion=column.label, **facts)
+class _Recogniser:
+    """Recognises the header row of one sheet."""
+
+    def __init__(self, sheet: RawSheet, schema: str, ledger: Ledger) -> None:
+        self.sheet = sheet
+        self.ledger = ledger
+        self.columns = columns_of(schema)
+        self.spellings = _spellings(self.columns)
+
+    def recognise(self) -> Heading | None:
+        """Return the headings of the row, within the first fifteen, that has most of them."""
+        rows = {number: cells for number, cells in self.sheet.rows.items() if number <= _LAST_HEADER_ROW}
+        known = {number: sum(map(self._is_known, cells.values())) for number, cells in rows.items()}
+        best = max(known, key=lambda number: known[number], default=0)
+        if not known or known[best] < min(2, len(self.columns)):
+            self.ledger.add("E109", sheet=self.sheet.name, cell="A1")
+            self.ledger.everything = True
+            return None
+        heading = Heading(row=best)
+        for place, cell in rows[best].items():
+            if isinstance(cell, str) and plain(cell) == plain(STATUS_HEADER):
+                heading.ignored.add(place)
+            elif isinstance(cell, str):
+                self._place(heading, place, cell)
+        self._require(heading, max(rows[best]) + 1)
+        return heading
+
+    def _is_known(self, cell: RawValue) -> bool:
+        return isinstance(cell, str) and plain(_split(cell)[0]) in self.spellings
+
+    def _require(self, heading: Heading, next_place: int) -> None:
+        """Tell which required columns are missing, at the cell where they could be added."""
+        for key, column in self.columns.items():
+            if column.required and key not in heading.places and key not in heading.doubtful.values():
+                address = f"{column_letters(next_place)}{heading.row}"
+                facts: dict[str, Any] = {"column": key, "name": column.name, "label": column.label}
+                self.ledger.add("E111", sheet=self.sheet.name, cell=address, **facts)
+                self.ledger.everything = True
+
+    def _place(self, heading: Heading, place: int, header: str) -> None:
+        """Recognise one header cell, or say what is wrong with it."""
+        name, unit_text = _split(header)
+        key = self.spellings.get(plain(name))
+        meant = key or _resembled(name, self.spellings)
+        place_facts: dict[str, Any] = {
+            "sheet": self.sheet.name,
+            "cell": f"{column_letters(place)}{heading.row}",
+            "value": header.strip(),
+        }
+        if meant is None:
+            heading.extra[place] = header.strip()
+            self.ledger.add("I502", **place_facts)
             return
-        heading.places[key] = place
-        heading.factors[key] = unit.si / column.si_unit.si if unit else 1.0
-        if unit is None and column.unit and column.unit != "-":
-            ledger.add("I503", **facts)
+        column = self.columns[meant]
+        facts = place_facts | {
+            "column": meant,
+            "name": column.name,
+            "label": column.label,
+            "unit": column.unit or "the unit that Deviation unit names",
+        }
+        unit = _unit(column, unit_text, by_key=plain(name) == plain(meant))
+        if key is None:
+            heading.doubtful[place] = meant
+            self.ledger.add("E112", suggestion=column.label, **facts)
+        elif key in heading.places:
+            heading.doubtful[place] = key
+            self.ledger.add("E114", other=column_letters(heading.places[key]), **facts)
+            self.ledger.everything = True
+        elif unit is None and unit_text is not None and column.is_number:
+            heading.doubtful[place] = key
+            self.ledger.add("E113", suggestion=column.label, **facts)
+        else:
+            heading.places[key] = place
+            heading.factors[key] = unit.si / column.si_unit.si if unit else 1.0
+            self._tell_unit(column, unit, facts, unit_text)
+
+    def _tell_unit(self, column: Column, unit: Unit | None, facts: dict[str, Any], text: str | None) -> None:
+        """Tell a unit that was assumed or converted."""
+        if unit is None and column.unit not in {"", "-"}:
+            self.ledger.add("I503", **facts)
         elif unit and unit != column.si_unit:
-            ledger.add("I501", **facts | {"value": unit_text})
+            self.ledger.add("I501", **facts | {"value": text})
 
 
 def _unit(column: Column, text: str | None, *, by_key: bool) -> Unit | None:

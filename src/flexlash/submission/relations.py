@@ -33,9 +33,7 @@ def _is(*types: str) -> pl.Expr:
     return pl.col("flexspline_type").fill_null("cup").is_in(types)
 
 
-_RADIUS = pl.coalesce(
-    "mean_radius_mm", (pl.col("bore_diameter_mm") + pl.col("wall_thickness_mm")) / 2
-)
+_RADIUS = pl.coalesce("mean_radius_mm", (pl.col("bore_diameter_mm") + pl.col("wall_thickness_mm")) / 2)
 _INNER = pl.when(_is("hat")).then(pl.coalesce("disk_inner_radius_mm", _RADIUS)).otherwise("disk_inner_radius_mm")
 _OUTER = pl.coalesce("disk_outer_radius_mm", _RADIUS)
 _RIM = pl.col("rim_length_mm").fill_null(0)
@@ -101,7 +99,7 @@ RELATIONS = (
     Relation(
         code="E303",
         key="disk_inner_radius_mm",
-        broken=_is("hat") & (_INNER >= pl.col("disk_outer_radius_mm")),
+        broken=_is("hat") & (pl.col("disk_outer_radius_mm") <= _INNER),
         facts=lambda row: {
             "other": row["disk_outer_radius_mm"],
             "value": radius(row) if row["disk_inner_radius_mm"] is None else row["disk_inner_radius_mm"],
@@ -140,7 +138,7 @@ RELATIONS = (
         key="junction_fillet_radius_mm",
         broken=_is("cup")
         & (pl.col("junction_fillet_radius_mm") > 0)
-        & (_RIM < pl.col("cylinder_length_mm"))
+        & (pl.col("cylinder_length_mm") > _RIM)
         & (pl.col("junction_fillet_radius_mm") + _RIM > pl.col("cylinder_length_mm")),
         facts=lambda row: {"other": row["cylinder_length_mm"]},
     ),

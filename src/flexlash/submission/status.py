@@ -32,11 +32,8 @@ class _Rule:
 
 
 def _missing(key: str) -> _Rule:
-    name = next(column.name for column in VARIANTS if column.key == key)
-    words = [word for word in name.split(" ") if len(word) > 1 and "_" not in word]
-    return _Rule(
-        text=" ".join(words).lower() + " missing", excel=f'{{{key}}}=""', holds=lambda row, _: not row.get(key)
-    )
+    name = next(column.plain_name for column in VARIANTS if column.key == key)
+    return _Rule(text=f"{name.lower()} missing", excel=f'{{{key}}}=""', holds=lambda row, _: not row.get(key))
 
 
 def _blank(row: Row, key: str) -> bool:
@@ -101,12 +98,13 @@ _RULES = (
     _Rule(
         text="a cylinder has no disk",
         excel='AND({flexspline_type}="cylinder",COUNTA({disk_thickness_mm}:{disk_hub_thickness_mm})>0)',
-        holds=lambda row, _: _type(row) == "cylinder"
-        and any(not _blank(row, key) for key in _KEYS if key.startswith("disk_")),
+        holds=lambda row, _: (
+            _type(row) == "cylinder" and any(not _blank(row, key) for key in _KEYS if key.startswith("disk_"))
+        ),
     ),
     _Rule(
         text="hub larger than the disk",
-        excel=f"AND({_CUP},{{disk_inner_radius_mm}}>=IF({{disk_outer_radius_mm}}<>\"\",{{disk_outer_radius_mm}},"
+        excel=f'AND({_CUP},{{disk_inner_radius_mm}}>=IF({{disk_outer_radius_mm}}<>"",{{disk_outer_radius_mm}},'
         'IF({mean_radius_mm}<>"",{mean_radius_mm},{bore_diameter_mm}/2+{wall_thickness_mm}/2)))',
         holds=_hub_too_large,
     ),

@@ -62,7 +62,15 @@ def materials_of(table: Table, ledger: Ledger) -> dict[str, Material]:
             ledger.materials.add(key)
         if key in first:
             ledger.materials.add(key)
-            _blame(table, ledger, "E321", row, "material", value=name, other=table.address(first[key], "material"))
+            _blame(
+                table,
+                ledger,
+                "E321",
+                row,
+                "material",
+                value=name,
+                other=table.address(first[key], "material"),
+            )
         first.setdefault(key, row)
         found.setdefault(key, _material(record, name))
         _check_constants(table, ledger, record, key)
@@ -239,7 +247,5 @@ def settings_from(values: dict[str, Any]) -> Settings:
     for key in ("seed", "samples"):
         if plain_values.get(key) is not None:
             plain_values[key] = int(plain_values[key])
-    calibrations = {
-        key: float(values.get(key, 1.0)) for key in ("cylinder_calibration", "disk_calibration")
-    }
+    calibrations = {key: float(values.get(key, 1.0)) for key in ("cylinder_calibration", "disk_calibration")}
     return Settings(**plain_values, calibrations=calibrations)

@@ -24,7 +24,8 @@ class Table:
     """Typed cells of an entry sheet in the template's units.
 
     `frame` has the column `row` and one column per key of the schema, null where blank or unreadable;
-    `cells` are the raw cells by row and place; `faulty` holds (row, key) of cells that already have a finding; `extra` the other columns as texts.
+    `cells` are the raw cells by row and place; `faulty` holds (row, key) of cells that already have a finding;
+    `extra` the other columns as texts.
     """
 
     sheet: str
@@ -105,7 +106,7 @@ def _typed(
     """Return a cell's typed value; None, with a finding, when it has none."""
     found = as_number(value, from_text=from_text) if column.is_number else as_text(value)
     address = table.address(row, column.key)
-    place = {"sheet": table.sheet, "cell": address, "column": column.key, "name": column.name}
+    place: dict[str, Any] = {"sheet": table.sheet, "cell": address, "column": column.key, "name": column.name}
     if isinstance(found, Fault):
         table.faulty.add((row, column.key))
         ledger.add(

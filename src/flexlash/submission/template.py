@@ -32,7 +32,15 @@ _GRADES = (
     *(f"2768-{letter}" for letter in "fmcv"),
 )
 _DEVIATION_UNITS = ("mm", "µm", "in", "%", "N·m", "GPa", "MPa", "-")
-_WIDTHS = {"variant": 24, "material": 24, "notes": 56, "source": 86, "dimension": 24, "setting": 24, "value": 14}
+_WIDTHS = {
+    "variant": 24,
+    "material": 24,
+    "notes": 56,
+    "source": 86,
+    "dimension": 24,
+    "setting": 24,
+    "value": 14,
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,7 +88,14 @@ class _Template:
         self.workbook = workbook
         self.filling = filling
         base = {"font_name": "Calibri", "font_size": 11, "valign": "vcenter"}
-        head = {**base, "bold": True, "text_wrap": True, "align": "center", "border": 1, "border_color": "#8EA9C1"}
+        head = {
+            **base,
+            "bold": True,
+            "text_wrap": True,
+            "align": "center",
+            "border": 1,
+            "border_color": "#8EA9C1",
+        }
         entry = {**base, "locked": False, "border": 1, "border_color": "#D9D9D9"}
         self.formats = {
             name: workbook.add_format(properties)
@@ -222,7 +237,12 @@ class _Template:
         sheet.conditional_format(FIRST_ROW, 0, last, 0, {"type": "duplicate", "format": self.formats["open"]})
         cell = f"${xl_col_to_name(status)}{row}"
         for criteria, style in ((f'={cell}="{COMPLETE}"', "good"), (f"=LEN({cell})>0", "open")):
-            rule = {"type": "formula", "criteria": criteria, "format": self.formats[style], "stop_if_true": True}
+            rule = {
+                "type": "formula",
+                "criteria": criteria,
+                "format": self.formats[style],
+                "stop_if_true": True,
+            }
             sheet.conditional_format(FIRST_ROW, status, last, status, rule)
 
     def _fill(self, sheet: Any, row: int, columns: Sequence[Column], values: Mapping[str, Any]) -> None:
@@ -245,9 +265,7 @@ class _Template:
             rule = _validation(column, place)
             sheet.data_validation(FIRST_ROW, place, FIRST_ROW + rows - 1, place, rule)
 
-    def _side(
-        self, name: str, columns: Sequence[Column], rows: Sequence[Mapping[str, Any]], hint: str
-    ) -> None:
+    def _side(self, name: str, columns: Sequence[Column], rows: Sequence[Mapping[str, Any]], hint: str) -> None:
         """Write Materials or Tolerances."""
         sheet = self._heading(name, name, hint, columns)
         for place, row in enumerate(rows):
@@ -279,7 +297,15 @@ class _Template:
     def _dictionary(self) -> None:
         """Write the data dictionary."""
         sheet = self.sheets["Dictionary"]
-        headings = {"Sheet": 12, "Column": 28, "Key": 24, "Required": 10, "Holds": 44, "Default": 12, "Meaning": 90}
+        headings = {
+            "Sheet": 12,
+            "Column": 28,
+            "Key": 24,
+            "Required": 10,
+            "Holds": 44,
+            "Default": 12,
+            "Meaning": 90,
+        }
         for place, (heading, width) in enumerate(headings.items()):
             sheet.set_column(place, place, width)
             sheet.write_string(0, place, heading, self.formats["header"])
@@ -287,7 +313,15 @@ class _Template:
         for row, column in enumerate(entries, start=1):
             default = "" if column.default is None else f"{column.default}"
             required = "yes" if column.required else ""
-            texts = (column.sheet, column.label, column.key, required, column.requirement, default, column.help)
+            texts = (
+                column.sheet,
+                column.label,
+                column.key,
+                required,
+                column.requirement,
+                default,
+                column.help,
+            )
             for place, text in enumerate(texts):
                 sheet.write_string(row, place, text, self.formats["wrap"])
         sheet.freeze_panes(1, 0)
@@ -333,7 +367,7 @@ class _Template:
         names = list(dict.fromkeys(present))
         names = [names[0], *names[:0:-1]]
         sheet.write_string(0, place, "fl_tolerance_classes")
-        sheet.write_formula(1, place, f'={rows.split(":")[0]}&""', None, names[0])
+        sheet.write_formula(1, place, f'={rows.split(":", maxsplit=1)[0]}&""', None, names[0])
         for row in range(2, _LIST_ROWS + 2):
             above = f"${letter}$2:${letter}${row}"
             formula = f'=IFERROR(LOOKUP(2,1/((COUNTIF({above},{rows})=0)*({rows}<>"")),{rows}),"")'

@@ -78,9 +78,7 @@ def _deviations(row: ToleranceRow, nominal: float) -> tuple[float, float] | None
     return (row.lower * nominal, row.upper * nominal) if row.relative else (row.lower, row.upper)
 
 
-def limits_of(
-    variant: Variant, rows: Iterable[ToleranceRow]
-) -> tuple[dict[str, Limits], tuple[LimitsProblem, ...]]:
+def limits_of(variant: Variant, rows: Iterable[ToleranceRow]) -> tuple[dict[str, Limits], tuple[LimitsProblem, ...]]:
     """Return the limits of the dimensions that vary, in the order of `DIMENSIONS`, and what is wrong."""
     limits = {}
     problems = []
@@ -90,9 +88,7 @@ def limits_of(
             continue
         found = _deviations(row, nominal)
         if found is None:
-            problems.append(
-                LimitsProblem(kind="untabulated", dimension=row.dimension, detail=row.grade or "", row=row)
-            )
+            problems.append(LimitsProblem(kind="untabulated", dimension=row.dimension, detail=row.grade or "", row=row))
         elif found[0] < found[1]:
             limits[row.dimension] = Limits(
                 low=nominal + found[0],
@@ -178,9 +174,7 @@ def _radius_name(variant: Variant) -> str:
     return "mean_radius" if "mean_radius" in variant.dimensions else "bore_diameter"
 
 
-def _cut_disk(
-    limits: dict[str, Limits], inner: str, outer: str, gap: tuple[float, float]
-) -> Iterator[LimitsProblem]:
+def _cut_disk(limits: dict[str, Limits], inner: str, outer: str, gap: tuple[float, float]) -> Iterator[LimitsProblem]:
     """Cut the tails that would let the hub outgrow the disk, at a wall between the facing limits."""
     halves = {inner: 2 if inner == "bore_diameter" else 1, outer: 2 if outer == "bore_diameter" else 1}
     ends = []

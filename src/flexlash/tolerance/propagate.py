@@ -104,7 +104,7 @@ class Spread:
         return errors[0] if wanted.ndim == 0 else np.reshape(errors, wanted.shape)
 
     def _quantile_error(self, probability: float) -> float:
-        """Standard error of one quantile."""
+        """Return the standard error of one quantile."""
         below = (self.values <= self.quantile(probability)).mean(axis=1)
         of_share = max(_standard_error(below), 0.5 / self.size)
         reach = max(0.2 * min(probability, 1 - probability), of_share)
@@ -159,7 +159,7 @@ class Spread:
 
 
 def _standard_error(statistic: Array) -> float:
-    """Standard error of the mean of a statistic over independent replicates."""
+    """Return the standard error of the mean of a statistic over independent replicates."""
     return float(statistic.std(ddof=1) / np.sqrt(REPLICATES))
 
 
@@ -170,9 +170,7 @@ def _evaluate(model: Model, standard: Mapping[str, Array], inputs: Mapping[str, 
     output = np.empty(shape[0] * shape[1])
     for start in range(0, output.size, _BLOCK):
         block = slice(start, start + _BLOCK)
-        arguments = {
-            name: inputs[name].location + inputs[name].scale * values[block] for name, values in flat.items()
-        }
+        arguments = {name: inputs[name].location + inputs[name].scale * values[block] for name, values in flat.items()}
         found = np.asarray(model(**arguments), dtype=float)
         if found.shape != output[block].shape:
             raise ValueError(f"the model returned shape {found.shape}, not that of its inputs")

@@ -55,8 +55,7 @@ class UnitPoints:
                 self._sets["all"][name][replicate] = points[:, place]
                 self._sets["second"][name][replicate] = points[: self.share_count, width + place]
         self._sets["leading"] = {
-            name: np.ascontiguousarray(values[:, : self.share_count])
-            for name, values in self._sets["all"].items()
+            name: np.ascontiguousarray(values[:, : self.share_count]) for name, values in self._sets["all"].items()
         }
         self._standard: dict[tuple[PointSet, str, tuple[str | float, ...]], Array] = {}
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from flexlash.arrays import Array
 from flexlash.tolerance.distributions import Distribution
 
-__all__ = ["first_order_sd", "gradient", "worst_case"]
+__all__ = ["WorstCase", "first_order_sd", "gradient", "worst_case"]
 
 Model = Callable[..., Array]
 
@@ -34,9 +35,7 @@ def gradient(model: Model, centre: Mapping[str, float], steps: Mapping[str, floa
     }
 
 
-def first_order_sd(
-    model: Model, middle: Mapping[str, float], scatter: Mapping[str, Distribution]
-) -> float:
+def first_order_sd(model: Model, middle: Mapping[str, float], scatter: Mapping[str, Distribution]) -> float:
     """Return the first-order (GUM) standard uncertainty at mid-limits, with each input's true sd.
 
     >>> from flexlash.tolerance import Normal
@@ -49,22 +48,33 @@ def first_order_sd(
     return math.sqrt(sum((slopes[name] * sds[name]) ** 2 for name in sds))
 
 
-def worst_case(model: Model, ends: Mapping[str, tuple[float, float]]) -> tuple[float, float]:
+@dataclass(frozen=True, kw_only=True)
+class WorstCase:
+    """Least and greatest output with every input at a limit; `swings` the outputs at one input's limits."""
+
+    low: float
+    high: float
+    swings: dict[str, tuple[float, float]]
+
+
+def worst_case(model: Model, ends: Mapping[str, tuple[float, float]]) -> WorstCase:
     """Return the least and greatest output of a monotone model with every input at one of its limits.
 
     Which limit hurts is found with the other inputs at the middle of theirs.
 
-    >>> worst_case(lambda a, b: a - b, {"a": (1.0, 2.0), "b": (5.0, 7.0)})
-    (-6.0, -3.0)
+    >>> found = worst_case(lambda a, b: a - b, {"a": (1.0, 2.0), "b": (5.0, 7.0)})
+    >>> found.low, found.high, found.swings["b"]
+    (-6.0, -3.0, (-3.5, -5.5))
     """
     middle = {name: (low + high) / 2 for name, (low, high) in ends.items()}
     arguments = _table(middle, 2 * len(ends))
     for place, (name, limits) in enumerate(ends.items()):
         arguments[name][2 * place : 2 * place + 2] = limits
     output = model(**arguments)
+    swings = {name: (float(output[2 * place]), float(output[2 * place + 1])) for place, name in enumerate(ends)}
     corners = _table(middle, 2)
-    for place, (name, limits) in enumerate(ends.items()):
-        rising = output[2 * place + 1] >= output[2 * place]
-        corners[name][:] = limits if rising else limits[::-1]
+    for name, limits in ends.items():
+        at_low, at_high = swings[name]
+        corners[name][:] = limits if at_high >= at_low else limits[::-1]
     least, greatest = model(**corners)
-    return float(least), float(greatest)
+    return WorstCase(low=float(least), high=float(greatest), swings=swings)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -39,11 +39,13 @@ class Variation:
     """Spread of one variant [SI]: statistics by result key without unit, shares by dimension, two curves.
 
     `curve` are the values at `CURVE_PROBABILITIES`; `edges` (bins + 1,) and `heights` (bins,) a histogram
-    whose heights are shares of all units. The three are None when nothing scatters.
+    whose heights are shares of all units; the three are None when nothing scatters. `swings` is the
+    backlash with one dimension at its lower and upper limit and the others in the middle of theirs.
     """
 
     statistics: dict[str, float | None]
     shares: dict[str, float]
+    swings: dict[str, tuple[float, float]] = field(default_factory=dict)
     curve: Array | None = None
     edges: Array | None = None
     heights: Array | None = None
@@ -73,7 +75,7 @@ def variation_of(
 
     spread = propagate(model, scatter, points=points)
     ends = {name: (limits[name].low, limits[name].high) for name in scatter}
-    low, high = worst_case(model, ends)
+    worst = worst_case(model, ends)
     statistics: dict[str, float | None] = {
         "mean": spread.mean,
         "sd": spread.sd,
@@ -84,14 +86,15 @@ def variation_of(
         "sd_standard_error": spread.sd_standard_error,
         "coverage_low": spread.quantile((1 - coverage) / 2),
         "coverage_high": spread.quantile((1 + coverage) / 2),
-        "worst_case_low": low,
-        "worst_case_high": high,
+        "worst_case_low": worst.low,
+        "worst_case_high": worst.high,
         "first_order_sd": first_order_sd(model, {name: centre[name] for name in scatter}, scatter),
     }
     edges, heights = spread.histogram(HISTOGRAM_BINS)
     return Variation(
         statistics=statistics | _against(spread, limit),
         shares=spread.shares,
+        swings=worst.swings,
         curve=spread.quantile(np.array(CURVE_PROBABILITIES)),
         edges=edges,
         heights=heights,

@@ -1,0 +1,116 @@
+"""The About sheet: what was computed and how, what is exact, what is estimated, what is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from flexlash.columns import DIMENSIONS, SETTINGS
+from flexlash.report.styles import Book
+from flexlash.result_columns import RESULTS
+from flexlash.tolerance.propagate import LINE_NOTE
+from flexlash.tolerance.sampling import REPLICATES
+
+if TYPE_CHECKING:
+    from flexlash.pipeline import Outcome
+
+__all__ = ["ERRATA", "LEFT_OUT", "MODEL", "write_about"]
+
+MODEL = (
+    "Backlash here is the lag of the output when the torque reverses: twice the torsional wind-up U of the flexspline.",
+    "U = T/(2πG) ∫ ds/(r³ t) along the meridian: tooth rim, wall, junction fillet, disk or flange, hub fillet.",
+    "Without refinements this is U_cylinder = T l/(G 2π r_m³ Δ) plus U_disk = T/(4π t G) (1/r_ci² − 1/r_co²).",
+    "G = E/(2(1 + ν)) unless the material gives G. The wall is thin; its torsion constant is low by (Δ/2r_m)².",
+    "Against two-dimensional elasticity the meridian integral was within 1.2 % for cups and hats of 15 to 120 mm.",
+    "A blank disk thickness is the wall thickness and a blank disk radius the mean radius: one dimension, one scatter.",
+)
+LEFT_OUT = (
+    "Load entering in two lobes instead of evenly: one published shell model finds 0.6 of the axisymmetric stiffness.",
+    "Hub bolts, wave generator bearing and teeth: the wind-up is a lower bound on the drive's total compliance.",
+    "Tooth clearance, radial play, couplings and hysteresis: they come on top of this backlash.",
+    "Plastic deformation: a von Mises stress above yield is flagged, the number stays elastic.",
+    "Correlation between dimensions, other than a blank cell being the same dimension as another.",
+)
+ERRATA = (
+    "The published B3-160 study prints G = 8.10769e10 Pa; its E and ν give 8.11538e10. Its U_cylinder 3.058e-4 rad "
+    "follows from neither: with G from E and ν it is 3.064e-4, with the printed G 3.067e-4.",
+    "Its cases 4 and 5 print a disk wind-up that falls with r_co; by the formula it rises (2.574e-4 and 1.702e-4 rad).",
+    "Its intermediate displacement lacks a factor r_co, its simplified ratio a power of r_m, and the equilibrium "
+    "equation it quotes is the radial one.",
+    "Its 80 mm is the radius of the bore, not of the middle of the wall: with 80.8 mm the backlash is 1.4 % less.",
+    "Its errors of 9.1, 6.6 and 8.0 % are relative to the formula; relative to finite elements they are 10.0, 7.07 "
+    "and 8.72 %.",
+)
+
+
+def _statistics(outcome: Outcome) -> Iterator[str]:
+    """Yield how the spread was made and how good it is."""
+    yield "Each tolerance gives limits; parts scatter around the middle of the limits, not around the entered value."
+    yield "normal: σ = (upper − lower)/(2k), unbounded; truncated normal: cut at the limits; others: between the limits."
+    yield "All variants meet the same points, so that they differ by their dimensions and not by chance."
+    yield (
+        f"{outcome.points:,} points per variant in {REPLICATES} independent replicates; standard errors come from the "
+        f"replicates ({REPLICATES - 1} degrees of freedom)."
+    )
+    if outcome.settings.method == "line":
+        yield LINE_NOTE
+    yield "Percentiles are quantiles of type 7 (Excel's PERCENTILE.INC). P99.865 of a normal is mean + 3 sd."
+    yield (
+        "Probability over limit: share of points over it, with the 95 % Clopper–Pearson interval of a plain count, "
+        "which is wider than needed for Sobol' points."
+    )
+    yield "Worst case: every dimension at the tolerance limit that hurts, whatever k; normal units can lie beyond it."
+    yield "First-order sd: root of the sum of squared (slope × sd) at mid-limits, as in the GUM."
+    yield "Shares: first-order Sobol' indices, each dimension's own part of the variance."
+    yield "Ppk upper = (limit − P50)/(P99.865 − P50), ISO 22514-2."
+    yield "Exact to rounding: nominal columns, worst case, first-order sd. All other statistics are estimates."
+
+
+def write_about(book: Book, outcome: Outcome) -> None:
+    """Write the About sheet."""
+    from flexlash import __version__
+
+    sheet = book.sheet("About", landscape=False)
+    sheet.set_column(0, 0, 30)
+    sheet.set_column(1, 1, 92)
+    sheet.write_string(0, 0, "About this report", book.format("title"))
+    sheet.set_row(0, 28)
+    row = 2
+    settings = {
+        **{key: value for key, value in vars(outcome.settings).items() if key != "calibrations"},
+        **outcome.settings.calibrations,
+    }
+    identity = {
+        "Submission": outcome.submission.name,
+        "sha256": outcome.submission.sha256,
+        "Kind": outcome.submission.kind,
+        "flexlash version": __version__,
+        "Method used": outcome.method,
+        **{column.key: _text(settings[column.key]) for column in SETTINGS},
+    }
+    sections: tuple[tuple[str, list[tuple[str, str]]], ...] = (
+        ("Provenance and settings", list(identity.items())),
+        ("Model", [("", text) for text in MODEL]),
+        ("Spread", [("", text) for text in _statistics(outcome)]),
+        ("Not covered", [("", text) for text in LEFT_OUT]),
+        ("Errata of the published study", [("", text) for text in ERRATA]),
+        ("Columns of Results", [(column.label, column.help) for column in RESULTS]),
+        ("Dimensions", [(name, f"{column.sheet}: {column.label}") for name, column in DIMENSIONS.items()]),
+    )
+    for title, entries in sections:
+        sheet.write_string(row, 0, title, book.format("section"))
+        sheet.write_blank(row, 1, None, book.format("section"))
+        row += 1
+        for name, text in entries:
+            if name:
+                sheet.write_string(row, 0, name, book.format("wrap"))
+                sheet.write_string(row, 1, text, book.format("wrap"))
+            else:
+                sheet.merge_range(row, 0, row, 1, f"•  {text}", book.format("wrap"))
+            sheet.set_row(row, 15.5 * (1 + len(text) // (92 if name else 118)))
+            row += 1
+        row += 1
+
+
+def _text(value: object) -> str:
+    return "chosen by the program" if value is None else f"{value:g}" if isinstance(value, float) else str(value)

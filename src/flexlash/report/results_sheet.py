@@ -1,0 +1,73 @@
+"""The Results sheet: every number of every variant, labels above keys, filtered and frozen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flexlash.columns import Column
+from flexlash.report.styles import PALETTE, Book
+from flexlash.result_columns import RESULTS
+
+if TYPE_CHECKING:
+    import polars as pl
+
+__all__ = ["FIRST_ROW", "column_place", "write_results"]
+
+FIRST_ROW = 2
+_PLACES = {column.key: place for place, column in enumerate(RESULTS)}
+_UNITS = {"rad": "rad", "arcmin": "arcmin", "arcsec": "arcsec", "MPa": "stress", "ppm": "count"}
+
+
+def column_place(key: str) -> int:
+    """Return the place of a Results column, from 0."""
+    return _PLACES[key]
+
+
+def _number_format(column: Column) -> str:
+    if column.key.startswith("stiffness"):
+        return "stiffness"
+    if "share" in column.key or "probability" in column.key:
+        return "share"
+    return _UNITS.get(column.unit, "plain")
+
+
+def write_results(book: Book, results: pl.DataFrame) -> None:
+    """Write the Results sheet."""
+    sheet = book.sheet("Results")
+    last = FIRST_ROW + results.height - 1
+    for place, column in enumerate(RESULTS):
+        number = _number_format(column) if column.is_number else ""
+        sheet.set_column(place, place, _width(column), book.format("text", number))
+        sheet.write_string(0, place, column.label, book.format("header"))
+        sheet.write_comment(0, place, column.help)
+        sheet.write_string(1, place, column.key, book.format("key"))
+        style = book.format("text", number)
+        for row, value in enumerate(results[column.key].to_list(), start=FIRST_ROW):
+            if isinstance(value, str):
+                sheet.write_string(row, place, value, style)
+            elif value is not None:
+                sheet.write_number(row, place, value, style)
+    sheet.set_row(0, 48)
+    sheet.set_row(1, 24)
+    sheet.freeze_panes(FIRST_ROW, 1)
+    sheet.autofilter(1, 0, last, len(RESULTS) - 1)
+    sheet.repeat_rows(0, 1)
+    sheet.repeat_columns(0)
+    sheet.fit_to_pages(4, 0)
+    for status in ("error", "warning", "ok"):
+        place = column_place("status")
+        rule = {"type": "cell", "criteria": "==", "value": f'"{status}"', "format": book.format(status)}
+        sheet.conditional_format(FIRST_ROW, place, last, place, rule)
+    place = column_place("probability_over_limit")
+    bar = {
+        "type": "data_bar",
+        "bar_color": PALETTE["orange"],
+        "bar_solid": True,
+        "min_type": "num",
+        "max_type": "num",
+    }
+    sheet.conditional_format(FIRST_ROW, place, last, place, bar | {"min_value": 0, "max_value": 1})
+
+
+def _width(column: Column) -> float:
+    return {"variant": 24.0, "main_contributor": 20.0, "findings": 40.0}.get(column.key, 16.0)

@@ -1,0 +1,122 @@
+"""The look of the report: one palette that colour-blind readers can tell apart, one set of cell formats."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import xlsxwriter
+
+__all__ = ["PALETTE", "Book"]
+
+PALETTE = {
+    "ink": "#1F3A5F",
+    "blue": "#0072B2",
+    "sky": "#8CBFE0",
+    "orange": "#E69F00",
+    "red": "#D55E00",
+    "green": "#009E73",
+    "grey": "#7F7F7F",
+    "pale": "#D9E2EC",
+}
+
+_BASE = {"font_name": "Calibri", "font_size": 11, "valign": "vcenter"}
+_NUMBERS = {
+    "rad": "0.0000E+00",
+    "arcmin": "0.0000",
+    "arcsec": "0.00",
+    "share": "0.00%",
+    "plain": "0.000",
+    "stiffness": "#,##0.0",
+    "stress": "0.0",
+    "count": "#,##0",
+    "general": "General",
+}
+_FORMATS: dict[str, dict[str, Any]] = {
+    "title": {"bold": True, "font_size": 18, "font_color": PALETTE["ink"]},
+    "section": {
+        "bold": True,
+        "font_size": 13,
+        "font_color": PALETTE["ink"],
+        "bottom": 2,
+        "bottom_color": PALETTE["ink"],
+    },
+    "text": {},
+    "wrap": {"text_wrap": True, "valign": "top"},
+    "quiet": {"font_color": "#595959", "italic": True},
+    "label": {"bold": True, "font_color": "#404040"},
+    "big": {
+        "bold": True,
+        "font_size": 20,
+        "align": "center",
+        "font_color": PALETTE["ink"],
+        "top": 1,
+        "left": 1,
+        "right": 1,
+        "border_color": PALETTE["pale"],
+    },
+    "caption": {
+        "align": "center",
+        "font_color": "#595959",
+        "bottom": 1,
+        "left": 1,
+        "right": 1,
+        "border_color": PALETTE["pale"],
+    },
+    "header": {
+        "bold": True,
+        "text_wrap": True,
+        "align": "center",
+        "border": 1,
+        "border_color": "#8EA9C1",
+        "bg_color": PALETTE["pale"],
+    },
+    "key": {
+        "font_size": 8,
+        "text_wrap": True,
+        "font_color": "#7F7F7F",
+        "italic": True,
+        "bottom": 1,
+        "border_color": "#8EA9C1",
+    },
+    "link": {"font_color": PALETTE["blue"], "underline": 1},
+    "input": {"bg_color": "#FFF5D6", "border": 1, "border_color": PALETTE["orange"], "bold": True},
+    "error": {"bg_color": "#F8CBAD"},
+    "warning": {"bg_color": "#FFE699"},
+    "ok": {"bg_color": "#C6E5D8"},
+}
+
+
+class Book:
+    """An XlsxWriter workbook with the report's formats and sheets."""
+
+    def __init__(self, workbook: xlsxwriter.Workbook) -> None:
+        self.workbook = workbook
+        self._formats: dict[str, Any] = {}
+
+    def format(self, name: str, number: str = "") -> Any:
+        """Return a format by name, optionally with a number format."""
+        key = f"{name} {number}"
+        if key not in self._formats:
+            properties = {**_BASE, **_FORMATS[name]}
+            if number:
+                properties["num_format"] = _NUMBERS[number]
+            self._formats[key] = self.workbook.add_format(properties)
+        return self._formats[key]
+
+    def sheet(self, name: str, *, landscape: bool = True, pages_tall: int = 0) -> Any:
+        """Return a new sheet set up to print one page wide."""
+        sheet = self.workbook.add_worksheet(name)
+        if landscape:
+            sheet.set_landscape()
+        sheet.set_paper(9)
+        sheet.set_margins(left=0.4, right=0.4, top=0.5, bottom=0.6)
+        sheet.fit_to_pages(1, pages_tall)
+        sheet.set_footer("&L&A&C&P / &N&Rflexlash report")
+        sheet.hide_gridlines(2)
+        return sheet
+
+    def chart(self, kind: str, title: str, **options: Any) -> Any:
+        """Return a chart with the report's fonts."""
+        chart = self.workbook.add_chart({"type": kind, **options})
+        chart.set_title({"name": title, "name_font": {"size": 12, "color": PALETTE["ink"]}, "overlay": False})
+        return chart

@@ -1,0 +1,100 @@
+"""Findings and the submission as read: every cell at its own address, so that findings link to it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from xlsxwriter.utility import xl_cell_to_rowcol
+
+from flexlash.columns import ENTRY_SHEETS
+from flexlash.findings import Finding, shown
+from flexlash.report.styles import Book
+from flexlash.result_columns import FINDINGS
+from flexlash.submission.headers import STATUS_HEADER, plain
+from flexlash.submission.read import ErrorCell, RawSheet, RawValue, Unstored
+
+if TYPE_CHECKING:
+    from flexlash.pipeline import Outcome
+
+__all__ = ["write_findings", "write_submission"]
+
+_WIDTHS = {"message": 90, "fix": 60, "suggestion": 18, "variant": 20, "column": 24, "value": 20}
+_TITLES = {plain(name): "Submission" if name == "Variants" else name for name in ENTRY_SHEETS}
+
+
+def write_findings(book: Book, outcome: Outcome) -> None:
+    """Write the Findings sheet; each cell address links to the cell in the submission as read."""
+    sheet = book.sheet("Findings")
+    for place, column in enumerate(FINDINGS):
+        sheet.set_column(place, place, _WIDTHS.get(column.key, 11))
+        sheet.write_string(0, place, column.label, book.format("header"))
+        sheet.write_comment(0, place, column.help)
+    for row, found in enumerate(outcome.findings, start=1):
+        _write_finding(book, sheet, row, found)
+    if not outcome.findings:
+        sheet.write_string(1, 0, "Nothing was found.", book.format("quiet"))
+    sheet.autofilter(0, 0, max(1, len(outcome.findings)), len(FINDINGS) - 1)
+    sheet.freeze_panes(1, 0)
+    sheet.repeat_rows(0)
+
+
+def _write_finding(book: Book, sheet: Any, row: int, found: Finding) -> None:
+    """Write one finding, its level coloured and its cell linked."""
+    styles = {"error": "error", "warning": "warning", "info": "text"}
+    for place, (key, value) in enumerate(found.as_dictionary().items()):
+        title = _TITLES.get(plain(found.sheet))
+        if key == "level":
+            sheet.write_string(row, place, value, book.format(styles[found.level]))
+        elif key == "cell" and value and title:
+            sheet.write_url(row, place, f"internal:'{title}'!{value}", book.format("link"), value)
+        else:
+            sheet.write_string(row, place, value, book.format("wrap"))
+
+
+def write_submission(book: Book, outcome: Outcome) -> None:
+    """Write each entry sheet of the submission as read, guilty cells coloured."""
+    levels: dict[tuple[str, str], str] = {}
+    for found in outcome.findings:
+        if found.cell and found.level != "info" and levels.get((found.sheet, found.cell)) != "error":
+            levels[found.sheet, found.cell] = found.level
+    for raw in outcome.submission.sheets.values():
+        title = _TITLES.get(plain(raw.name))
+        if title:
+            marked = {xl_cell_to_rowcol(cell): level for (name, cell), level in levels.items() if name == raw.name}
+            _write_mirror(book, raw, title, marked)
+
+
+def _write_mirror(book: Book, raw: RawSheet, title: str, marked: dict[tuple[int, int], str]) -> None:
+    """Write a sheet's cells at their addresses."""
+    sheet = book.sheet(title)
+    ignored = {
+        place
+        for cells in raw.rows.values()
+        for place, value in cells.items()
+        if isinstance(value, str) and plain(value) == plain(STATUS_HEADER)
+    }
+    places = [place for cells in raw.rows.values() for place in cells if place not in ignored]
+    sheet.set_column(0, max(places, default=1), 14)
+    sheet.set_column(0, 0, 24)
+    for row, cells in raw.rows.items():
+        for place, value in cells.items():
+            if place not in ignored:
+                style = marked.get((row - 1, place - 1), "text")
+                _write_value(sheet, row - 1, place - 1, value, book.format(style))
+    for (row, place), level in marked.items():
+        if place + 1 not in raw.rows.get(row + 1, {}):
+            sheet.write_blank(row, place, None, book.format(level))
+
+
+def _write_value(sheet: Any, row: int, place: int, value: RawValue, style: Any) -> None:
+    """Write a raw value so that it can do nothing but be read."""
+    if isinstance(value, bool):
+        sheet.write_boolean(row, place, value, style)
+    elif isinstance(value, int | float) and abs(value) < float("inf"):
+        sheet.write_number(row, place, value, style)
+    elif isinstance(value, ErrorCell):
+        sheet.write_string(row, place, value.text, style)
+    elif isinstance(value, Unstored):
+        sheet.write_string(row, place, "(formula without a stored result)", style)
+    else:
+        sheet.write_string(row, place, shown(value, longest=1000), style)

@@ -1,0 +1,221 @@
+"""The Summary sheet: one printed page that says what was found, in words, numbers and one chart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from flexlash.report.selection import Drawn
+from flexlash.report.styles import PALETTE, Book
+from flexlash.summary import dimension_words, rounded, share_words
+
+if TYPE_CHECKING:
+    from flexlash.pipeline import Outcome
+
+__all__ = ["light", "sentences", "write_summary"]
+
+_LISTED = 12
+_CHARTED = 60
+_COLUMNS = (
+    ("Variant", 24),
+    ("Verdict", 9),
+    ("Nominal [arcmin]", 11),
+    ("P2.5 [arcmin]", 11),
+    ("P50 [arcmin]", 11),
+    ("P97.5 [arcmin]", 11),
+    ("Limit [arcmin]", 11),
+    ("Units over the limit", 26),
+    ("Main contributor", 22),
+)
+LIGHT_RULE = (
+    "Verdict: green, at least 99.865 % of units stay within the limit; amber, at least 97.5 % do; red, fewer do; "
+    "– , no limit given."
+)
+
+
+def light(row: dict[str, Any]) -> str:
+    """Return a Results row's verdict: green, amber, red, or a dash without a limit."""
+    limit = row["backlash_limit_arcmin"]
+    if limit is None:
+        return "–"
+    if row["p99_865_arcmin"] <= limit:
+        return "green"
+    return "amber" if row["p97_5_arcmin"] <= limit else "red"
+
+
+def sentences(outcome: Outcome, drawn: Sequence[Drawn]) -> Iterator[str]:
+    """Yield what a design review wants to know, worst first, rounded by the standard error."""
+    counts = outcome.counts
+    left = counts["rows"] - counts["computed"]
+    lost = f" {left} could not be, for errors; see Findings." if left else ""
+    yield f"{counts['computed']} of {counts['rows']} variants were computed.{lost}"
+    if not drawn:
+        return
+    judged = [one for one in drawn if one.row["backlash_limit_arcmin"] is not None]
+    if judged:
+        reds = sum(light(one.row) == "red" for one in judged)
+        yield f"{reds} of {len(judged)} variants with a limit have more than 2.5 % of their units over it."
+    worst = drawn[0].row
+    tail = rounded(worst["p97_5_arcmin"], worst["p97_5_standard_error_arcmin"])
+    head = f"97.5 % of the units of {worst['variant']} stay below {tail}′"
+    if worst["backlash_limit_arcmin"] is None:
+        yield f"{head}."
+    else:
+        yield f"{head}; the limit of {worst['backlash_limit_arcmin']:g}′ is exceeded by {share_words(worst)} of them."
+    if worst["main_contributor"]:
+        name = dimension_words(worst["main_contributor"])
+        yield f"Its spread comes first from {name}: {100 * worst['main_contributor_share']:.0f} % of the variance."
+    low, high = worst["worst_case_low_arcmin"], worst["worst_case_high_arcmin"]
+    yield f"With every dimension at a limit its backlash would lie between {low:.3f}′ and {high:.3f}′."
+    missed = [1 - one.row["cylinder_only_backlash_arcmin"] / one.row["backlash_arcmin"] for one in drawn]
+    least, most = 100 * min(missed), 100 * max(missed)
+    yield f"The classical cylinder-only formula would miss {_missed(least, most)} of the backlash."
+
+
+def _missed(least: float, most: float) -> str:
+    """Return the range that the classical formula misses; below 0 it overstates."""
+    if round(least) == round(most):
+        return f"{most:.0f} %"
+    return f"{least:.0f} to {most:.0f} %"
+
+
+def write_summary(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
+    """Write the Summary sheet."""
+    sheet = book.sheet("Summary", landscape=False, pages_tall=1)
+    for place, (_, width) in enumerate(_COLUMNS):
+        sheet.set_column(place, place, width)
+    sheet.write_string(0, 0, "Backlash from torsional wind-up: tolerance spread", book.format("title"))
+    sheet.set_row(0, 28)
+    sheet.write_string(1, 0, f"Submission {outcome.submission.name}", book.format("quiet"))
+    _write_counts(book, sheet, outcome, drawn)
+    row = 6
+    for sentence in sentences(outcome, drawn):
+        sheet.write_string(row, 0, f"•  {sentence}", book.format("text"))
+        row += 1
+    row += 1
+    first = _write_table(book, sheet, drawn, row)
+    last = _write_provenance(book, sheet, outcome, first + 1)
+    if drawn:
+        _chart(book, sheet, drawn, last + 2)
+        last += 29
+    sheet.print_area(0, 0, last + 1, len(_COLUMNS) - 1)
+    sheet.activate()
+
+
+def _write_counts(book: Book, sheet: Any, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
+    """Write the four key figures."""
+    counts = outcome.counts
+    reds = sum(light(one.row) == "red" for one in drawn)
+    figures = (
+        (f"{counts['computed']} of {counts['rows']}", "variants computed"),
+        (str(reds), "red: over 2.5 % of units over limit"),
+        (str(counts["errors"]), "errors"),
+        (str(counts["warnings"]), "warnings"),
+    )
+    for (value, caption), (left, right) in zip(figures, ((0, 1), (2, 4), (5, 6), (7, 8)), strict=True):
+        sheet.merge_range(3, left, 3, right, value, book.format("big"))
+        sheet.merge_range(4, left, 4, right, caption, book.format("caption"))
+    sheet.set_row(3, 30)
+
+
+def _write_table(book: Book, sheet: Any, drawn: Sequence[Drawn], row: int) -> int:
+    """Write the worst variants and the rule of their verdict; return the row after them."""
+    for place, (heading, _) in enumerate(_COLUMNS):
+        sheet.write_string(row, place, heading, book.format("header"))
+    sheet.set_row(row, 32)
+    colours = {"red": "error", "amber": "warning", "green": "ok", "–": "text"}
+    for one in drawn[:_LISTED]:
+        row += 1
+        result = one.row
+        verdict = light(result)
+        sheet.write_string(row, 0, result["variant"], book.format("text"))
+        sheet.write_string(row, 1, verdict, book.format(colours[verdict]))
+        for place, key in enumerate(("backlash", "p2_5", "p50", "p97_5", "backlash_limit"), start=2):
+            value = result[f"{key}_arcmin"]
+            if value is not None:
+                sheet.write_number(row, place, value, book.format("text", "plain"))
+        if result["probability_over_limit"] is not None:
+            sheet.write_string(row, 7, share_words(result), book.format("text"))
+        if result["main_contributor"]:
+            share = f" ({100 * result['main_contributor_share']:.0f} %)"
+            sheet.write_string(row, 8, dimension_words(result["main_contributor"]) + share, book.format("text"))
+    row += 1
+    more = f"The {_LISTED} worst of {len(drawn)} are listed; all are in Results. " if len(drawn) > _LISTED else ""
+    sheet.write_string(row, 0, more + LIGHT_RULE, book.format("quiet"))
+    return row + 1
+
+
+def _write_provenance(book: Book, sheet: Any, outcome: Outcome, row: int) -> int:
+    """Write where the numbers come from; return the last row."""
+    from flexlash import __version__
+
+    facts = (
+        f"sha256 of the submission: {outcome.submission.sha256}",
+        f"flexlash {__version__}, method {outcome.method}, seed {outcome.settings.seed}, "
+        f"{outcome.points:,} points per variant. Method and limits of the model: sheet About.",
+    )
+    for fact in facts:
+        sheet.write_string(row, 0, fact, book.format("quiet"))
+        row += 1
+    return row - 1
+
+
+def _chart(book: Book, sheet: Any, drawn: Sequence[Drawn], row: int) -> None:
+    """Draw P2.5 to P97.5, median and limit of the variants; the data stand in Curves."""
+    count = min(len(drawn), _CHARTED)
+    names = ["Curves", 2, 0, count + 1, 0]
+    title = "Backlash P2.5 to P97.5, median and limit [arcmin]"
+    if count < len(drawn):
+        title += f": the {count} worst of {len(drawn)}"
+    bars = book.chart("column", title, subtype="stacked")
+    bars.add_series(
+        {
+            "name": "P2.5",
+            "categories": names,
+            "values": ["Curves", 2, 1, count + 1, 1],
+            "fill": {"none": True},
+            "border": {"none": True},
+            "gap": 60,
+        }
+    )
+    bars.add_series(
+        {
+            "name": "P2.5 to P97.5",
+            "categories": names,
+            "values": ["Curves", 2, 2, count + 1, 2],
+            "fill": {"color": PALETTE["sky"]},
+            "border": {"color": PALETTE["blue"]},
+        }
+    )
+    marks = book.workbook.add_chart({"type": "line"})
+    for place, name, shape, colour in (
+        (3, "Median", "diamond", PALETTE["ink"]),
+        (4, "Limit", "long_dash", PALETTE["red"]),
+    ):
+        marks.add_series({
+            "name": name,
+            "categories": names,
+            "values": ["Curves", 2, place, count + 1, place],
+            "line": {"none": True},
+            "marker": {"type": shape, "size": 7, "fill": {"color": colour}, "border": {"color": colour}},
+        })  # fmt: skip
+    bars.combine(marks)
+    low = min(
+        min(one.row["p2_5_arcmin"], one.row["backlash_limit_arcmin"] or one.row["p2_5_arcmin"]) for one in drawn[:count]
+    )
+    bars.set_y_axis(
+        {
+            "min": max(0.0, float(f"{0.9 * low:.1g}")),
+            "num_format": "0.00",
+            "major_gridlines": {"visible": True, "line": {"color": PALETTE["pale"]}},
+        }
+    )
+    bars.set_x_axis({"num_font": {"rotation": -45, "size": 9}})
+    bars.set_legend({"position": "bottom", "delete_series": [0]})
+    bars.set_size({"width": 1010, "height": 520})
+    sheet.insert_chart(
+        row,
+        0,
+        bars,
+        {"description": "Backlash interval, median and limit of each variant", "object_position": 2},
+    )
