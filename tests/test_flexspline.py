@@ -82,7 +82,7 @@ def cups(draw, *, refined=True):
     if refined:
         cup |= {
             "disk_hub_thickness": wall * draw(st.floats(0.5, 3.0)),
-            "hub_fillet_radius": (mean - inner) * draw(st.floats(0.01, 1.0)),
+            "hub_fillet_radius": (mean - inner) * draw(st.floats(0.01, 0.99)),
             "junction_fillet_radius": min(length / 2, mean / 3) * draw(st.floats(0.01, 1.0)),
             "rim_length": length * draw(st.floats(0.01, 0.5)),
             "rim_thickness": wall * draw(st.floats(1.0, 3.0)),
@@ -257,6 +257,16 @@ def test_all_refinements_together_by_quadrature(cup, thickness):
     cup["hub_fillet_radius"] = min(cup["hub_fillet_radius"], 10 * cup["disk_hub_thickness"] * thickness)
     cup["junction_fillet_radius"] = min(cup["junction_fillet_radius"], 10 * cup["wall_thickness"] * thickness)
     assert windup("cup", cup) == pytest.approx(meridian(cup), rel=1e-7)
+
+
+@pytest.mark.parametrize("hub_thickness", [{}, {"disk_hub_thickness": 0.003}, {"disk_hub_thickness": 0.0016}])
+def test_hub_fillet_across_the_whole_disk(hub_thickness):
+    """A hub fillet just as wide as the disk, the widest allowed, leaves no disk body and a finite wind-up."""
+    cup = B3_160 | hub_thickness
+    almost, whole = (cup | {"hub_fillet_radius": 0.04 * part} for part in (1 - 1e-9, 1.0))
+    assert windup("cup", whole) == pytest.approx(windup("cup", almost), rel=1e-8)
+    arrays = {name: np.full(2, size) for name, size in whole.items()}
+    assert flexspline.backlash("cup", arrays) == pytest.approx(2 * windup("cup", almost), rel=1e-8)
 
 
 @thorough

@@ -14,6 +14,7 @@ from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 from flexlash import tables
 from flexlash.columns import ENTRY_SHEETS, MATERIALS, SETTINGS, SETTINGS_SHEET, TOLERANCES, VARIANTS, Column
 from flexlash.submission.headers import STATUS_HEADER
+from flexlash.submission.read import ErrorCell, Unstored
 from flexlash.submission.status import COMPLETE, status_formula, status_text
 from flexlash.submission.validate import TEMPLATE_VERSION
 
@@ -25,6 +26,7 @@ PREPARED_ROWS = 2000
 _SIDE_ROWS = 500
 _PRINTED_ROWS = 100
 _LIST_ROWS = 20
+_UNSTORED_FORMULA = "=0.8*2"
 _DATE = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=None)
 
 _GRADES = (
@@ -113,6 +115,7 @@ class _Template:
                 "number required": {**entry, "bg_color": "#FFF5D6"},
                 "text required": {**entry, "num_format": "@", "bg_color": "#FFF5D6"},
                 "status": {**base, "italic": True, "font_color": "#595959", "indent": 1},
+                "date": {**entry, "num_format": "d mmm"},
                 "good": {"font_color": "#006100", "bg_color": "#D5EBDD"},
                 "open": {"font_color": "#7F4F00", "bg_color": "#FFE3B3"},
                 "wrap": {**base, "text_wrap": True, "valign": "top"},
@@ -198,7 +201,7 @@ class _Template:
         sheet.set_column(status, status, 36, self.formats["status"])
         letters = {column.key: xl_col_to_name(place) for place, column in enumerate(VARIANTS)}
         rows = self.filling.variants
-        texts = [status_text(row, rows, materials, classes) for row in rows]
+        texts = [_stored_status(row, rows, materials, classes) for row in rows]
         for place, row in enumerate(rows):
             self._fill(sheet, FIRST_ROW + place, VARIANTS, row)
         for place in range(max(PREPARED_ROWS, len(rows))):
@@ -254,8 +257,11 @@ class _Template:
             elif isinstance(value, bool):
                 sheet.write_boolean(row, place, value, self._format(column))
             elif isinstance(value, datetime.date):
-                date_format = self.workbook.add_format({"num_format": "d mmm"})
-                sheet.write_datetime(row, place, value, date_format)
+                sheet.write_datetime(row, place, value, self.formats["date"])
+            elif isinstance(value, ErrorCell):
+                sheet.write_formula(row, place, f"={value.text}", self._format(column), value.text)
+            elif isinstance(value, Unstored):
+                sheet.write_formula(row, place, _UNSTORED_FORMULA, self._format(column), "")
             elif value is not None:
                 sheet.write_number(row, place, value, self._format(column))
 
@@ -376,6 +382,17 @@ class _Template:
         block = f"Lists!${letter}$2:${letter}${_LIST_ROWS + 2}"
         end = f'INDEX({block},MAX(1,COUNTIF({block},"?*")))'
         self.workbook.define_name("fl_tolerance_classes", f"=Lists!${letter}$2:{end}")
+
+
+def _stored_status(
+    row: Mapping[str, Any], rows: Sequence[Mapping[str, Any]], materials: Sequence[str], classes: Sequence[str]
+) -> str:
+    """Return what Excel would show as a row's status; an error in the row shows through."""
+    error = next((value.text for value in row.values() if isinstance(value, ErrorCell)), None)
+    if error is not None:
+        return error
+    as_excel = {key: 1.0 if isinstance(value, datetime.date | Unstored) else value for key, value in row.items()}
+    return status_text(as_excel, rows, materials, classes)
 
 
 def _note(column: Column) -> str:

@@ -1,0 +1,209 @@
+"""The four distributions against scipy.stats: quantiles, moments, cuts in both tails, and what they refuse."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import stats
+
+from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform
+
+thorough = settings(deadline=None, max_examples=80, derandomize=True)
+
+PROBABILITIES = np.array([2.0**-53, 1e-9, 0.00135, 0.025, 0.3, 0.5, 0.7, 0.975, 0.99865, 1 - 1e-9, 1 - 2.0**-53])
+
+
+def truncated(mean, sd, low, high):
+    """Return scipy's truncated normal of the same four numbers."""
+    return stats.truncnorm((low - mean) / sd, (high - mean) / sd, loc=mean, scale=sd)
+
+
+CASES = {
+    "normal": (Normal(mean=80.0, sd=0.02), stats.norm(80.0, 0.02)),
+    "uniform": (Uniform(low=1.55, high=1.65), stats.uniform(1.55, 0.1)),
+    "uniform across zero": (Uniform(low=-3.0, high=1.0), stats.uniform(-3.0, 4.0)),
+    "triangular": (Triangular(low=-1.0, high=3.0), stats.triang(0.5, -1.0, 4.0)),
+    "triangular skewed": (Triangular(low=0.0, high=4.0, mode=1.0), stats.triang(0.25, 0.0, 4.0)),
+    "triangular falling": (Triangular(low=1.0, high=2.0, mode=1.0), stats.triang(0.0, 1.0, 1.0)),
+    "triangular rising": (Triangular(low=1.0, high=2.0, mode=2.0), stats.triang(1.0, 1.0, 1.0)),
+    "cut at 3 sigma": (TruncatedNormal(5.0, 2.0, -1.0, 11.0), truncated(5.0, 2.0, -1.0, 11.0)),
+    "cut at half a sigma": (TruncatedNormal(5.0, 2.0, 4.0, 6.0), truncated(5.0, 2.0, 4.0, 6.0)),
+    "cut off centre": (TruncatedNormal(0.0, 1.0, -0.5, 3.0), truncated(0.0, 1.0, -0.5, 3.0)),
+    "cut to the upper tail": (TruncatedNormal(0.0, 1.0, 4.0, 5.0), truncated(0.0, 1.0, 4.0, 5.0)),
+    "cut to the lower tail": (TruncatedNormal(0.0, 1.0, -5.0, -4.0), truncated(0.0, 1.0, -5.0, -4.0)),
+    "cut to the far upper tail": (TruncatedNormal(0.0, 1.0, 12.0, 13.0), truncated(0.0, 1.0, 12.0, 13.0)),
+    "cut to the far lower tail": (TruncatedNormal(0.0, 1.0, -13.0, -12.0), truncated(0.0, 1.0, -13.0, -12.0)),
+    "cut below alone": (TruncatedNormal(1.0, 2.0, 0.0, math.inf), truncated(1.0, 2.0, 0.0, math.inf)),
+    "cut above alone": (TruncatedNormal(1.0, 2.0, -math.inf, 0.0), truncated(1.0, 2.0, -math.inf, 0.0)),
+    "cut above zero in the tail": (TruncatedNormal(0.0, 1.0, 2.0, math.inf), truncated(0.0, 1.0, 2.0, math.inf)),
+    "not cut": (TruncatedNormal(1.0, 2.0, -math.inf, math.inf), stats.norm(1.0, 2.0)),
+}
+each_case = pytest.mark.parametrize(("own", "reference"), CASES.values(), ids=list(CASES))
+
+
+def quantiles(distribution, probabilities):
+    """Return the values of a distribution at these probabilities."""
+    return distribution.location + distribution.scale * distribution.standard(probabilities)
+
+
+@each_case
+def test_quantiles(own, reference):
+    """The values at probabilities down to 2⁻⁵³ from both ends are scipy's quantiles."""
+    spread = reference.ppf(0.75) - reference.ppf(0.25)
+    inside = PROBABILITIES[1:-1]
+    assert quantiles(own, inside) == pytest.approx(reference.ppf(inside), rel=1e-9, abs=1e-7 * spread)
+    ends = quantiles(own, PROBABILITIES[[0, -1]])
+    assert np.isfinite(ends).all()
+    assert reference.support()[0] <= ends[0] < reference.ppf(1e-9)
+    assert reference.ppf(1 - 1e-9) < ends[1] <= reference.support()[1]
+
+
+@each_case
+def test_mean(own, reference):
+    """The expectation is the distribution's mean after any cut."""
+    assert own.expectation == pytest.approx(float(reference.mean()), rel=1e-9, abs=1e-12)
+
+
+@each_case
+def test_standard_deviation(own, reference):
+    """The standard deviation is the distribution's after any cut."""
+    assert own.standard_deviation == pytest.approx(float(reference.std()), rel=1e-6)
+
+
+@each_case
+def test_moments_follow_from_the_quantiles(own, reference):
+    """Mean and standard deviation are those of the values that the distribution itself produces."""
+    del reference
+    probabilities = (np.arange(200_000) + 0.5) / 200_000
+    values = quantiles(own, probabilities)
+    assert own.expectation == pytest.approx(values.mean(), abs=1e-4 * values.std())
+    assert own.standard_deviation == pytest.approx(values.std(), rel=1e-3)
+
+
+@each_case
+def test_values_rise_with_the_probability(own, reference):
+    """A greater probability never has a smaller value, and none leaves the support."""
+    values = quantiles(own, np.linspace(2.0**-53, 1 - 2.0**-53, 5001))
+    assert (np.diff(values) >= 0).all()
+    low, high = reference.support()
+    slack = 1e-12 * (values[-1] - values[0])
+    assert low - slack <= values[0]
+    assert values[-1] <= high + slack
+
+
+@each_case
+def test_shape_of_the_points_is_kept(own, reference):
+    """Standard values have the shape of their probabilities."""
+    del reference
+    assert own.standard(np.full((3, 4), 0.3)).shape == (3, 4)
+
+
+@thorough
+@given(
+    mean=st.floats(-100, 100),
+    sd=st.floats(0.01, 10),
+    first=st.floats(-6, 6),
+    width=st.floats(0.05, 12),
+    probability=st.floats(1e-6, 1 - 1e-6),
+)
+def test_cut_normal_inverts_its_own_share(mean, sd, first, width, probability):
+    """The share of a cut normal below its own quantile is the probability, wherever both cuts lie."""
+    low, high = mean + first * sd, mean + (first + width) * sd
+    own = TruncatedNormal(mean=mean, sd=sd, low=low, high=high)
+    value = float(quantiles(own, np.array(probability)))
+    assert low - 1e-9 * sd <= value <= high + 1e-9 * sd
+    reached = truncated(mean, sd, low, high).cdf(value)
+    assert reached == pytest.approx(probability, rel=1e-6, abs=1e-7)
+
+
+@thorough
+@given(sigma=st.floats(0.05, 8), sd=st.floats(1e-6, 1e3))
+def test_cut_never_scatters_more(sigma, sd):
+    """A cut normal scatters less than uncut and less than uniform between the same cuts."""
+    cut = TruncatedNormal(mean=1.0, sd=sd, low=1.0 - sigma * sd, high=1.0 + sigma * sd)
+    assert cut.standard_deviation <= sd
+    assert cut.standard_deviation <= 2 * sigma * sd / math.sqrt(12) * (1 + 1e-9)
+    assert cut.expectation == pytest.approx(1.0, abs=1e-12 * max(1, sd))
+
+
+@pytest.mark.parametrize("half", [1e-2, 1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("centre", [0.0, 1.0, -2.0])
+def test_sliver_of_a_normal_is_uniform(half, centre):
+    """A normal cut to a sliver scatters as the uniform distribution between its cuts does."""
+    sliver = TruncatedNormal(mean=0.0, sd=1.0, low=centre - half, high=centre + half)
+    assert sliver.expectation == pytest.approx(centre, abs=half / 50)
+    assert sliver.standard_deviation == pytest.approx(half / math.sqrt(3), rel=1e-3)
+
+
+def test_triangle_peaks_in_the_middle_unless_told():
+    """A triangle without a mode is symmetric: the same numbers as with its mode in the middle."""
+    plain, told = Triangular(low=-0.3, high=0.3), Triangular(low=-0.3, high=0.3, mode=0.0)
+    assert plain.expectation == told.expectation == 0
+    assert plain.standard_deviation == told.standard_deviation == pytest.approx(0.3 / math.sqrt(6), rel=1e-15)
+    assert plain.shape == told.shape
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        (Normal(mean=0, sd=1), Normal(mean=80, sd=0.02)),
+        (Uniform(low=0, high=1), Uniform(low=1.55, high=1.65)),
+        (Triangular(low=0, high=4, mode=1), Triangular(low=0, high=8, mode=2)),
+        (TruncatedNormal(0, 1, -3, 3), TruncatedNormal(10, 2, 4, 16)),
+    ],
+)
+def test_same_shape_has_the_same_standard_values(first, second):
+    """Distributions that differ in location and scale alone share their shape and its standard values."""
+    assert first.shape == second.shape
+    assert hash(first.shape) == hash(second.shape)
+    assert np.array_equal(first.standard(PROBABILITIES), second.standard(PROBABILITIES))
+    assert first != second
+
+
+def test_other_shapes_are_told_apart():
+    """Distributions whose standard values differ have different shapes."""
+    different = [
+        Normal(0, 1),
+        Uniform(0, 1),
+        Triangular(0, 1),
+        Triangular(0, 1, 0.25),
+        TruncatedNormal(0, 1, -3, 3),
+        TruncatedNormal(0, 1, -2, 3),
+    ]
+    assert len({one.shape for one in different}) == len(different)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Normal(mean=0, sd=0), "sd = 0 must be a finite number greater than 0"),
+        (lambda: Normal(mean=0, sd=-1), "sd = -1 must be a finite number greater than 0"),
+        (lambda: Normal(mean=0, sd=math.inf), "sd = inf must be a finite number greater than 0"),
+        (lambda: Normal(mean=0, sd=math.nan), "sd = nan must be a finite number greater than 0"),
+        (lambda: TruncatedNormal(0, 0, -1, 1), "sd = 0 must be a finite number greater than 0"),
+        (lambda: TruncatedNormal(0, 1, 1, 1), "low = 1 must be less than high = 1"),
+        (lambda: TruncatedNormal(0, 1, math.nan, 1), "low = nan must be less than high = 1"),
+        (lambda: TruncatedNormal(0, 1, 50, 51), "low and high leave no part of the normal distribution"),
+        (lambda: TruncatedNormal(0, 1, -51, -50), "low and high leave no part of the normal distribution"),
+        (lambda: Uniform(low=1, high=1), "low = 1 must be less than high = 1"),
+        (lambda: Uniform(low=2.5, high=-1), "low = 2.5 must be less than high = -1"),
+        (lambda: Triangular(low=1, high=0), "low = 1 must be less than high = 0"),
+        (lambda: Triangular(low=0, high=1, mode=2), "mode = 2 must lie between low = 0 and high = 1"),
+        (lambda: Triangular(low=0, high=1, mode=-0.5), "mode = -0.5 must lie between low = 0 and high = 1"),
+        (lambda: Triangular(low=0, high=1, mode=math.nan), "mode = nan must lie between low = 0 and high = 1"),
+    ],
+)
+def test_impossible_distributions_are_refused(make, message):
+    """A distribution that cannot be is refused with the value found and what is required."""
+    with pytest.raises(ValueError) as refusal:  # noqa: PT011
+        make()
+    assert str(refusal.value) == message
+
+
+@pytest.mark.parametrize("make", [lambda: Uniform(-math.inf, 1), lambda: Triangular(0, math.inf), lambda: Normal(math.nan, 1)])
+def test_endless_distributions_are_refused(make):
+    """A uniform or triangular distribution without end, or a normal without a mean, is refused."""
+    with pytest.raises(ValueError):  # noqa: PT011
+        make()
