@@ -33,7 +33,7 @@ def sound() -> dict[str, Any]:
 
 @pytest.fixture
 def workbook(tmp_path: Path) -> Callable[..., Path]:
-    """Return a function that fills the template and gives its path: workbook(rows, tolerances=…, settings=…)."""
+    """Return a function that fills the template with rows, and other sheets by keyword, and gives its path."""
 
     def write(rows: Sequence[Mapping[str, Any]], name: str = "submission.xlsx", **filling: Any) -> Path:
         path = tmp_path / name

@@ -93,7 +93,7 @@ def catalogue_sizes() -> Filling:
                 "wall_thickness_mm": wall,
                 "rated_torque_Nm": float(entry["T2_Nm"]),
                 "backlash_limit_arcmin": 2.65,
-                "notes": f"Constructed: diameter 2.54 mm × size, wall 0.0125 d, l/d {length}; torque T2 of the catalogue",
+                "notes": f"Constructed: bore 2.54 mm × size, wall 0.0125 d, l/d {length}; torque T2 of the catalogue",
             }
             if kind == "cup":
                 row |= {"disk_inner_radius_mm": round(0.25 * diameter, 1)}

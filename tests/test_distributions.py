@@ -202,7 +202,9 @@ def test_impossible_distributions_are_refused(make, message):
     assert str(refusal.value) == message
 
 
-@pytest.mark.parametrize("make", [lambda: Uniform(-math.inf, 1), lambda: Triangular(0, math.inf), lambda: Normal(math.nan, 1)])
+@pytest.mark.parametrize(
+    "make", [lambda: Uniform(-math.inf, 1), lambda: Triangular(0, math.inf), lambda: Normal(math.nan, 1)]
+)
 def test_endless_distributions_are_refused(make):
     """A uniform or triangular distribution without end, or a normal without a mean, is refused."""
     with pytest.raises(ValueError):  # noqa: PT011

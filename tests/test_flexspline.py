@@ -253,10 +253,10 @@ def test_neutral_refinements_change_nothing(cup, rim):
 @thorough
 @given(cup=cups(), thickness=st.floats(0.1, 0.5))
 def test_all_refinements_together_by_quadrature(cup, thickness):
-    """A cup with every refinement winds up as quadrature along its whole meridian says, to 1e-7."""
+    """A cup with every refinement winds up as quadrature along its whole meridian says, to 1e-6."""
     cup["hub_fillet_radius"] = min(cup["hub_fillet_radius"], 10 * cup["disk_hub_thickness"] * thickness)
     cup["junction_fillet_radius"] = min(cup["junction_fillet_radius"], 10 * cup["wall_thickness"] * thickness)
-    assert windup("cup", cup) == pytest.approx(meridian(cup), rel=1e-7)
+    assert windup("cup", cup) == pytest.approx(meridian(cup), rel=1e-6)
 
 
 @pytest.mark.parametrize("hub_thickness", [{}, {"disk_hub_thickness": 0.003}, {"disk_hub_thickness": 0.0016}])

@@ -56,13 +56,13 @@ def cli() -> None:
 def template(output: Path, *, example: bool, force: bool) -> None:
     """Write the Excel template that submissions are made from."""
     if output.exists() and not force:
-        raise click.UsageError(f"{shown(output)} exists and may be filled; choose another -o, or --force.")
+        raise click.UsageError(f"{_named(output)} exists and may be filled; choose another -o, or --force.")
     from flexlash.report.output import write_bytes
     from flexlash.submission.template import study, template_bytes
 
     written = write_bytes(template_bytes(study() if example else None), output)
-    click.echo(f"Template written: {shown(written)}")
-    click.echo(f"Fill it in, then: flexlash run {shown(written)}", err=True)
+    click.echo(f"Template written: {_named(written)}")
+    click.echo(f"Fill it in, then: flexlash run {_named(written)}", err=True)
 
 
 @cli.command()
@@ -162,6 +162,11 @@ def run(submissions: tuple[Path, ...], output: Path | None, *, as_json: bool, qu
     sys.exit(_worst(codes))
 
 
+def _named(path: object) -> str:
+    """Return a path as it may be printed: whole, without control characters."""
+    return shown(path, longest=4096)
+
+
 def _worst(codes: list[int]) -> int:
     return min(codes, key=_SEVERITY.index)
 
@@ -172,7 +177,7 @@ def _one_submission(path: Path, codes: list[int], *, as_json: bool) -> Iterator[
     try:
         yield
     except OSError as fault:
-        named = shown(fault.filename or path)
+        named = _named(fault.filename or path)
         why = fault.strerror or str(fault)
         click.secho(f"{named} could not be opened or written: {why}", fg="red", err=True)
         if as_json:
@@ -240,7 +245,7 @@ def _tell(outcome: Outcome, path: Path, *, as_json: bool, ran: bool = False) -> 
     colours = {"error": "red", "warning": "yellow", "info": "cyan"}
     for level, line in finding_lines(outcome.findings):
         click.echo(click.style(line, fg=colours[level]) if level else line, err=ran)
-    for line in summary_lines(outcome, shown(path), ran=ran):
+    for line in summary_lines(outcome, _named(path), ran=ran):
         click.echo(line)
 
 
@@ -262,7 +267,7 @@ def main() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         sys.exit(0)
     except OSError as fault:
-        named = f"{shown(fault.filename)}: " if fault.filename else ""
+        named = f"{_named(fault.filename)}: " if fault.filename else ""
         click.secho(f"{named}{fault.strerror or fault}", fg="red", err=True)
         sys.exit(NO_FILE)
     except Exception as fault:  # noqa: BLE001

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from flexlash.columns import DIMENSIONS
-from flexlash.findings import CATALOGUE, Finding
+from flexlash.findings import CATALOGUE, Finding, shown
 
 if TYPE_CHECKING:
     from flexlash.pipeline import Outcome
@@ -95,7 +95,7 @@ def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
     if ran:
         yield from over_limit_lines(outcome)
         for path in outcome.outputs:
-            yield f"Written: {path}"
+            yield f"Written: {shown(path, longest=4096)}"
         if not outcome.outputs:
             yield "Nothing was written: there is no computed row."
     elif outcome.computed:

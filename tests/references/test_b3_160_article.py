@@ -144,13 +144,9 @@ def test_baseline_submitted_as_csv(tmp_path, key, expected, digits):
 def test_printed_modulus_gives_the_second_column(tmp_path):
     """With the printed G = 8.10769e10 Pa the wind-ups are 3.06721e-4, 2.30040e-4 and 2U 1.07352e-3 rad."""
     materials = tmp_path / "materials.csv"
-    materials.write_text(
-        f"material,shear_modulus_GPa\n20Cr2Ni4,{PRINTED_MODULUS / 1e9!r}\n", encoding="utf-8"
-    )
+    materials.write_text(f"material,shear_modulus_GPa\n20Cr2Ni4,{PRINTED_MODULUS / 1e9!r}\n", encoding="utf-8")
     (row,) = results(tmp_path, SUBMITTED, materials=materials)
-    dimensions = {
-        name: size for name, size in BASELINE.items() if name not in {"youngs_modulus", "poisson_ratio"}
-    }
+    dimensions = {name: size for name, size in BASELINE.items() if name not in {"youngs_modulus", "poisson_ratio"}}
     cylinder, disk = parts(dimensions | {"shear_modulus": PRINTED_MODULUS})
     for first, second, third in (
         (cylinder, disk, 2 * (cylinder + disk)),
@@ -259,16 +255,13 @@ def test_log_sensitivities(together, expected):
     assert (up - down) / (2 * step) == pytest.approx(float(expected), abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("blank", "expected"), [("disk_thickness", -1), ("disk_outer_radius", Fraction(-10, 7))]
-)
+@pytest.mark.parametrize(("blank", "expected"), [("disk_thickness", -1), ("disk_outer_radius", Fraction(-10, 7))])
 def test_blank_disk_dimension_moves_with_the_cylinder(blank, expected):
     """A blank disk thickness follows the wall, a blank r_co the mean radius, with the shared sensitivity."""
     moved = {"disk_thickness": "wall_thickness", "disk_outer_radius": "mean_radius"}[blank]
     step = 1e-4
     up, down = (
-        math.log(backlash("cup", BASELINE | {moved: BASELINE[moved] * math.exp(sign * step)}))
-        for sign in (1, -1)
+        math.log(backlash("cup", BASELINE | {moved: BASELINE[moved] * math.exp(sign * step)})) for sign in (1, -1)
     )
     assert (up - down) / (2 * step) == pytest.approx(float(expected), abs=1e-6)
 
@@ -294,9 +287,7 @@ def test_one_thickness_or_two_changes_the_spread(tmp_path):
 def test_fillets_and_rim_explain_the_finite_element_result(tmp_path):
     """With bore, 3.5 mm fillets and rims of 20 and 30 mm the wind-ups bracket the FEA's 4.93e-4 rad."""
     materials = tmp_path / "materials.csv"
-    materials.write_text(
-        f"material,shear_modulus_GPa\n20Cr2Ni4,{PRINTED_MODULUS / 1e9!r}\n", encoding="utf-8"
-    )
+    materials.write_text(f"material,shear_modulus_GPa\n20Cr2Ni4,{PRINTED_MODULUS / 1e9!r}\n", encoding="utf-8")
     refined = SUBMITTED | {
         "mean_radius_mm": "",
         "bore_diameter_mm": "160",

@@ -50,9 +50,7 @@ def taper_in_closed_form(inner, outer, first, last):
 
 def test_linear_taper_from_4_to_1_6_mm():
     """An annulus 40 → 80 mm that thins from 4.0 to 1.6 mm winds up by 1.2086009619e-4 rad."""
-    assert angle(windup.tapered_disk_integral(INNER, OUTER, 0.004, 0.0016)) == pytest.approx(
-        1.2086009619e-4, rel=5e-11
-    )
+    assert angle(windup.tapered_disk_integral(INNER, OUTER, 0.004, 0.0016)) == pytest.approx(1.2086009619e-4, rel=5e-11)
 
 
 def test_linear_taper_as_a_disk_of_a_cup():
@@ -68,9 +66,7 @@ def test_mean_thickness_is_no_shortcut_for_a_taper():
     assert windup.annulus_integral(INNER, OUTER, 0.0028) / taper - 1 == pytest.approx(0.087, abs=5e-4)
 
 
-@pytest.mark.parametrize(
-    ("first", "last"), [(0.004, 0.0016), (0.0016, 0.004), (0.003, 0.002), (0.0005, 0.004)]
-)
+@pytest.mark.parametrize(("first", "last"), [(0.004, 0.0016), (0.0016, 0.004), (0.003, 0.002), (0.0005, 0.004)])
 def test_linear_taper_in_closed_form(first, last):
     """Tapers that thin or thicken towards the rim agree with the closed form and with quadrature."""
     found = windup.tapered_disk_integral(INNER, OUTER, first, last)
@@ -116,9 +112,7 @@ def test_power_law_with_exponent_zero_is_an_even_annulus():
 
 def test_constant_shear_disk():
     """A disk with t ∝ 1/r² from 4 mm winds up by 1.699207821e-4 rad under one shear stress everywhere."""
-    assert angle(windup.power_law_disk_integral(INNER, OUTER, 0.004, 2)) == pytest.approx(
-        1.699207821e-4, rel=3e-10
-    )
+    assert angle(windup.power_law_disk_integral(INNER, OUTER, 0.004, 2)) == pytest.approx(1.699207821e-4, rel=3e-10)
     radius = np.linspace(INNER, OUTER, 9)
     stress = strength.shear_stress(800.0, radius, 0.004 * (INNER / radius) ** 2)
     assert stress == pytest.approx(float(stress[0]), rel=1e-14)
@@ -129,9 +123,7 @@ def test_cone_is_an_annulus_over_the_sine(degrees):
     """A cone of semi-angle a has the annulus's integral over sin a, by quadrature along its meridian."""
     semi_angle = math.radians(degrees)
     length = (OUTER - INNER) / math.sin(semi_angle)
-    along = quad(
-        lambda s: 1 / ((INNER + s * math.sin(semi_angle)) ** 3 * 0.002), 0, length, epsabs=0, epsrel=1e-12
-    )
+    along = quad(lambda s: 1 / ((INNER + s * math.sin(semi_angle)) ** 3 * 0.002), 0, length, epsabs=0, epsrel=1e-12)
     assert windup.cone_integral(INNER, OUTER, 0.002, semi_angle) == pytest.approx(along[0], rel=1e-11)
 
 

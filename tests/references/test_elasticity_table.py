@@ -28,9 +28,7 @@ def _geometries():
     """Yield the rows of the table: type, dimensions [SI] by name, and the three wind-ups [rad]."""
     with Path(__file__).with_name("elasticity_reference.csv").open(encoding="utf-8") as file:
         for row in csv.DictReader(file):
-            angles = {
-                key: float(row.pop(f"{key}_windup_rad")) for key in ("elasticity", "meridian", "two_term")
-            }
+            angles = {key: float(row.pop(f"{key}_windup_rad")) for key in ("elasticity", "meridian", "two_term")}
             kind = row.pop("flexspline_type")
             yield kind, {key.rpartition("_")[0]: float(text) for key, text in row.items() if text}, angles
 
@@ -47,9 +45,7 @@ def two_term(kind, dimensions):
     """Return the wind-up [rad] of a plain wall and an even disk, written from the two formulas alone."""
     torque, modulus = dimensions["torque"], dimensions["shear_modulus"]
     mean, wall = dimensions["mean_radius"], dimensions["wall_thickness"]
-    inner, outer = (
-        (dimensions["disk_inner_radius"], mean) if kind == "cup" else (mean, dimensions["disk_outer_radius"])
-    )
+    inner, outer = (dimensions["disk_inner_radius"], mean) if kind == "cup" else (mean, dimensions["disk_outer_radius"])
     polar_moment = 2 * math.pi * mean**3 * wall
     cylinder = torque * dimensions["cylinder_length"] / (modulus * polar_moment)
     disk = torque / (4 * math.pi * dimensions["disk_thickness"] * modulus) * (1 / inner**2 - 1 / outer**2)
@@ -93,9 +89,7 @@ def test_two_term_formula_is_high_for_b3_160_with_fillets_and_rim(place, excess)
 
 def test_table_submitted_as_csv(tmp_path):
     """The eight geometries submitted as one CSV have the table's meridian wind-up in Results, to 1e-6."""
-    materials = {
-        f"G{place}": dimensions["shear_modulus"] for place, (_, dimensions, _) in enumerate(GEOMETRIES)
-    }
+    materials = {f"G{place}": dimensions["shear_modulus"] for place, (_, dimensions, _) in enumerate(GEOMETRIES)}
     given = tmp_path / "materials.csv"
     lines = [f"{name},{modulus / 1e9!r}" for name, modulus in materials.items()]
     given.write_text("\n".join(["material,shear_modulus_GPa", *lines]), encoding="utf-8")

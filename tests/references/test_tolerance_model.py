@@ -80,9 +80,7 @@ def submitted(tmp_path_factory):
         "reference,poisson_ratio,-0.02,0.02,-,uniform,\n",
         encoding="utf-8",
     )
-    return {
-        method: run(variants, output=None, tolerances=tolerances, method=method, seed=1) for method in METHODS
-    }
+    return {method: run(variants, output=None, tolerances=tolerances, method=method, seed=1) for method in METHODS}
 
 
 @pytest.fixture(params=METHODS)
@@ -179,14 +177,10 @@ def test_error_of_sobol_points_falls_faster():
     assert np.polyfit(np.log(sizes), np.log(rms), 1)[0] < -0.9
 
 
-@pytest.mark.parametrize(
-    ("probability", "factor"), [(0.5, 1.253), (0.95, 2.113), (0.975, 2.671), (0.99865, 8.284)]
-)
+@pytest.mark.parametrize(("probability", "factor"), [(0.5, 1.253), (0.95, 2.113), (0.975, 2.671), (0.99865, 8.284)])
 def test_standard_errors_of_plain_monte_carlo(probability, factor):
     """The mean standard error of a quantile over 60 seeds is k·s/√M, with k for the normal, within 15 %."""
     spreads = [propagate(model, SCATTER, method="random", samples=2**12, seed=seed) for seed in range(60)]
     errors = [spread.standard_error(probability) for spread in spreads]
     expected = factor * 0.0201213 / math.sqrt(2**12)
-    assert math.sqrt(np.mean(np.square(errors))) == pytest.approx(
-        expected, rel=0.25 if probability > 0.99 else 0.15
-    )
+    assert math.sqrt(np.mean(np.square(errors))) == pytest.approx(expected, rel=0.25 if probability > 0.99 else 0.15)

@@ -45,8 +45,8 @@ ERRATA = (
 
 def _statistics(outcome: Outcome) -> Iterator[str]:
     """Yield how the spread was made and how good it is."""
-    yield "Each tolerance gives limits; parts scatter around the middle of the limits, not around the entered value."
-    yield "normal: σ = (upper − lower)/(2k), unbounded; truncated normal: cut at the limits; others: between the limits."
+    yield "Each tolerance gives limits; parts scatter around the middle of the limits, not around the entry."
+    yield "normal: σ = (upper − lower)/(2k), unbounded; truncated normal: cut at the limits; others: between them."
     yield "All variants meet the same points, so that they differ by their dimensions and not by chance."
     yield (
         f"{outcome.points:,} points per variant in {REPLICATES} independent replicates; standard errors come from the "

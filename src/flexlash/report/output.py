@@ -20,6 +20,8 @@ ENDINGS = (".xlsx", ".csv", ".parquet", ".json")
 
 _FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
 _COPIES = 100
+_LOCKS = os.name == "nt"
+"""Whether this system refuses to replace a file that another program holds open."""
 
 
 def write_outcome(outcome: Outcome, path: Path) -> Path:
@@ -84,7 +86,7 @@ def _move(temporary: Path, path: Path) -> Path:
         try:
             temporary.replace(target)
         except PermissionError:
-            if os.name != "nt":
+            if not _LOCKS:
                 raise
             continue
         _sync_folder(target.parent)
@@ -94,7 +96,7 @@ def _move(temporary: Path, path: Path) -> Path:
 
 def _sync_folder(folder: Path) -> None:
     """Make the rename durable where folders can be synchronised."""
-    if os.name == "nt":
+    if _LOCKS:
         return
     handle = os.open(folder, os.O_RDONLY)
     try:

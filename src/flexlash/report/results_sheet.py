@@ -59,13 +59,7 @@ def write_results(book: Book, results: pl.DataFrame) -> None:
         rule = {"type": "cell", "criteria": "==", "value": f'"{status}"', "format": book.format(status)}
         sheet.conditional_format(FIRST_ROW, place, last, place, rule)
     place = column_place("probability_over_limit")
-    bar = {
-        "type": "data_bar",
-        "bar_color": PALETTE["orange"],
-        "bar_solid": True,
-        "min_type": "num",
-        "max_type": "num",
-    }
+    bar = {"type": "data_bar", "bar_color": PALETTE["orange"], "min_type": "num", "max_type": "num"}
     sheet.conditional_format(FIRST_ROW, place, last, place, bar | {"min_value": 0, "max_value": 1})
 
 

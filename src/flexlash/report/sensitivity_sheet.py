@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexlash.columns import DIMENSIONS
 from flexlash.report.selection import Drawn
-from flexlash.report.styles import PALETTE, Book
+from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.summary import dimension_words
 from flexlash.units import ARCMIN
 
@@ -64,17 +64,9 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn) -> None:
             "overlap": 100,
             "gap": 40,
         })  # fmt: skip
-    chart.set_x_axis(
-        {
-            "crossing": middle,
-            "num_format": "0.000",
-            "major_gridlines": {"visible": True, "line": {"color": PALETTE["pale"]}},
-        }
-    )
+    chart.set_x_axis({"crossing": middle, "num_format": "0.000", "major_gridlines": GRID})
     chart.set_y_axis({"reverse": True, "crossing": "min", "label_position": "low"})
-    chart.set_legend({"position": "bottom"})
-    chart.set_size({"width": 760, "height": 400})
-    sheet.insert_chart(3, 5, chart, {"description": "Tornado chart of the worst variant", "object_position": 2})
+    book.insert(sheet, 3, 5, chart, size=(760, 400), text="Tornado chart of the worst variant")
 
 
 def _write_shares(book: Book, sheet: Any, outcome: Outcome) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 from xlsxwriter.utility import xl_col_to_name
 
 from flexlash.report.selection import DRAWN, Drawn
-from flexlash.report.styles import PALETTE, Book
+from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.summary import share_words
 from flexlash.tolerance.variation import CURVE_PROBABILITIES, HISTOGRAM_BINS
 from flexlash.units import ARCMIN
@@ -43,8 +43,8 @@ def write_curves(book: Book, drawn: Sequence[Drawn]) -> None:
             if value is not None:
                 sheet.write_number(row, place, value, book.format("text", "general"))
     sheet.freeze_panes(2, 1)
-    sheet.fit_to_pages(6, 0)
-    sheet.repeat_columns(0)
+    sheet.repeat_rows(0, 1)
+    sheet.print_area(0, 0, max(2, len(drawn) + 1), len(_FIXED) - 1)
 
 
 def _numbers(one: Drawn) -> list[float | None]:
@@ -160,65 +160,54 @@ def _write_helper(book: Book, sheet: Any, numbers: list[float | None], first: in
         value = numbers[_CURVE + offset - 1]
         sheet.write_formula(2 + offset, _HELPER + 4, _look_up(_CURVE + offset, first, last), plain, value)
         sheet.write_number(2 + offset, _HELPER + 5, share, plain)
+    given = limit is not None
+    line = limit if given else numbers[2]
     for row, share in ((2, 0), (3, 1)):
-        sheet.write_formula(
-            row, _HELPER + 7, "=IF(ISNUMBER($B$4),$B$4,NA())", plain, "#N/A" if limit is None else limit
-        )
-        sheet.write_number(row, _HELPER + 8, share, plain)
+        sheet.write_formula(row, _HELPER + 7, "=IF(ISNUMBER($B$4),$B$4,$B$8)", plain, line)
+        sheet.write_formula(row, _HELPER + 8, f"=IF(ISNUMBER($B$4),{share},0)", plain, share if given else 0)
 
 
 def _write_charts(book: Book, sheet: Any) -> None:
-    """Draw the density, coloured beyond the limit, and the cumulative curve with the limit."""
+    """Draw both charts below the figures."""
+    size = (1020, 345)
+    book.insert(sheet, 10, 0, _density(book), size=size, text="Density of the picked variant")
+    book.insert(sheet, 28, 0, _cumulative(book), size=size, text="Cumulative curve of the picked variant")
+
+
+def _density(book: Book) -> Any:
+    """Return the histogram, coloured beyond the limit."""
     last = HISTOGRAM_BINS + 1
-    density = book.chart("column", "Density: share of units per bin", subtype="stacked")
-    for offset, name, colour in (
-        (1, "within the limit", PALETTE["blue"]),
-        (2, "over the limit", PALETTE["red"]),
-    ):
-        density.add_series({
+    chart = book.chart("column", "Density: share of units per bin", subtype="stacked")
+    for offset, name, colour in ((1, "within the limit", "blue"), (2, "over the limit", "red")):
+        chart.add_series({
             "name": name,
             "categories": ["Spread", 2, _HELPER, last, _HELPER],
             "values": ["Spread", 2, _HELPER + offset, last, _HELPER + offset],
-            "fill": {"color": colour},
+            "fill": {"color": PALETTE[colour]},
             "border": {"none": True},
             "gap": 4,
         })  # fmt: skip
-    density.set_x_axis(
-        {
-            "name": "Backlash [arcmin]",
-            "num_format": "0.000",
-            "num_font": {"rotation": -45},
-            "interval_unit": 4,
-        }
-    )
-    density.set_y_axis({"num_format": "0%", "major_gridlines": {"visible": True, "line": {"color": PALETTE["pale"]}}})
-    curve = book.chart("scatter", "Share of units below a backlash", subtype="straight")
-    points = len(CURVE_PROBABILITIES) + 1
-    curve.add_series({
-        "name": "share below",
-        "categories": ["Spread", 2, _HELPER + 4, points, _HELPER + 4],
-        "values": ["Spread", 2, _HELPER + 5, points, _HELPER + 5],
-        "line": {"color": PALETTE["blue"], "width": 2.25},
-    })  # fmt: skip
-    curve.add_series({
-        "name": "limit",
-        "categories": ["Spread", 2, _HELPER + 7, 3, _HELPER + 7],
-        "values": ["Spread", 2, _HELPER + 8, 3, _HELPER + 8],
-        "line": {"color": PALETTE["red"], "width": 1.5, "dash_type": "dash"},
-    })  # fmt: skip
-    curve.set_x_axis({"name": "Backlash [arcmin]", "num_format": "0.00", "major_gridlines": {"visible": False}})
-    curve.set_y_axis(
-        {
-            "min": 0,
-            "max": 1,
-            "num_format": "0%",
-            "major_gridlines": {"visible": True, "line": {"color": PALETTE["pale"]}},
-        }
-    )
-    for chart, row, text in (
-        (density, 10, "Density of the picked variant"),
-        (curve, 28, "Cumulative curve of the picked variant"),
+    labels = {"num_format": "0.000", "num_font": {"rotation": -45}, "interval_unit": 4}
+    chart.set_x_axis({"name": "Backlash [arcmin]", **labels})
+    chart.set_y_axis({"num_format": "0%", "major_gridlines": GRID})
+    return chart
+
+
+def _cumulative(book: Book) -> Any:
+    """Return the cumulative curve with the limit as a line."""
+    chart = book.chart("scatter", "Share of units below a backlash", subtype="straight")
+    curve = {"color": PALETTE["blue"], "width": 2.25}
+    limit = {"color": PALETTE["red"], "width": 1.5, "dash_type": "dash"}
+    for name, offset, last, line in (
+        ("share below", 4, len(CURVE_PROBABILITIES) + 1, curve),
+        ("limit", 7, 3, limit),
     ):
-        chart.set_size({"width": 1020, "height": 345})
-        chart.set_legend({"position": "bottom"})
-        sheet.insert_chart(row, 0, chart, {"description": text, "object_position": 2})
+        chart.add_series({
+            "name": name,
+            "categories": ["Spread", 2, _HELPER + offset, last, _HELPER + offset],
+            "values": ["Spread", 2, _HELPER + offset + 1, last, _HELPER + offset + 1],
+            "line": line,
+        })  # fmt: skip
+    chart.set_x_axis({"name": "Backlash [arcmin]", "num_format": "0.00", "major_gridlines": {"visible": False}})
+    chart.set_y_axis({"min": 0, "max": 1, "num_format": "0%", "major_gridlines": GRID})
+    return chart

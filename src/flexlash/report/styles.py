@@ -6,7 +6,7 @@ from typing import Any
 
 import xlsxwriter
 
-__all__ = ["PALETTE", "Book"]
+__all__ = ["GRID", "PALETTE", "Book"]
 
 PALETTE = {
     "ink": "#1F3A5F",
@@ -18,6 +18,8 @@ PALETTE = {
     "grey": "#7F7F7F",
     "pale": "#D9E2EC",
 }
+
+GRID = {"visible": True, "line": {"color": PALETTE["pale"]}}
 
 _BASE = {"font_name": "Calibri", "font_size": 11, "valign": "vcenter"}
 _NUMBERS = {
@@ -41,6 +43,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
         "bottom_color": PALETTE["ink"],
     },
     "text": {},
+    "indented": {"indent": 1},
     "wrap": {"text_wrap": True, "valign": "top"},
     "quiet": {"font_color": "#595959", "italic": True},
     "label": {"bold": True, "font_color": "#404040"},
@@ -119,4 +122,11 @@ class Book:
         """Return a chart with the report's fonts."""
         chart = self.workbook.add_chart({"type": kind, **options})
         chart.set_title({"name": title, "name_font": {"size": 12, "color": PALETTE["ink"]}, "overlay": False})
+        chart.set_legend({"position": "bottom"})
         return chart
+
+    @staticmethod
+    def insert(sheet: Any, row: int, column: int, chart: Any, *, size: tuple[int, int], text: str) -> None:
+        """Put a chart of this size [px] on a sheet, with its alternative text."""
+        chart.set_size({"width": size[0], "height": size[1]})
+        sheet.insert_chart(row, column, chart, {"description": text, "object_position": 2})

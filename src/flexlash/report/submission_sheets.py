@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["write_findings", "write_submission"]
 
-_WIDTHS = {"message": 90, "fix": 60, "suggestion": 18, "variant": 20, "column": 24, "value": 20}
+_WIDTHS = {"message": 100, "fix": 84, "suggestion": 18, "variant": 20, "column": 24, "value": 20}
 _TITLES = {plain(name): "Submission" if name == "Variants" else name for name in ENTRY_SHEETS}
 
 
@@ -41,6 +41,8 @@ def write_findings(book: Book, outcome: Outcome) -> None:
 def _write_finding(book: Book, sheet: Any, row: int, found: Finding) -> None:
     """Write one finding, its level coloured and its cell linked."""
     styles = {"error": "error", "warning": "warning", "info": "text"}
+    lines = max(len(found.message) // 105, len(found.fix) // 88)
+    sheet.set_row(row, 15.5 * (1 + lines))
     for place, (key, value) in enumerate(found.as_dictionary().items()):
         title = _TITLES.get(plain(found.sheet))
         if key == "level":
@@ -61,12 +63,21 @@ def write_submission(book: Book, outcome: Outcome) -> None:
         title = _TITLES.get(plain(raw.name))
         if title:
             marked = {xl_cell_to_rowcol(cell): level for (name, cell), level in levels.items() if name == raw.name}
-            _write_mirror(book, raw, title, marked)
+            header = (
+                outcome.validated.header_rows.get("Variants" if title == "Submission" else title, 0)
+                if outcome.validated
+                else 0
+            )
+            _write_mirror(book, raw, title, marked, header)
 
 
-def _write_mirror(book: Book, raw: RawSheet, title: str, marked: dict[tuple[int, int], str]) -> None:
-    """Write a sheet's cells at their addresses."""
+def _write_mirror(book: Book, raw: RawSheet, title: str, marked: dict[tuple[int, int], str], header: int) -> None:
+    """Write a sheet's cells at their addresses, its header row as such."""
     sheet = book.sheet(title)
+    if header:
+        sheet.set_row(header - 1, 48)
+        sheet.freeze_panes(header, 1)
+        sheet.repeat_rows(header - 1)
     ignored = {
         place
         for cells in raw.rows.values()
@@ -79,7 +90,7 @@ def _write_mirror(book: Book, raw: RawSheet, title: str, marked: dict[tuple[int,
     for row, cells in raw.rows.items():
         for place, value in cells.items():
             if place not in ignored:
-                style = marked.get((row - 1, place - 1), "text")
+                style = marked.get((row - 1, place - 1), "header" if row == header else "text")
                 _write_value(sheet, row - 1, place - 1, value, book.format(style))
     for (row, place), level in marked.items():
         if place + 1 not in raw.rows.get(row + 1, {}):
@@ -89,7 +100,7 @@ def _write_mirror(book: Book, raw: RawSheet, title: str, marked: dict[tuple[int,
 def _write_value(sheet: Any, row: int, place: int, value: RawValue, style: Any) -> None:
     """Write a raw value so that it can do nothing but be read."""
     if isinstance(value, bool):
-        sheet.write_boolean(row, place, value, style)
+        sheet.write_string(row, place, shown(value), style)
     elif isinstance(value, int | float) and abs(value) < float("inf"):
         sheet.write_number(row, place, value, style)
     elif isinstance(value, ErrorCell):

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from flexlash.report.selection import Drawn
-from flexlash.report.styles import PALETTE, Book
+from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.summary import dimension_words, rounded, share_words
 
 if TYPE_CHECKING:
@@ -135,7 +136,7 @@ def _write_table(book: Book, sheet: Any, drawn: Sequence[Drawn], row: int) -> in
             if value is not None:
                 sheet.write_number(row, place, value, book.format("text", "plain"))
         if result["probability_over_limit"] is not None:
-            sheet.write_string(row, 7, share_words(result), book.format("text"))
+            sheet.write_string(row, 7, share_words(result), book.format("indented"))
         if result["main_contributor"]:
             share = f" ({100 * result['main_contributor_share']:.0f} %)"
             sheet.write_string(row, 8, dimension_words(result["main_contributor"]) + share, book.format("text"))
@@ -163,59 +164,38 @@ def _write_provenance(book: Book, sheet: Any, outcome: Outcome, row: int) -> int
 def _chart(book: Book, sheet: Any, drawn: Sequence[Drawn], row: int) -> None:
     """Draw P2.5 to P97.5, median and limit of the variants; the data stand in Curves."""
     count = min(len(drawn), _CHARTED)
-    names = ["Curves", 2, 0, count + 1, 0]
     title = "Backlash P2.5 to P97.5, median and limit [arcmin]"
     if count < len(drawn):
         title += f": the {count} worst of {len(drawn)}"
     bars = book.chart("column", title, subtype="stacked")
-    bars.add_series(
-        {
-            "name": "P2.5",
-            "categories": names,
-            "values": ["Curves", 2, 1, count + 1, 1],
-            "fill": {"none": True},
-            "border": {"none": True},
-            "gap": 60,
-        }
-    )
-    bars.add_series(
-        {
-            "name": "P2.5 to P97.5",
-            "categories": names,
-            "values": ["Curves", 2, 2, count + 1, 2],
-            "fill": {"color": PALETTE["sky"]},
-            "border": {"color": PALETTE["blue"]},
-        }
-    )
     marks = book.workbook.add_chart({"type": "line"})
-    for place, name, shape, colour in (
-        (3, "Median", "diamond", PALETTE["ink"]),
-        (4, "Limit", "long_dash", PALETTE["red"]),
+    hidden = {"fill": {"none": True}, "border": {"none": True}, "gap": 60}
+    band = {"fill": {"color": PALETTE["sky"]}, "border": {"color": PALETTE["blue"]}}
+    for chart, place, name, look in (
+        (bars, 1, "P2.5", hidden),
+        (bars, 2, "P2.5 to P97.5", band),
+        (marks, 3, "Median", _marker("diamond", PALETTE["ink"])),
+        (marks, 4, "Limit", _marker("long_dash", PALETTE["red"])),
     ):
-        marks.add_series({
-            "name": name,
-            "categories": names,
-            "values": ["Curves", 2, place, count + 1, place],
-            "line": {"none": True},
-            "marker": {"type": shape, "size": 7, "fill": {"color": colour}, "border": {"color": colour}},
-        })  # fmt: skip
+        names = ["Curves", 2, 0, count + 1, 0]
+        chart.add_series({"name": name, "categories": names, "values": ["Curves", 2, place, count + 1, place], **look})
     bars.combine(marks)
-    low = min(
-        min(one.row["p2_5_arcmin"], one.row["backlash_limit_arcmin"] or one.row["p2_5_arcmin"]) for one in drawn[:count]
-    )
-    bars.set_y_axis(
-        {
-            "min": max(0.0, float(f"{0.9 * low:.1g}")),
-            "num_format": "0.00",
-            "major_gridlines": {"visible": True, "line": {"color": PALETTE["pale"]}},
-        }
-    )
+    bars.set_y_axis({"min": _axis_start(drawn[:count]), "num_format": "0.00", "major_gridlines": GRID})
     bars.set_x_axis({"num_font": {"rotation": -45, "size": 9}})
     bars.set_legend({"position": "bottom", "delete_series": [0]})
-    bars.set_size({"width": 1010, "height": 520})
-    sheet.insert_chart(
-        row,
-        0,
-        bars,
-        {"description": "Backlash interval, median and limit of each variant", "object_position": 2},
-    )
+    text = "Backlash interval, median and limit of each variant"
+    book.insert(sheet, row, 0, bars, size=(975, 520), text=text)
+
+
+def _marker(shape: str, colour: str) -> dict[str, Any]:
+    """Return the look of a series that is marks without a line."""
+    fill = {"color": colour}
+    return {"line": {"none": True}, "marker": {"type": shape, "size": 7, "fill": fill, "border": fill}}
+
+
+def _axis_start(drawn: Sequence[Drawn]) -> float:
+    """Return a round number below everything that the chart shows."""
+    rows = [one.row for one in drawn]
+    low = min(min(row["p2_5_arcmin"], row["backlash_limit_arcmin"] or row["p2_5_arcmin"]) for row in rows)
+    step = 10.0 ** math.floor(math.log10(max(row["p97_5_arcmin"] for row in rows))) / 2
+    return float(max(0.0, math.floor(0.97 * low / step) * step))

@@ -6,6 +6,7 @@ import csv
 import datetime
 import hashlib
 import io
+import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeAlias
@@ -104,13 +105,16 @@ def _read_workbook(admitted: Admitted, name: str, digest: str) -> Submission:
     import openpyxl
 
     try:
-        workbook = openpyxl.load_workbook(io.BytesIO(admitted.data), read_only=True, data_only=True)
-        sheets = {}
-        for worksheet in workbook.worksheets:
-            worksheet.reset_dimensions()
-            unstored = admitted.unstored.get(worksheet.title, frozenset())
-            rows = _rows(worksheet.iter_rows(values_only=True), unstored)
-            sheets[worksheet.title] = RawSheet(name=worksheet.title, rows=rows)
+        # openpyxl warns of every feature that it does not carry over, none of which holds a cell's value.
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            workbook = openpyxl.load_workbook(io.BytesIO(admitted.data), read_only=True, data_only=True)
+            sheets = {}
+            for worksheet in workbook.worksheets:
+                worksheet.reset_dimensions()
+                unstored = admitted.unstored.get(worksheet.title, frozenset())
+                rows = _rows(worksheet.iter_rows(values_only=True), unstored)
+                sheets[worksheet.title] = RawSheet(name=worksheet.title, rows=rows)
         properties = {one.name: str(one.value) for one in workbook.custom_doc_props.props}
         modified = workbook.properties.modified
     except Exception as fault:

@@ -34,7 +34,8 @@ class Validated:
     """A submission after validation.
 
     `table` is Variants as read, one row per submitted variant; `variants` are the rows without an error;
-    `ledger` holds the findings and what they spoil, for the stages that add engineering findings.
+    `ledger` holds the findings and what they spoil, for the stages that add engineering findings;
+    `header_rows` the row of each entry sheet's headers.
     """
 
     ledger: Ledger
@@ -43,6 +44,7 @@ class Validated:
     classes: dict[str, list[ToleranceRow]] = field(default_factory=dict)
     materials: dict[str, Material] = field(default_factory=dict)
     settings: Settings = field(default_factory=Settings)
+    header_rows: dict[str, int] = field(default_factory=dict)
 
     @property
     def submitted(self) -> list[tuple[int, str]]:
@@ -66,6 +68,7 @@ def validate(submission: Submission) -> Validated:
         table = tabulate(sheet, schema, ledger, from_text=_from_text(submission, schema))
         if table is not None:
             check_cells(table, ledger)
+            result.header_rows[schema] = table.heading.row
             tables[schema] = table
     if submission.delimiter not in {"", ","}:
         ledger.add("I507", value={";": "semicolon", "\t": "tab"}[submission.delimiter])

@@ -1,0 +1,271 @@
+"""One submission in, one outcome out: the same numbers whoever the neighbours are."""
+
+from __future__ import annotations
+
+import datetime
+
+import openpyxl
+import polars as pl
+import pytest
+
+import flexlash
+import regenerate
+from flexlash.pipeline import Options, check, run
+from flexlash.result_columns import RESULTS
+
+SAMPLES = 512
+
+
+def _variants(sound):
+    """Return five variants of different shapes and tolerances."""
+    return [
+        sound,
+        {**sound, "variant": "short", "cylinder_length_mm": 80.0},
+        {**sound, "variant": "detail", "hub_fillet_radius_mm": 3.5, "rim_length_mm": 20.0, "rim_thickness_mm": 3.2},
+        {**sound, "variant": "hat", "flexspline_type": "hat", "disk_inner_radius_mm": "", "disk_outer_radius_mm": 120},
+        {**sound, "variant": "tube", "flexspline_type": "cylinder", "disk_inner_radius_mm": ""},
+    ]
+
+
+def _rows(outcome):
+    return {row["variant"]: row for row in outcome.results.iter_rows(named=True)}
+
+
+def test_a_variant_does_not_depend_on_its_neighbours(table, sound):
+    """Rows shuffled, removed or added change no bit of a variant's numbers."""
+    rows = _variants(sound)
+    every = _rows(run(table(rows), samples=SAMPLES))
+    for kept in (rows[::-1], rows[1:3], rows[2:3], [*rows[3:], {**sound, "variant": "new", "torque_Nm": 1.0}]):
+        for name, row in _rows(run(table(kept), samples=SAMPLES)).items():
+            if name != "new":
+                assert row == every[name]
+
+
+def test_the_number_of_jobs_changes_nothing(table, sound, tmp_path):
+    """One worker or three give the same bytes of the report."""
+    rows = [{**sound, "variant": f"v{number}", "wall_thickness_mm": 1.5 + number / 100} for number in range(30)]
+    path = table(rows)
+    for jobs in (1, 3):
+        run(path, tmp_path / f"{jobs}.xlsx", samples=SAMPLES, jobs=jobs)
+    assert (tmp_path / "1.xlsx").read_bytes() == (tmp_path / "3.xlsx").read_bytes()
+
+
+def test_the_report_does_not_name_its_place_or_time(workbook, sound, tmp_path):
+    """The same submission gives the same report bytes wherever and whenever it is written."""
+    path = workbook([sound])
+    (tmp_path / "elsewhere").mkdir()
+    run(path, tmp_path / "a.xlsx", samples=SAMPLES)
+    run(path, tmp_path / "elsewhere" / "b.xlsx", samples=SAMPLES)
+    assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "elsewhere" / "b.xlsx").read_bytes()
+
+
+def test_another_seed_gives_other_numbers_within_their_error(table, sound):
+    """A seed changes the estimates, by no more than their standard errors explain."""
+    path = table([sound])
+    first, second = (run(path, seed=seed).results.row(0, named=True) for seed in (1, 2))
+    assert first["p97_5_arcmin"] != second["p97_5_arcmin"]
+    error = first["p97_5_standard_error_arcmin"] + second["p97_5_standard_error_arcmin"]
+    assert abs(first["p97_5_arcmin"] - second["p97_5_arcmin"]) < 4 * error
+    assert first["backlash_arcmin"] == second["backlash_arcmin"]
+
+
+@pytest.mark.parametrize("method", ["line", "sobol", "random"])
+def test_every_method_agrees_with_first_order_theory(table, sound, method):
+    """For small tolerances each method's sd is the first-order sd, and its mean the nominal, nearly."""
+    row = run(table([sound]), method=method).results.row(0, named=True)
+    assert row["sd_arcmin"] == pytest.approx(row["first_order_sd_arcmin"], rel=0.01)
+    assert row["mean_arcmin"] == pytest.approx(row["backlash_arcmin"], rel=1e-3)
+    assert row["p0_135_arcmin"] < row["p2_5_arcmin"] < row["p50_arcmin"] < row["p97_5_arcmin"] < row["p99_865_arcmin"]
+
+
+def test_results_hold_the_columns_in_order(table, sound):
+    """The Results frame has the contract's columns in order, with numbers where numbers belong."""
+    results = run(table([sound]), samples=SAMPLES).results
+    assert results.columns == [column.key for column in RESULTS]
+    for column in RESULTS:
+        assert results.schema[column.key] == (pl.Float64 if column.is_number else pl.String)
+
+
+def test_a_row_with_errors_keeps_its_place_with_empty_numbers(table, sound):
+    """A faulty row stays where it was submitted, with its status and no numbers."""
+    rows = [{**sound, "variant": "bad", "torque_Nm": "much"}, sound]
+    results = run(table(rows), samples=SAMPLES).results
+    assert results["variant"].to_list() == ["bad", "B3-160"]
+    assert results["status"].to_list() == ["error", "ok"]
+    bad = results.row(0, named=True)
+    assert [key for key, value in bad.items() if value is not None] == ["variant", "status", "findings"]
+    assert bad["findings"] == "E202 D2"
+
+
+def test_strict_computes_nothing_when_a_row_is_bad(table, sound, tmp_path):
+    """With --strict one bad row stops the whole submission, and nothing is written."""
+    path = table([{**sound, "variant": "bad", "torque_Nm": -1}, sound])
+    outcome = run(path, tmp_path / "out.csv", strict=True)
+    assert outcome.exit_code == 4
+    assert outcome.counts["computed"] == 0
+    assert not (tmp_path / "out.csv").exists()
+    assert run(path, strict=False, samples=SAMPLES).exit_code == 3
+
+
+def test_settings_rule_unless_options_do(workbook, sound):
+    """Seed, method and samples come from the Settings sheet; options on the call win."""
+    path = workbook([sound], settings={"seed": 7, "method": "random", "samples": 256.0, "coverage_percent": 50})
+    outcome = run(path)
+    assert (outcome.settings.seed, outcome.method, outcome.points) == (7, "random", 256)
+    row = outcome.results.row(0, named=True)
+    assert row["p2_5_arcmin"] < row["coverage_low_arcmin"] < row["coverage_high_arcmin"] < row["p97_5_arcmin"]
+    other = run(path, seed=8, method="sobol", samples=1024)
+    assert (other.settings.seed, other.method, other.points) == (8, "sobol", 1024)
+
+
+def test_calibration_multiplies_its_part(workbook, sound):
+    """The published calibration pair lowers cylinder and disk wind-up by its factors."""
+    settings = {"cylinder_calibration": 0.907, "disk_calibration": 0.936}
+    plain, fitted = (check(workbook([sound], settings=one)).results.row(0, named=True) for one in ({}, settings))
+    assert fitted["cylinder_windup_rad"] == pytest.approx(0.907 * plain["cylinder_windup_rad"], rel=1e-12)
+    assert fitted["disk_windup_rad"] == pytest.approx(0.936 * plain["disk_windup_rad"], rel=1e-12)
+
+
+def test_lost_motion_follows_the_set_per_cent(workbook, sound):
+    """Lost motion is the backlash at the set per cent of the rated torque."""
+    path = workbook([{**sound, "rated_torque_Nm": 1000.0}], settings={"lost_motion_percent": 3})
+    row = check(path).results.row(0, named=True)
+    assert row["lost_motion_arcmin"] == pytest.approx(row["backlash_arcmin"] * 0.03 * 1000 / 800, rel=1e-12)
+
+
+def test_wall_and_disk_share_one_dimension_when_blank(table, sound, tmp_path):
+    """A blank disk thickness scatters with the wall; a given one by itself, which narrows the spread."""
+    tolerances = tmp_path / "tolerances.csv"
+    tolerances.write_text(
+        "tolerance_class,dimension,lower_deviation,upper_deviation,deviation_unit\n"
+        "standard,wall_thickness,-10,10,µm\nstandard,disk_thickness,-10,10,µm\n",
+        encoding="utf-8",
+    )
+    rows = [sound, {**sound, "variant": "two cuts", "disk_thickness_mm": 1.6}]
+    results = run(table(rows), tolerances=tolerances).results
+    variances = (results["first_order_sd_arcmin"] ** 2).to_list()
+    assert variances[1] / variances[0] == pytest.approx(25 / 49, rel=1e-5)
+
+
+def test_a_bore_makes_the_radius_follow_both(table, sound, tmp_path):
+    """With a bore, wall thickness moves the mean radius too, and the tolerance of mean_radius does not apply."""
+    tolerances = tmp_path / "tolerances.csv"
+    tolerances.write_text(
+        "tolerance_class,dimension,lower_deviation,upper_deviation,deviation_unit\n"
+        "standard,wall_thickness,-10,10,µm\nstandard,mean_radius,-1,1,mm\n",
+        encoding="utf-8",
+    )
+    bore = {**sound, "mean_radius_mm": "", "bore_diameter_mm": 160}
+    outcome = run(table([bore]), tolerances=tolerances, samples=SAMPLES)
+    (computed,) = outcome.computed.values()
+    assert list(computed.limits) == ["wall_thickness"]
+    row = outcome.results.row(0, named=True)
+    step = 10e-3 / 1.6
+    assert row["worst_case_low_arcmin"] < row["backlash_arcmin"] * (1 - step)
+
+
+def test_without_scatter_every_percentile_is_the_nominal(table, sound, tmp_path):
+    """A class without rows that apply leaves the variant exact: no spread, no contributor, no Ppk."""
+    tolerances = tmp_path / "tolerances.csv"
+    tolerances.write_text(
+        "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n", encoding="utf-8"
+    )
+    rows = [sound, {**sound, "variant": "over", "backlash_limit_arcmin": 3.0}]
+    for row, over in zip(
+        run(table(rows), tolerances=tolerances).results.iter_rows(named=True), (0.0, 1.0), strict=True
+    ):
+        assert row["sd_arcmin"] == 0
+        assert row["p0_135_arcmin"] == row["p99_865_arcmin"] == row["backlash_arcmin"] == row["worst_case_high_arcmin"]
+        assert row["probability_over_limit"] == row["probability_over_limit_high"] == over
+        assert row["main_contributor"] is None
+        assert row["ppk"] is None
+
+
+def test_probability_is_never_a_bare_zero(table, sound):
+    """With no unit over the limit the upper end of the interval says how sure that is."""
+    row = run(table([{**sound, "backlash_limit_arcmin": 30.0}])).results.row(0, named=True)
+    assert row["probability_over_limit"] == 0
+    assert row["ppm_over_limit"] == 0
+    assert 0 < row["probability_over_limit_high"] < 2e-4
+
+
+def test_a_report_is_skipped_by_name(workbook, sound, tmp_path):
+    """A report submitted by mistake is named and skipped, not computed and not failed."""
+    run(workbook([sound]), tmp_path / "report.xlsx", samples=SAMPLES)
+    outcome = run(tmp_path / "report.xlsx")
+    assert outcome.skipped
+    assert [one.code for one in outcome.findings] == ["I508"]
+    assert outcome.exit_code == 0
+
+
+def test_a_refused_file_gives_an_outcome_that_says_why(tmp_path):
+    """A file that is no submission gives one finding and nothing else."""
+    path = tmp_path / "letter.xlsx"
+    path.write_bytes(b"%PDF-1.7 dear colleague")
+    outcome = flexlash.run(path, tmp_path / "out.csv")
+    assert [one.code for one in outcome.findings] == ["E101"]
+    assert outcome.exit_code == 4
+    assert outcome.results.is_empty()
+    assert outcome.outputs == []
+
+
+def test_a_missing_file_raises(tmp_path):
+    """A path without a file is an OSError for the caller to tell."""
+    with pytest.raises(FileNotFoundError, match="does not exist"):
+        check(tmp_path / "none.xlsx")
+    with pytest.raises(FileNotFoundError, match="is not a file"):
+        check(tmp_path)
+
+
+def test_progress_counts_up_to_all_rows(table, sound):
+    """The progress callback is told of every batch and ends at the number of rows."""
+    told = []
+    rows = [{**sound, "variant": f"v{number}"} for number in range(20)]
+    run(table(rows), samples=SAMPLES, progress=lambda done, total: told.append((done, total)))
+    assert told == [(8, 20), (16, 20), (20, 20)]
+
+
+def test_the_report_keeps_the_submissions_date(workbook, sound, tmp_path):
+    """The report's document date is the submission's own."""
+    path = workbook([sound])
+    book = openpyxl.load_workbook(path)
+    book.properties.modified = datetime.datetime(2024, 5, 6, 7, 8, 9)  # noqa: DTZ001
+    book.save(path)
+    stamped = openpyxl.load_workbook(path).properties.modified
+    run(path, tmp_path / "report.xlsx", samples=SAMPLES)
+    assert openpyxl.load_workbook(tmp_path / "report.xlsx").properties.created == stamped
+
+
+def test_materials_given_beside_a_table_replace_the_built_in(table, sound, tmp_path):
+    """--materials brings its own list: its shear modulus is used, and a built-in name is unknown."""
+    materials = tmp_path / "materials.csv"
+    materials.write_text("material,shear_modulus_GPa\nmine,80.0\n", encoding="utf-8")
+    rows = [{**sound, "material": "mine"}, {**sound, "variant": "other"}]
+    outcome = check(table(rows), materials=materials)
+    assert [one.code for one in outcome.findings] == ["E307"]
+    row = outcome.results.row(0, named=True)
+    assert row["backlash_rad"] == pytest.approx(1.0725044299e-3 * 8.1153846154e10 / 8e10, rel=1e-9)
+
+
+def test_options_are_named():
+    """An option that does not exist is refused by Python itself."""
+    with pytest.raises(TypeError):
+        Options(sede=1)
+
+
+def test_the_study_reproduces_the_published_case():
+    """The example's first row is the article's baseline, its cases 4 and 5 stand in both readings."""
+    rows = _rows(check(regenerate.ROOT / "data" / "b3-160-study.xlsx"))
+    assert rows["B3-160 case 1"]["backlash_rad"] == pytest.approx(1.0725044299e-3, rel=1e-9)
+    assert rows["B3-160 case 1"]["disk_share"] == pytest.approx(3 / 7, rel=1e-12)
+    assert rows["B3-160 case 4"]["backlash_rad"] == pytest.approx(0.8285863e-3, abs=5e-11)
+    assert rows["B3-160 case 4 r_m 80"]["backlash_rad"] == pytest.approx(1.1276618e-3, abs=5e-11)
+    assert rows["B3-160 case 5"]["backlash_rad"] == pytest.approx(1.7931820e-3, abs=5e-11)
+    assert rows["B3-160 case 5 r_m 80"]["backlash_rad"] == pytest.approx(0.9533373e-3, abs=5e-11)
+    assert rows["B3-160 bore"]["backlash_arcsec"] == pytest.approx(218.124879, abs=5e-7)
+
+
+def test_the_package_knows_no_other_names():
+    """An unknown name of the package is an AttributeError."""
+    with pytest.raises(AttributeError, match="nothing"):
+        _ = flexlash.nothing

@@ -1,0 +1,259 @@
+"""The report workbook: every sheet says what it should, every formula is stored with its value."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import warnings
+import zipfile
+
+import openpyxl
+import pytest
+
+import regenerate
+from flexlash.pipeline import run
+from flexlash.report import selection
+from flexlash.report.summary_sheet import light, sentences
+from flexlash.report.workbook import report_bytes
+from flexlash.result_columns import FINDINGS, RESULTS
+from flexlash.summary import share_words
+from libreoffice import convert, needs_libreoffice
+
+SHEETS = [
+    "Summary", "Results", "Spread", "Sensitivity", "Findings", "Submission", "Materials", "Tolerances", "Settings",
+    "About", "Curves",
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """Return the study's outcome and the path of its report."""
+    path = tmp_path_factory.mktemp("study") / "report.xlsx"
+    return run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path, samples=4096), path
+
+
+@pytest.fixture(scope="module")
+def faulty(tmp_path_factory):
+    """Return the outcome of the submission with twenty faults and the path of its report."""
+    path = tmp_path_factory.mktemp("faulty") / "report.xlsx"
+    return run(regenerate.ROOT / "data" / "needs-fixing.xlsx", path, samples=512), path
+
+
+def _open(path, **options):
+    with path.open("rb") as file, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return openpyxl.load_workbook(file, **options)
+
+
+def test_the_sheets_stand_in_order(study):
+    """The report opens on the Summary and holds every sheet in reading order."""
+    book = _open(study[1])
+    assert book.sheetnames == SHEETS
+    assert book.active.title == "Summary"
+
+
+def test_results_repeat_the_frame(study):
+    """The Results sheet holds every number of the frame below label and key."""
+    outcome, path = study
+    sheet = _open(path)["Results"]
+    rows = list(sheet.iter_rows(values_only=True))
+    assert list(rows[0]) == [column.label for column in RESULTS]
+    assert list(rows[1]) == [column.key for column in RESULTS]
+    for written, row in zip(rows[2:], outcome.results.iter_rows(), strict=True):
+        for value, number in zip(written, row, strict=True):
+            assert value == (pytest.approx(number, rel=1e-15) if isinstance(number, float) else number)
+
+
+def test_summary_sentences_say_the_worst(study):
+    """The Summary names the worst variant, its P97.5, its share over the limit and what causes it."""
+    outcome, path = study
+    texts = [cell.value for row in _open(path)["Summary"].iter_rows(max_col=1) for cell in row if cell.value]
+    said = list(sentences(outcome, selection.drawn_variants(outcome)))
+    assert [f"•  {one}" for one in said] == [text for text in texts if str(text).startswith("•")]
+    assert said[0] == "11 of 11 variants were computed."
+    assert said[1] == "3 of 11 variants with a limit have more than 2.5 % of their units over it."
+    assert re.match(r"97\.5 % of the units of B3-160 case 5 stay below 6\.2\d+′; the limit of 3\.8′", said[2])
+    assert "Young's modulus" in said[3]
+
+
+def test_verdict_follows_its_rule():
+    """Green, amber and red follow P97.5 and P99.865 against the limit."""
+    row = {"p97_5_arcmin": 2.0, "p99_865_arcmin": 3.0}
+    assert light({**row, "backlash_limit_arcmin": 3.0}) == "green"
+    assert light({**row, "backlash_limit_arcmin": 2.5}) == "amber"
+    assert light({**row, "backlash_limit_arcmin": 1.9}) == "red"
+    assert light({**row, "backlash_limit_arcmin": None}) == "–"
+
+
+@pytest.mark.parametrize(
+    ("numbers", "words"),
+    [
+        ((0.0, 0.0, 0.0), "none"),
+        ((1.0, 1.0, 1.0), "all"),
+        ((0.0, 0.0, 1.1e-4), "at most 110 ppm"),
+        ((1.0, 0.9999, 1.0), "at least 99.99 %"),
+        ((2e-4, 1e-4, 4e-4), "200 ppm (100 to 400 ppm)"),
+        ((0.412, 0.407, 0.417), "41.2 % (40.7 to 41.7 %)"),
+    ],
+)
+def test_shares_are_never_a_bare_zero(numbers, words):
+    """A share is printed with its interval and with no more digits than that justifies."""
+    keys = ("probability_over_limit", "probability_over_limit_low", "probability_over_limit_high")
+    assert share_words(dict(zip(keys, numbers, strict=True))) == words
+
+
+def test_findings_link_to_their_cells(faulty):
+    """Each finding links to its cell in the submission as read, at the user's own address, coloured there."""
+    outcome, path = faulty
+    book = _open(path)
+    sheet = book["Findings"]
+    assert [cell.value for cell in sheet[1]] == [column.label for column in FINDINGS]
+    for row, found in zip(sheet.iter_rows(min_row=2), outcome.findings, strict=True):
+        assert [cell.value or "" for cell in row] == list(found.as_dictionary().values())
+        assert row[3].hyperlink.location == f"'Submission'!{found.cell}"
+        assert book["Submission"][found.cell].fill.fgColor.rgb == "FFF8CBAD"
+
+
+def test_the_submission_stands_at_its_own_addresses(faulty):
+    """The submission as read repeats texts and numbers of the file cell by cell."""
+    original = _open(regenerate.ROOT / "data" / "needs-fixing.xlsx", data_only=True)
+    book = _open(faulty[1])
+    for name, title in (("Variants", "Submission"), ("Materials", "Materials"), ("Tolerances", "Tolerances")):
+        for row in original[name].iter_rows(max_col=20):
+            for cell in row:
+                if isinstance(cell.value, str | float | int) and not isinstance(cell.value, bool):
+                    assert book[title][cell.coordinate].value == cell.value
+
+
+def test_text_of_a_submission_is_inert(table, sound, tmp_path):
+    """Names that look like formulas, links or array formulas stay texts in every sheet."""
+    names = ["=1+1", "{=1}", "http://example.org", "+cmd", "@x", "-2", "mailto:a@b.c", "internal:Results!A1"]
+    rows = [{**sound, "variant": name, "notes": name} for name in names]
+    run(table(rows), tmp_path / "report.xlsx", samples=256)
+    book = _open(tmp_path / "report.xlsx")
+    assert [cell.value for cell in book["Results"]["A"][2:]] == names
+    for title in ("Results", "Submission", "Summary", "Curves", "Sensitivity"):
+        for row in book[title].iter_rows():
+            for cell in row:
+                if cell.value in names:
+                    assert cell.data_type == "s"
+                    assert cell.hyperlink is None
+
+
+def test_charts_have_cached_points_and_alternative_texts(study):
+    """Every chart carries its points, so that viewers without calculation draw it, and a text for its reader."""
+    with zipfile.ZipFile(study[1]) as archive:
+        charts = [name for name in archive.namelist() if name.startswith("xl/charts/chart")]
+        drawings = [name for name in archive.namelist() if name.startswith("xl/drawings/drawing")]
+        assert len(charts) == 4
+        for name in charts:
+            text = archive.read(name).decode()
+            assert text.count("<c:v>") > 10
+        texts = "".join(archive.read(name).decode() for name in drawings)
+    assert len(re.findall(r'descr="[^"]+"', texts)) == 4
+
+
+def test_spread_can_be_picked_for_every_variant(study):
+    """The drop-down of Spread lists all drawn variants, worst first, as stored in Curves."""
+    outcome, path = study
+    book = _open(path)
+    (rule,) = book["Spread"].data_validations.dataValidation
+    assert rule.formula1 == "Curves!$A$3:$A$13"
+    listed = [cell.value for cell in book["Curves"]["A"][2:]]
+    assert listed == [one.row["variant"] for one in selection.drawn_variants(outcome)]
+    assert listed[0] == book["Spread"]["B3"].value == "B3-160 case 5"
+
+
+def test_stored_heights_are_shares(study):
+    """The histogram of each variant holds all units but the two cut tails."""
+    sheet = _open(study[1])["Curves"]
+    headings = [cell.value for cell in sheet[2]]
+    first = headings.index("Bin 1")
+    for row in sheet.iter_rows(min_row=3, values_only=True):
+        assert sum(row[first:]) == pytest.approx(0.999, abs=1.5e-3)
+        curve = row[headings.index("P0.135") : first]
+        assert list(curve) == sorted(curve)
+
+
+def test_only_the_worst_are_drawn_when_there_are_many(table, sound, tmp_path, monkeypatch):
+    """With more variants than can be drawn the report holds the worst and says so."""
+    monkeypatch.setattr(selection, "DRAWN", 3)
+    monkeypatch.setattr("flexlash.report.summary_sheet._LISTED", 2)
+    monkeypatch.setattr("flexlash.report.summary_sheet._CHARTED", 2)
+    rows = [{**sound, "variant": f"v{number}", "torque_Nm": 700.0 + 10 * number} for number in range(5)]
+    run(table(rows), tmp_path / "report.xlsx", samples=256)
+    book = _open(tmp_path / "report.xlsx")
+    assert [cell.value for cell in book["Curves"]["A"][2:]] == ["v4", "v3", "v2"]
+    texts = " ".join(str(cell.value) for row in book["Summary"].iter_rows() for cell in row if cell.value)
+    assert "The 2 worst of 3 are listed" in texts
+    assert book["Results"].max_row == 7
+
+
+def test_a_report_without_scatter_or_limit(table, sound, tmp_path):
+    """Exact dimensions and no limit give a report all the same: no tornado, no verdict, no share."""
+    tolerances = tmp_path / "tolerances.csv"
+    tolerances.write_text(
+        "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n", encoding="utf-8"
+    )
+    outcome = run(table([{**sound, "backlash_limit_arcmin": ""}]), tmp_path / "report.xlsx", tolerances=tolerances)
+    book = _open(tmp_path / "report.xlsx")
+    assert list(sentences(outcome, selection.drawn_variants(outcome)))[1].endswith("stay below 3.687′.")
+    assert book["Sensitivity"]["A4"].value is None
+    assert book["Spread"]["B4"].value.startswith("=IF(")
+
+
+def test_a_report_of_nothing_still_opens(table, sound):
+    """A submission without a computed row can be reported too: its findings and nothing else."""
+    outcome = run(table([{**sound, "torque_Nm": ""}]))
+    assert report_bytes(outcome).startswith(b"PK")
+
+
+def test_the_same_outcome_gives_the_same_bytes(study):
+    """Writing twice gives the same bytes."""
+    assert report_bytes(study[0]) == study[1].read_bytes()
+
+
+@needs_libreoffice
+def test_every_formula_is_stored_with_its_value(study, tmp_path):
+    """Recalculated by a spreadsheet program, every cell of the report keeps its stored value."""
+    stored, recalculated = (_open(path, data_only=True) for path in (study[1], convert(study[1], "xlsx", tmp_path)))
+    formulas = _open(study[1])
+    count = 0
+    for name in SHEETS:
+        for row in formulas[name].iter_rows():
+            for cell in row:
+                if cell.data_type == "f":
+                    before, after = (book[name][cell.coordinate].value for book in (stored, recalculated))
+                    assert after == (pytest.approx(before, rel=1e-12) if isinstance(before, float) else before)
+                    count += 1
+    assert count > 150
+
+
+@needs_libreoffice
+def test_another_variant_can_be_picked(study, tmp_path):
+    """After picking another variant every figure of Spread is that variant's."""
+    outcome, path = study
+    book = _open(path)
+    book["Spread"]["B3"] = "B3-160 hat"
+    picked = tmp_path / "picked.xlsx"
+    book.save(picked)
+    book.close()
+    sheet = _open(convert(picked, "xlsx", tmp_path), data_only=True)["Spread"]
+    row = next(row for row in outcome.results.iter_rows(named=True) if row["variant"] == "B3-160 hat")
+    keys = ("backlash_limit_arcmin", "mean_arcmin", "sd_arcmin", "p2_5_arcmin", "p50_arcmin")
+    for place, key in enumerate(keys, start=4):
+        assert sheet.cell(place, 2).value == pytest.approx(row[key], rel=1e-12)
+
+
+@needs_libreoffice
+@pytest.mark.parametrize("name", ["study", "faulty"])
+def test_every_sheet_prints_on_whole_pages(name, request, tmp_path):
+    """The Summary prints on one page and no sheet spills columns onto further pages."""
+    document = convert(request.getfixturevalue(name)[1], "pdf", tmp_path)
+    text = subprocess.run(["pdftotext", "-layout", document, "-"], check=True, capture_output=True, text=True).stdout
+    pages = [page.strip().splitlines()[-1].split()[0] for page in text.split("\f") if page.strip()]
+    assert pages.count("Summary") == 1
+    assert pages.count("Results") == 4
+    assert pages.count("Spread") == 1
+    assert pages.count("Findings") == 1
+    assert len(pages) <= 20
