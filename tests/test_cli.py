@@ -155,6 +155,15 @@ def test_the_most_severe_exit_code_wins(table, sound, tmp_path, main_in):
     assert main_in("check", none, tmp_path / "missing.csv", some) == 5
 
 
+def test_reports_among_submissions_are_skipped(table, sound, tmp_path, main_in, capsys):
+    """A report in a submitted folder is named and skipped; alone, there is nothing to compute."""
+    path = table([sound])
+    assert main_in("run", path, "-o", tmp_path / "report.xlsx", "--samples", 256, "--quiet") == 0
+    assert main_in("check", path, tmp_path / "report.xlsx") == 0
+    assert "report.xlsx is a report of flexlash" in capsys.readouterr().out
+    assert main_in("check", tmp_path / "report.xlsx") == 4
+
+
 def test_the_output_may_not_be_the_submission(table, sound, main_in, capsys):
     """A submission is never overwritten, however its path is spelt."""
     path = table([sound])

@@ -107,7 +107,7 @@ def test_messages_are_short(code):
 def test_words_are_an_engineers(code):
     """No programmer's word stands in title, message, mend or explanation."""
     rule = CATALOGUE[code]
-    assert JARGON.findall(" ".join((rule.title, rule.message, rule.fix, rule.explanation))) == []
+    assert JARGON.findall(f"{rule.title} {rule.message} {rule.fix} {rule.explanation}") == []
 
 
 @pytest.mark.parametrize(
@@ -158,7 +158,8 @@ def test_fields_of_a_finding():
         "variant": "C-12",
         "column": "wall_thickness_mm",
         "value": "1,6 mm",
-        "message": 'Variants!G7 Wall thickness Δ = "1,6 mm": a number in mm greater than 0 is required; did you mean 1.6?',
+        "message": 'Variants!G7 Wall thickness Δ = "1,6 mm": a number in mm greater than 0 is required; '
+        "did you mean 1.6?",
         "fix": "Type the number alone, without unit, with the decimal sign that your Excel uses.",
         "suggestion": "1.6",
     }

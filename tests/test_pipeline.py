@@ -195,7 +195,7 @@ def test_a_report_is_skipped_by_name(workbook, sound, tmp_path):
     outcome = run(tmp_path / "report.xlsx")
     assert outcome.skipped
     assert [one.code for one in outcome.findings] == ["I508"]
-    assert outcome.exit_code == 0
+    assert outcome.results.is_empty()
 
 
 def test_a_refused_file_gives_an_outcome_that_says_why(tmp_path):
@@ -245,6 +245,16 @@ def test_materials_given_beside_a_table_replace_the_built_in(table, sound, tmp_p
     assert [one.code for one in outcome.findings] == ["E307"]
     row = outcome.results.row(0, named=True)
     assert row["backlash_rad"] == pytest.approx(1.0725044299e-3 * 8.1153846154e10 / 8e10, rel=1e-9)
+
+
+@pytest.mark.parametrize("content", [b"PK\x03\x04 a workbook", b"PAR1", b"\xff\xfe"])
+def test_a_faulty_table_beside_a_submission_is_refused_by_its_own_name(table, sound, tmp_path, content):
+    """A --tolerances file that is no CSV table is refused, and the message names that file."""
+    path = tmp_path / "tolerances.csv"
+    path.write_bytes(content)
+    outcome = check(table([sound]), tolerances=path)
+    assert outcome.exit_code == 4
+    assert outcome.findings[0].message.startswith("tolerances.csv ")
 
 
 def test_options_are_named():

@@ -127,7 +127,7 @@ def check(submissions: tuple[Path, ...], *, as_json: bool, **options: Any) -> No
         with _one_submission(path, codes, as_json=as_json):
             outcome = check_one(path, **options)
             _tell(outcome, path, as_json=as_json)
-            codes.append(outcome.exit_code)
+            codes += [] if outcome.skipped else [outcome.exit_code]
     sys.exit(_worst(codes))
 
 
@@ -158,7 +158,7 @@ def run(submissions: tuple[Path, ...], output: Path | None, *, as_json: bool, qu
             outcome = run_one(path, target, progress=progress, **options)
             if not quiet or outcome.exit_code:
                 _tell(outcome, path, as_json=as_json, ran=True)
-            codes.append(outcome.exit_code)
+            codes += [] if outcome.skipped else [outcome.exit_code]
     sys.exit(_worst(codes))
 
 
@@ -168,7 +168,8 @@ def _named(path: object) -> str:
 
 
 def _worst(codes: list[int]) -> int:
-    return min(codes, key=_SEVERITY.index)
+    """Return the most severe exit code; without any submission there was nothing to compute."""
+    return min(codes or [NOTHING], key=_SEVERITY.index)
 
 
 @contextmanager

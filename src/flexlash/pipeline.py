@@ -99,8 +99,6 @@ class Outcome:
     @property
     def exit_code(self) -> int:
         """0 every row fine, 3 some rows not computed, 4 nothing computable."""
-        if self.skipped:
-            return 0
         if not self.computed:
             return 4
         return 3 if self.counts["errors"] else 0
@@ -163,8 +161,19 @@ def _with_tables(submission: Submission, options: Options) -> Submission:
     given: dict[str, RawSheet] = {}
     for name, path in (("Tolerances", options.tolerances), ("Materials", options.materials)):
         if path is not None:
-            given[name], _ = read_table(admit(read_bytes(path)).data, name)
+            given[name] = _table_beside(path, name)
     return replace(submission, sheets=submission.sheets | given)
+
+
+def _table_beside(path: Path, name: str) -> RawSheet:
+    """Return a CSV table given beside a submission; raise Refusal, by its own name, when it is none."""
+    try:
+        admitted = admit(read_bytes(path))
+        if admitted.kind != "csv":
+            raise Refusal("E101", found="a table of this kind must be a CSV file")
+        return read_table(admitted.data, name)[0]
+    except Refusal as refusal:
+        raise Refusal(refusal.code, **{"file": path.name, **refusal.facts}) from refusal
 
 
 def _validated(submission: Submission, options: Options) -> Outcome:
