@@ -168,10 +168,7 @@ def _with_tables(submission: Submission, options: Options) -> Submission:
 def _table_beside(path: Path, name: str) -> RawSheet:
     """Return a CSV table given beside a submission; raise Refusal, by its own name, when it is none."""
     try:
-        admitted = admit(read_bytes(path))
-        if admitted.kind != "csv":
-            raise Refusal("E101", found="a table of this kind must be a CSV file")
-        return read_table(admitted.data, name)[0]
+        return read_table(admit(read_bytes(path), only="csv").data, name)[0]
     except Refusal as refusal:
         raise Refusal(refusal.code, **{"file": path.name, **refusal.facts}) from refusal
 

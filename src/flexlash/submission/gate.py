@@ -67,8 +67,16 @@ def read_bytes(path: Path) -> bytes:
     return data if len(data) <= MAXIMUM_BYTES else path.read_bytes()
 
 
-def admit(data: bytes) -> Admitted:
-    """Return the submission's kind and what its XML tells; raise Refusal for anything unfit."""
+def admit(data: bytes, only: Kind | None = None) -> Admitted:
+    """Return the submission's kind and what its XML tells; raise Refusal for anything unfit, or of another kind."""
+    admitted = _judge(data)
+    if only not in {None, admitted.kind}:
+        raise Refusal("E101", found=f"a {only} file is required here")
+    return admitted
+
+
+def _judge(data: bytes) -> Admitted:
+    """Return what the content is, whatever its name says."""
     if data.startswith(b"PK\x03\x04"):
         try:
             return Admitted(kind="workbook", data=data, unstored=_inspect(data))

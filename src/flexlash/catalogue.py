@@ -1,0 +1,519 @@
+"""The catalogue of findings: the one place where a code gets its words.
+
+Terminal, report, `flexlash explain` and the notes of a checked workbook print from here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+__all__ = ["CATALOGUE", "Level", "Rule"]
+
+Level = Literal["error", "warning", "info"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rule:
+    """A code of the catalogue: its title, message and mend, and what it means at length.
+
+    `message` and `fix` are format strings; `{place}` and `{name}` are the address and the column's name.
+    """
+
+    code: str
+    title: str
+    message: str
+    fix: str
+    explanation: str
+
+    @property
+    def level(self) -> Level:
+        """The level that the code's letter stands for."""
+        levels: dict[str, Level] = {"E": "error", "W": "warning", "I": "info"}
+        return levels[self.code[0]]
+
+
+def _rules(*entries: tuple[str, str, str, str, str]) -> dict[str, Rule]:
+    return {
+        code: Rule(code=code, title=title, message=message, fix=fix, explanation=explanation)
+        for code, title, message, fix, explanation in entries
+    }
+
+
+CATALOGUE = _rules(
+    (
+        "E101",
+        "not a submission",
+        "{file} cannot be read as a submission: {found}.",
+        "Submit a filled template (.xlsx), or a table as .csv or .parquet.",
+        "flexlash judges a file by its content, not its name. It reads Excel workbooks, CSV text and Parquet.",
+    ),
+    (
+        "E102",
+        "damaged file",
+        "{file} is damaged: a part of it is missing, altered or out of order.",
+        "Open it in Excel, let Excel repair it, save it as .xlsx and submit that.",
+        "A half-finished copy, a broken transfer or a tool that writes faulty workbooks can cause this. "
+        "A damaged file is never read in part, since a number in it might be wrong.",
+    ),
+    (
+        "E103",
+        "password-protected file",
+        "{file} is protected by a password and cannot be read.",
+        "In Excel: File, Info, Protect Workbook, remove the password; then save and submit again.",
+        "flexlash never asks for passwords. Sheet protection without encryption does no harm.",
+    ),
+    (
+        "E104",
+        "other workbook format",
+        "{file} is {found}; an .xlsx workbook is required.",
+        "Open it in Excel or LibreOffice and save it as Excel Workbook (.xlsx).",
+        "Old Excel files (.xls), binary workbooks (.xlsb) and OpenDocument files (.ods) are refused by name.",
+    ),
+    (
+        "E105",
+        "unsafe content",
+        "{file} holds a document type declaration, which no Excel workbook needs.",
+        "Copy the cells into a fresh template and submit that.",
+        "Such declarations are used to attack programs that read the file. Excel never writes them.",
+    ),
+    (
+        "E106",
+        "Strict Open XML",
+        "{file} was saved as Strict Open XML Spreadsheet.",
+        "In Excel: Save As, type Excel Workbook (.xlsx), not Strict Open XML.",
+        "The strict dialect looks like .xlsx but names everything differently.",
+    ),
+    (
+        "E107",
+        "text encoding",
+        "{file} is a text table that is not encoded as UTF-8.",
+        "In Excel: Save As, type CSV UTF-8.",
+        "In other encodings µ, Δ and names with accents would be misread.",
+    ),
+    (
+        "E108",
+        "sheet missing",
+        "{file} has no sheet Variants; it has {found}.",
+        "Start from the template (flexlash template) or rename the sheet to Variants.",
+        "The Variants sheet holds one row per flexspline variant. Materials, Tolerances and Settings may be absent.",
+    ),
+    (
+        "E109",
+        "header row not found",
+        "{place}: rows 1 to 15 hold no header row of the template.",
+        "Copy the header row of the template above the data.",
+        "Headers are recognised by the template's label or by the column's key, in any order.",
+    ),
+    (
+        "E110",
+        "too large",
+        "{file} exceeds a limit: {what} may be at most {limit}.",
+        "Split the submission, or copy the cells into a fresh template.",
+        "Limits keep one damaged or hostile file from stopping the work of others.",
+    ),
+    (
+        "E111",
+        "column missing",
+        "{place}: the header row lacks the required column {name}.",
+        "Add the column with this header: {label}.",
+        "Required columns are tinted in the template. Optional columns may be left out.",
+    ),
+    (
+        "E112",
+        "misspelt header",
+        "{place}: the header {value} is unknown but resembles {name}.",
+        "Write {label}, or a name that does not resemble a column of the template.",
+        "A misspelt optional column would otherwise be left out of the calculation without a word. "
+        "Rows that hold a value under it are not computed.",
+    ),
+    (
+        "E113",
+        "unknown unit",
+        "{place}: the unit in the header {value} is unknown; {name} is measured in {unit}.",
+        "Write {label} and enter the values in {unit}.",
+        "Units that measure the same quantity are converted; flexlash does not guess at others. "
+        "Rows that hold a value under it are not computed.",
+    ),
+    (
+        "E114",
+        "column twice",
+        "{place}: {name} already stands in column {other}.",
+        "Delete one of the two columns.",
+        "With two columns of one meaning flexlash cannot know which holds.",
+    ),
+    (
+        "E115",
+        "no variants",
+        "{place}: there is no row with data below the header row.",
+        "Enter one row per variant below the header row.",
+        "A row that holds only white space or the template's own status formula counts as empty.",
+    ),
+    (
+        "E116",
+        "newer template",
+        "{file} was made from template version {found}; this program knows up to version {known}.",
+        "Update flexlash, or copy the rows into a template of this version.",
+        "A newer template may hold columns that this program would not take into account.",
+    ),
+    (
+        "E201",
+        "required cell empty",
+        "{place} {name} is empty: {requirement} is required.",
+        "Fill the cell.",
+        "Required columns are tinted in the template.",
+    ),
+    (
+        "E202",
+        "text instead of a number",
+        '{place} {name} = "{value}": {requirement} is required.',
+        "Type the number alone, without unit, with the decimal sign that your Excel uses.",
+        "A cell can look like a number and be text: a comma where Excel expects a point, a unit behind the "
+        "number, a stray space, a leading apostrophe. flexlash never guesses at a dimension.",
+    ),
+    (
+        "E203",
+        "date instead of an entry",
+        "{place} {name} holds the date {value}: {requirement} is required.",
+        "Format the cell as Number (or Text for a name), then type the entry again.",
+        "Excel turns entries such as 1/4 or 1-2 into dates unless the cell is formatted before.",
+    ),
+    (
+        "E204",
+        "TRUE or FALSE instead of an entry",
+        "{place} {name} = {value}: {requirement} is required.",
+        "Type the entry itself.",
+        "A truth value is not a number and not a name.",
+    ),
+    (
+        "E205",
+        "error in a cell",
+        "{place} {name} shows {value}: {requirement} is required.",
+        "Mend the formula or type the value.",
+        "The cell's formula failed, so there is no value to compute with.",
+    ),
+    (
+        "E206",
+        "formula without a result",
+        "{place} {name} holds a formula without a stored result.",
+        "Open the file in Excel, let it calculate, save it; or type the value.",
+        "Programs that write workbooks often store a formula without its result. flexlash reads results.",
+    ),
+    (
+        "E207",
+        "number too small",
+        "{place} {name} = {value}: {requirement} is required.",
+        "Check the value and its unit.",
+        "Dimensions, torques and moduli are greater than 0; fillets may be 0.",
+    ),
+    (
+        "E208",
+        "number too large",
+        "{place} {name} = {value}: {requirement} is required.",
+        "Check the value and its unit.",
+        "The value lies above the greatest one that has a meaning here.",
+    ),
+    (
+        "E209",
+        "not in the list",
+        '{place} {name} = "{value}": {requirement} is required.',
+        "Pick an entry of the cell's drop-down list.",
+        "Letter case and spaces do not matter; the word must be one of the list.",
+    ),
+    (
+        "E210",
+        "unknown grade",
+        '{place} {name} = "{value}": IT5 to IT12, js, h or H with 5 to 12, or 2768-f, -m, -c, -v is required.',
+        "Enter such a grade, or lower and upper deviation instead.",
+        "h lies below the nominal value, H above, js and IT on both sides. Letter case matters: h is not H.",
+    ),
+    (
+        "E211",
+        "unit does not fit",
+        '{place} {name} = "{value}": {dimension} takes {unit} or % of the entered value.',
+        "Enter a unit that measures the dimension, or leave the cell blank for {unit}.",
+        "Lengths take any length unit, torque and moduli their own, ratios and calibrations - .",
+    ),
+    (
+        "E212",
+        "value not usable",
+        "{place} {name} = {value}: {requirement} is required.",
+        "Type a finite value.",
+        "Infinity, not-a-number and texts over 1,000 characters cannot be used.",
+    ),
+    (
+        "E301",
+        "no radius",
+        "{place}: neither {name} nor Bore diameter is given; one of them is required.",
+        "Enter the mean radius, or the bore diameter from which it follows.",
+        "Mean radius = bore/2 + wall/2. Give the one that the drawing tolerances.",
+    ),
+    (
+        "E302",
+        "two radii",
+        "{place}: {name} = {value} and Bore diameter = {other} are both given; one of them is required.",
+        "Clear one of the two cells.",
+        "Mean radius = bore/2 + wall/2, so a second entry could only repeat or contradict the first.",
+    ),
+    (
+        "E303",
+        "hub outside the disk",
+        "{place} {name} = {value} mm: less than the disk's outer radius {other:g} mm is required.",
+        "Check for a diameter entered as a radius.",
+        "The disk reaches from its inner to its outer radius. A blank outer radius is the mean radius.",
+    ),
+    (
+        "E304",
+        "half a rim",
+        "{place}: Tooth rim length and thickness belong together; {name} is empty.",
+        "Fill both cells, or clear both.",
+        "The tooth rim replaces a part of the wall; its length alone or thickness alone says nothing.",
+    ),
+    (
+        "E305",
+        "rim longer than the cylinder",
+        "{place} {name} = {value} mm: less than the cylinder length {other:g} mm is required.",
+        "Check both lengths; the cylinder length includes the rim.",
+        "The cylinder length runs from the disk's inner face to the open end.",
+    ),
+    (
+        "E306",
+        "rim thinner than the wall",
+        "{place} {name} = {value} mm: at least the wall thickness {other:g} mm is required.",
+        "Enter the total thickness of the rim, wall included.",
+        "Rim and wall have the same bore; the rim is the thicker part.",
+    ),
+    (
+        "E307",
+        "unknown material",
+        '{place} {name} = "{value}" is not a row of Materials.',
+        "Pick a material of the drop-down list, or add it to the Materials sheet.",
+        "The name must be that of a row of Materials; letter case and spaces do not matter.",
+    ),
+    (
+        "E308",
+        "variant twice",
+        '{place} {name} = "{value}" also stands in {other}.',
+        "Give each variant a name of its own.",
+        "The report names rows by their variant. All rows of the same name are marked.",
+    ),
+    (
+        "E309",
+        "unknown tolerance class",
+        '{place} {name} = "{value}" is not a class of Tolerances.',
+        "Pick a class of the drop-down list, or add its rows to the Tolerances sheet.",
+        "Blank means standard. A class consists of the Tolerances rows that carry its name.",
+    ),
+    (
+        "E310",
+        "does not belong to this type",
+        "{place} {name} = {value}: a {other} has no such dimension.",
+        "Clear the cell, or change the flexspline type.",
+        "A cylinder has no disk. Fillets and the disk taper are those of a cup.",
+    ),
+    (
+        "E311",
+        "disk radius missing",
+        "{place}: {name} is empty; a {other} requires it.",
+        "Enter the radius in mm.",
+        "A cup is clamped at its hub (inner radius), a hat at its bolt circle (outer radius).",
+    ),
+    (
+        "E312",
+        "hub fillet too large",
+        "{place} {name} = {value} mm: at most the width of the disk, {other:g} mm, is required.",
+        "Check the fillet radius and the disk radii.",
+        "The fillet starts at the hub and must end before the disk does.",
+    ),
+    (
+        "E313",
+        "junction fillet too large",
+        "{place} {name} = {value} mm: with the tooth rim it exceeds the cylinder length {other:g} mm.",
+        "Check fillet, rim length and cylinder length.",
+        "Junction fillet and tooth rim lie on the cylinder one after the other.",
+    ),
+    (
+        "E314",
+        "impossible at the limits",
+        "{place} {name} = {value}: its tolerance in class {other} reaches {detail}.",
+        "Narrow the tolerance or check the value and the deviation unit.",
+        "At the tolerance limits every thickness must stay above 0 and the hub inside the disk.",
+    ),
+    (
+        "E315",
+        "grade not tabulated",
+        "{place} {name} = {value}: grade {detail} of class {other} has no entry for this size.",
+        "Give lower and upper deviation instead of the grade.",
+        "ISO 286 is tabulated to 500 mm, ISO 2768 from 0.5 mm; class v starts at 3 mm, f ends at 2000 mm. "
+        "A radius takes the grade of its diameter.",
+    ),
+    (
+        "E316",
+        "grade and deviations",
+        "{place}: a grade and deviations are both given; one of them is required.",
+        "Clear the grade, or both deviations.",
+        "A grade stands for two deviations.",
+    ),
+    (
+        "E317",
+        "deviation missing",
+        "{place} {name} is empty: lower and upper deviation, or a grade, are required.",
+        "Fill both deviations (0 is a value), or enter a grade.",
+        "Each dimension of a class needs a lower and an upper limit. Delete the row of an exact dimension.",
+    ),
+    (
+        "E318",
+        "deviations reversed",
+        "{place} {name} = {value} is greater than the upper deviation {other:g}.",
+        "Exchange the two; deviations are signed.",
+        "For −0.02/+0.01 the lower deviation is −0.02 and the upper 0.01.",
+    ),
+    (
+        "E319",
+        "tolerance twice",
+        "{place}: {name} {value} of this class also stands in {other}.",
+        "Keep one row per class and dimension.",
+        "With two rows flexlash cannot know which holds.",
+    ),
+    (
+        "E320",
+        "no grade for this dimension",
+        "{place} {name} = {value}: grades do not apply to {other}.",
+        "Enter lower and upper deviation instead.",
+        "Grades apply to lengths, diameters and radii, not to fillets, torque, moduli or factors.",
+    ),
+    (
+        "E321",
+        "material twice",
+        '{place} {name} = "{value}" also stands in {other}.',
+        "Give each material a name of its own.",
+        "Variants refer to materials by name.",
+    ),
+    (
+        "E322",
+        "elastic constants missing",
+        "{place}: {name} is empty; E and ν, or G, are required.",
+        "Enter Young's modulus and Poisson's ratio, or the shear modulus.",
+        "The wind-up depends on the shear modulus, which is given or follows from E and ν.",
+    ),
+    (
+        "E323",
+        "setting twice",
+        "{place} {name} = {value} also stands in {other}.",
+        "Keep one row per setting.",
+        "With two rows flexlash cannot know which holds.",
+    ),
+    (
+        "W401",
+        "disk does not meet the wall",
+        "{place} {name} = {value} mm differs from the mean radius {other:g} mm.",
+        "Leave the cell blank, unless the model of a source is to be repeated.",
+        "A cup's disk ends where the wall begins. The value is used as entered.",
+    ),
+    (
+        "W402",
+        "beyond yield",
+        "{place}: the von Mises stress {value} MPa exceeds the yield strength {other:g} MPa.",
+        "Lower the torque, thicken the part, or choose a stronger material.",
+        "Linear elasticity no longer holds: the real wind-up is greater and part of it stays.",
+    ),
+    (
+        "W403",
+        "thick wall",
+        "{place} {name}: {value} times the mean radius; the thin-wall formula is meant for up to 0.2.",
+        "Check for a diameter entered as a radius or a thickness in another unit.",
+        "Above 0.2 the thin-wall torsion constant is more than one per cent low.",
+    ),
+    (
+        "W404",
+        "elastic constants disagree",
+        "{place} {name} = {value} GPa, but E and ν give {other:g} GPa; the entered value is used.",
+        "Clear the shear modulus or correct E and ν.",
+        "For an isotropic material G = E/(2(1 + ν)). A difference over 0.05 % is reported.",
+    ),
+    (
+        "W405",
+        "normal tail cut",
+        "{place} {name} = {value}: the normal tail of class {other} is cut where the shape becomes impossible.",
+        "Choose a truncated normal, or narrow the tolerance.",
+        "A normal distribution has no end. Where it would reach a thickness of 0, or a hub outside the disk, "
+        "within 8.3 standard deviations, it is cut there.",
+    ),
+    (
+        "W406",
+        "not used yet",
+        "{place}: the sheet Other sources is not used yet.",
+        "Add other backlash sources by hand until a later version.",
+        "The report covers the backlash from torsional wind-up alone.",
+    ),
+    (
+        "W407",
+        "calibration with refinements",
+        "{place}: a calibration other than 1 is used together with fillets, taper or rim.",
+        "Set the calibrations to 1, or leave the refinement columns blank.",
+        "Factors fitted to the plain two-term formula already contain fillets and rim; together they count twice.",
+    ),
+    (
+        "W408",
+        "lone cell",
+        '{place} holds "{value}" in an otherwise empty row, which was not read as a variant.',
+        "Clear the cell, or complete the row.",
+        "A stray character far below the table should not stop the work; it is reported in case it was meant.",
+    ),
+    (
+        "I501",
+        "unit converted",
+        "{place}: {name} is given in {value} and was converted to {unit}.",
+        "Nothing to do.",
+        "The unit in the header's brackets is read; each value of the column was converted.",
+    ),
+    (
+        "I502",
+        "extra column",
+        "{place}: the column {value} is not part of the template; it is carried to the report.",
+        "Nothing to do.",
+        "Extra columns do not take part in the calculation.",
+    ),
+    (
+        "I503",
+        "unit assumed",
+        "{place}: the header {value} names no unit; {unit} was assumed.",
+        "Write the unit in brackets: {label}.",
+        "Without a unit the template's own is taken.",
+    ),
+    (
+        "I504",
+        "spelling repaired",
+        '{place} {name} = "{value}" was read as "{suggestion}".',
+        "Nothing to do.",
+        "Letter case, outer spaces and non-breaking spaces in names do not matter.",
+    ),
+    (
+        "I505",
+        "built-in table used",
+        "{file} brings no {value}; the built-in {other} is used.",
+        "Nothing to do, or add the sheet from the template.",
+        "Built-in are the materials of the template and the tolerance class standard.",
+    ),
+    (
+        "I506",
+        "rather thick wall",
+        "{place} {name}: {value} times the mean radius; flexsplines are usually thinner.",
+        "Check the values and their units.",
+        "Up to 0.2 the thin-wall formula is within one per cent.",
+    ),
+    (
+        "I507",
+        "delimiter recognised",
+        "{file} separates its columns by {value}.",
+        "Nothing to do.",
+        "Comma, semicolon and tab are recognised. Numbers need a decimal point in any case.",
+    ),
+    (
+        "I508",
+        "skipped",
+        "{file} is a report of flexlash, not a submission; it was skipped.",
+        "Submit the filled template.",
+        "Reports carry a mark by which they are recognised when a whole folder is submitted.",
+    ),
+)
