@@ -10,7 +10,8 @@ import pytest
 import regenerate
 from flexlash.columns import ENTRY_SHEETS, VARIANTS
 from flexlash.pipeline import check
-from flexlash.submission.template import FIRST_ROW, HEADER_ROW, Filling, study, template_bytes
+from flexlash.submission.entry_rules import FIRST_ROW, HEADER_ROW
+from flexlash.submission.template import Filling, study, template_bytes
 from libreoffice import convert, needs_libreoffice
 
 STATUS_ROWS = [
@@ -203,3 +204,15 @@ def test_the_template_prints_on_whole_pages(tmp_path):
     pages = subprocess.run(["pdfinfo", document], check=True, capture_output=True, text=True).stdout
     count = int(next(line for line in pages.splitlines() if line.startswith("Pages")).split()[1])
     assert 5 <= count <= 9
+
+
+@needs_libreoffice
+def test_the_class_list_follows_tolerances(tmp_path):
+    """The drop-down of classes holds each name of Tolerances once, stored and recalculated."""
+    path = tmp_path / "study.xlsx"
+    path.write_bytes(template_bytes(study()))
+    for one in (path, convert(path, "xlsx", tmp_path)):
+        sheet = openpyxl.load_workbook(one, data_only=True)["Lists"]
+        (place,) = [cell.column for cell in sheet[1] if cell.value == "fl_tolerance_classes"]
+        names = [sheet.cell(row, place).value for row in range(2, 7)]
+        assert [name or "" for name in names] == ["standard", "turning", "grinding", "", ""]

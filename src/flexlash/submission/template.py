@@ -13,6 +13,15 @@ from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
 from flexlash import tables
 from flexlash.columns import ENTRY_SHEETS, MATERIALS, SETTINGS, SETTINGS_SHEET, TOLERANCES, VARIANTS, Column
+from flexlash.submission.entry_rules import (
+    FIRST_ROW,
+    HEADER_ROW,
+    PREPARED_ROWS,
+    SIDE_ROWS,
+    cell_rule,
+    header_note,
+    write_lists,
+)
 from flexlash.submission.headers import STATUS_HEADER
 from flexlash.submission.read import ErrorCell, Unstored
 from flexlash.submission.status import COMPLETE, status_formula, status_text
@@ -20,20 +29,10 @@ from flexlash.submission.validate import TEMPLATE_VERSION
 
 __all__ = ["Filling", "study", "template_bytes"]
 
-HEADER_ROW = 3
-FIRST_ROW = HEADER_ROW + 1
-PREPARED_ROWS = 2000
-_SIDE_ROWS = 500
 _PRINTED_ROWS = 100
-_LIST_ROWS = 20
 _UNSTORED_FORMULA = "=0.8*2"
 _DATE = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=None)
 
-_GRADES = (
-    *(f"{letter}{number}" for letter in ("IT", "js", "h", "H") for number in range(5, 13)),
-    *(f"2768-{letter}" for letter in "fmcv"),
-)
-_DEVIATION_UNITS = ("mm", "µm", "in", "%", "N·m", "GPa", "MPa", "-")
 _WIDTHS = {
     "variant": 24,
     "material": 24,
@@ -128,8 +127,9 @@ class _Template:
         materials = self.filling.materials or _typed("materials", MATERIALS)
         standard = [{"tolerance_class": "standard", **row} for row in _typed("standard_class", TOLERANCES)]
         tolerances = [*standard, *self.filling.tolerances]
-        self._lists()
-        self._variants([row["material"] for row in materials], [row["tolerance_class"] for row in tolerances])
+        classes = [row["tolerance_class"] for row in tolerances]
+        write_lists(self.workbook, self.sheets["Lists"], classes)
+        self._variants([row["material"] for row in materials], classes)
         self._side("Materials", MATERIALS, materials, "One row per material. Add rows for your own.")
         self._side(
             "Tolerances",
@@ -159,7 +159,7 @@ class _Template:
             width = _WIDTHS.get(column.key, 13)
             sheet.set_column(place, place, width, self._format(column), self._outline(column))
             sheet.write_string(HEADER_ROW, place, column.label, self.formats[style])
-            sheet.write_comment(HEADER_ROW, place, _note(column), {"x_scale": 2, "y_scale": 1.2})
+            sheet.write_comment(HEADER_ROW, place, header_note(column), {"x_scale": 2, "y_scale": 1.2})
         sheet.data_validation(
             HEADER_ROW,
             0,
@@ -268,7 +268,7 @@ class _Template:
     def _entry_rules(self, sheet: Any, columns: Sequence[Column], rows: int) -> None:
         """Give every cell of every column its hint and its rule."""
         for place, column in enumerate(columns):
-            rule = _validation(column, place)
+            rule = cell_rule(column, place)
             sheet.data_validation(FIRST_ROW, place, FIRST_ROW + rows - 1, place, rule)
 
     def _side(self, name: str, columns: Sequence[Column], rows: Sequence[Mapping[str, Any]], hint: str) -> None:
@@ -276,7 +276,7 @@ class _Template:
         sheet = self._heading(name, name, hint, columns)
         for place, row in enumerate(rows):
             self._fill(sheet, FIRST_ROW + place, columns, row)
-        self._entry_rules(sheet, columns, _SIDE_ROWS)
+        self._entry_rules(sheet, columns, SIDE_ROWS)
 
     def _settings(self) -> None:
         """Write Settings: fixed names, free values, what they mean beside them."""
@@ -293,7 +293,7 @@ class _Template:
             else:
                 sheet.write_number(row, 1, value, style)
             sheet.write_string(row, 2, f"{column.help} Allowed: {column.requirement}.", self.formats["meaning"])
-            rule = _validation(column, 1)
+            rule = cell_rule(column, 1)
             if column.choices:
                 rule |= {"validate": "list", "value": "=fl_methods"}
             sheet.data_validation(row, 1, row, 1, rule)
@@ -338,51 +338,6 @@ class _Template:
         sheet.set_footer("&L&A&C&P / &N&Rflexlash template")
         sheet.protect("", {"format_columns": True})
 
-    def _lists(self) -> None:
-        """Write the hidden lists behind the drop-downs and name them."""
-        sheet = self.sheets["Lists"]
-        choices = {column.key: column.choices for columns in ENTRY_SHEETS.values() for column in columns}
-        lists = {
-            "fl_flexspline_types": choices["flexspline_type"],
-            "fl_distributions": choices["distribution"],
-            "fl_dimensions": choices["dimension"],
-            "fl_grades": _GRADES,
-            "fl_deviation_units": _DEVIATION_UNITS,
-            "fl_methods": next(column.choices for column in SETTINGS if column.key == "method"),
-            "fl_settings": choices["setting"],
-        }
-        for place, (name, entries) in enumerate(lists.items()):
-            letter = xl_col_to_name(place)
-            sheet.write_string(0, place, name)
-            sheet.write_column(1, place, entries)
-            self.workbook.define_name(name, f"=Lists!${letter}$2:${letter}${len(entries) + 1}")
-        first, last = FIRST_ROW + 1, FIRST_ROW + _SIDE_ROWS
-        for name, title in (("Materials", "fl_materials"), ("Tolerances", "fl_tolerance_rows")):
-            block = f"{name}!$A${first}:$A${last}"
-            end = f"INDEX({block},MAX(1,COUNTA({block})))"
-            self.workbook.define_name(title, f"={name}!$A${first}:{end}")
-        self._class_list(sheet, len(lists))
-        sheet.hide()
-        sheet.protect()
-
-    def _class_list(self, sheet: Any, place: int) -> None:
-        """Write the formulas that collect the names of the tolerance classes, each once."""
-        letter = xl_col_to_name(place)
-        rows = f"Tolerances!$A${FIRST_ROW + 1}:$A${FIRST_ROW + _SIDE_ROWS}"
-        present = ["standard", *(row["tolerance_class"] for row in self.filling.tolerances)]
-        names = list(dict.fromkeys(present))
-        names = [names[0], *names[:0:-1]]
-        sheet.write_string(0, place, "fl_tolerance_classes")
-        sheet.write_formula(1, place, f'={rows.split(":", maxsplit=1)[0]}&""', None, names[0])
-        for row in range(2, _LIST_ROWS + 2):
-            above = f"${letter}$2:${letter}${row}"
-            formula = f'=IFERROR(LOOKUP(2,1/((COUNTIF({above},{rows})=0)*({rows}<>"")),{rows}),"")'
-            value = names[row - 1] if row - 1 < len(names) else ""
-            sheet.write_formula(row, place, formula, None, value)
-        block = f"Lists!${letter}$2:${letter}${_LIST_ROWS + 2}"
-        end = f'INDEX({block},MAX(1,COUNTIF({block},"?*")))'
-        self.workbook.define_name("fl_tolerance_classes", f"=Lists!${letter}$2:{end}")
-
 
 def _stored_status(
     row: Mapping[str, Any], rows: Sequence[Mapping[str, Any]], materials: Sequence[str], classes: Sequence[str]
@@ -393,48 +348,3 @@ def _stored_status(
         return error
     as_excel = {key: 1.0 if isinstance(value, datetime.date | Unstored) else value for key, value in row.items()}
     return status_text(as_excel, rows, materials, classes)
-
-
-def _note(column: Column) -> str:
-    """Return the note on a header."""
-    default = "" if column.default is None else f"\nBlank: {column.default}."
-    return f"{column.help}\nHolds {column.requirement}.{default}"
-
-
-_LISTS = {
-    ("Variants", "flexspline_type"): "fl_flexspline_types",
-    ("Variants", "material"): "fl_materials",
-    ("Variants", "tolerance_class"): "fl_tolerance_classes",
-    ("Tolerances", "dimension"): "fl_dimensions",
-    ("Tolerances", "grade"): "fl_grades",
-    ("Tolerances", "deviation_unit"): "fl_deviation_units",
-    ("Tolerances", "distribution"): "fl_distributions",
-    ("Settings", "setting"): "fl_settings",
-}
-
-
-def _validation(column: Column, place: int) -> dict[str, Any]:
-    """Return the data validation of a column: hint, rule, error text."""
-    rule: dict[str, Any] = {
-        "validate": "any",
-        "input_title": column.name[:32],
-        "input_message": column.help if len(column.help) <= 255 else column.help[:254] + "…",  # noqa: PLR2004
-        "error_title": column.name[:32],
-        "error_message": f"{column.requirement[:1].upper()}{column.requirement[1:]} is required here."[:255],
-    }
-    if name := _LISTS.get((column.sheet, column.key)):
-        rule |= {"validate": "list", "value": f"={name}"}
-        rule["error_message"] = "Pick an entry of the list. Add materials and tolerance classes on their sheets."
-    elif column.is_number:
-        rule |= {"validate": "integer" if column.type == "integer" else "decimal"}
-        if column.minimum is None:
-            rule |= {"criteria": "between", "minimum": -1e9, "maximum": 1e9}
-        elif column.maximum is not None:
-            rule |= {"criteria": "between", "minimum": column.minimum, "maximum": column.maximum}
-        else:
-            rule |= {"criteria": ">" if column.exclusive_minimum else ">=", "value": column.minimum}
-    elif column.key == "variant":
-        cell = xl_rowcol_to_cell(FIRST_ROW, place)
-        rule |= {"validate": "custom", "value": f"=COUNTIF(fl_variants,{cell})=1"}
-        rule["error_message"] = "This name is already used. Give each variant a name of its own."
-    return rule
