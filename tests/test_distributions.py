@@ -171,6 +171,7 @@ def test_other_shapes_are_told_apart():
         Triangular(0, 1, 0.25),
         TruncatedNormal(0, 1, -3, 3),
         TruncatedNormal(0, 1, -2, 3),
+        TruncatedNormal(0, 1, -3, 2),
     ]
     assert len({one.shape for one in different}) == len(different)
 

@@ -373,7 +373,7 @@ def test_limits_where_the_hub_outgrows_the_disk_are_impossible(one, inner, outer
     """Limits at which the inner radius reaches the outer one are impossible."""
     rows = [row(name, -0.00025, 0.00025, distribution="uniform") for name in (inner, outer)]
     kept, problems = shape_problems(one, limits_for(one, *rows))
-    assert kinds(problems) == [("impossible", "disk_inner_radius")]
+    assert kinds(problems) == [("impossible", inner)]
     assert problems[0].detail == outer
     assert set(kept) == {inner, outer}
 
@@ -450,7 +450,8 @@ def radii(one, scatter):
     def side(name):
         def model(**varying):
             every = {**sizes, **varying}
-            return np.asarray(every[name] if name in every else radius_of(every))
+            shape = np.shape(next(iter(varying.values())))
+            return np.broadcast_to(every[name] if name in every else radius_of(every), shape)
 
         return propagate(model, scatter, method="random", samples=2**15, seed=0).values
 
@@ -467,7 +468,7 @@ def test_impossible_limits_of_bore_and_hub(one, inner, outer):
     assert set(sound) == {inner, outer}
     wide = [row(name, -0.001, 0.001, distribution="uniform") for name in (inner, outer)]
     _, problems = shape_problems(one, limits_for(one, *wide))
-    assert kinds(problems) == [("impossible", "disk_inner_radius")]
+    assert kinds(problems) == [("impossible", inner)]
 
 
 def test_wall_limits_count_towards_the_gap():
@@ -528,12 +529,17 @@ def test_wall_tail_that_would_close_the_disk_is_cut():
     ],
     ids=["rim longer than the cylinder", "rim and fillet longer than the cylinder", "fillet wider than the disk"],
 )
-def test_limits_that_overlap_refinements_are_impossible(changes, rows):
-    """Limits at which rim and fillet outgrow the cylinder, or the hub fillet the disk, are impossible."""
+def test_refinements_that_overlap_at_a_limit_are_computed_without_a_break(changes, rows):
+    """Where only a limit lets rim, fillet and cylinder overlap, the backlash goes on smoothly beyond the nominal."""
     one = variant(**changes)
     limits = limits_for(one, *(row(name, -half, half, distribution="uniform") for name, half in rows))
-    _, problems = shape_problems(one, limits)
-    assert [problem.kind for problem in problems] == ["impossible"]
+    assert shape_problems(one, limits) == (limits, ())
+    ((name, limit),) = limits.items()
+    low, middle, high = (
+        float(backlash("cup", one.dimensions | {name: at})) for at in (limit.low, limit.middle, limit.high)
+    )
+    assert min(low, high) < middle < max(low, high)
+    assert abs(low + high - 2 * middle) < 0.05 * abs(high - low)
 
 
 @thorough

@@ -18,14 +18,32 @@ Dimensions = Mapping[str, Array | float]
 
 
 def radius_of(dimensions: Dimensions) -> Array:
-    """Mean radius [m], as given or from bore and wall."""
+    """Mean radius of the wall [m], as given or from bore and wall.
+
+    Equation: r_m as given, else d/2 + Δ/2
+    Arguments: dimensions in SI by name, with mean_radius, or bore_diameter and wall_thickness, of any one shape.
+    Valid: any tube.
+    Source: geometry.
+
+    >>> round(float(radius_of({"bore_diameter": 0.160, "wall_thickness": 0.0016})), 9)
+    0.0808
+    """
     if "mean_radius" in dimensions:
         return np.asarray(dimensions["mean_radius"])
     return windup.mean_radius_from_bore(dimensions["bore_diameter"], dimensions["wall_thickness"])
 
 
 def modulus_of(dimensions: Dimensions) -> Array:
-    """Shear modulus [Pa], as given or from Young's modulus and Poisson's ratio."""
+    """Shear modulus [Pa], as given or from Young's modulus and Poisson's ratio.
+
+    Equation: G as given, else E / (2 (1 + ν))
+    Arguments: dimensions in SI by name, with shear_modulus, or youngs_modulus and poisson_ratio, of any one shape.
+    Valid: isotropic linear elasticity.
+    Source: elasticity theory.
+
+    >>> float(modulus_of({"shear_modulus": 8.1e10}))
+    81000000000.0
+    """
     if "shear_modulus" in dimensions:
         return np.asarray(dimensions["shear_modulus"])
     return windup.shear_modulus(dimensions["youngs_modulus"], dimensions["poisson_ratio"])

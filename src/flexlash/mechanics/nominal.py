@@ -15,7 +15,20 @@ __all__ = ["nominal_numbers"]
 
 
 def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> list[dict[str, float | None]]:
-    """Return the nominal results of each variant [SI] by result key without unit."""
+    """Nominal results of each variant [SI] by result key without unit.
+
+    Equation: as in `flexspline.windups`, `windup.wall_integral`, `strength`; lost motion 2 p T_rated / K
+    Arguments: variants, and lost_motion_share p [-] of the rated torque at which lost motion is stated.
+    Valid: as for the functions it calls.
+    Source: as for the functions it calls.
+
+    >>> b3_160 = {"torque": 800.0, "cylinder_length": 0.16, "mean_radius": 0.08, "wall_thickness": 0.0016,
+    ...           "disk_inner_radius": 0.04, "youngs_modulus": 211e9, "poisson_ratio": 0.3}
+    >>> variant = Variant(row=5, name="B3-160", flexspline_type="cup", material="20Cr2Ni4",
+    ...                   tolerance_class="standard", dimensions=b3_160)
+    >>> f"{nominal_numbers([variant], 0.04)[0]['stiffness']:.7g}"
+    '1491835'
+    """
     groups: dict[tuple[str, frozenset[str]], list[int]] = defaultdict(list)
     for place, variant in enumerate(variants):
         groups[variant.flexspline_type, frozenset(variant.dimensions)].append(place)

@@ -130,8 +130,9 @@ def power_law_disk_integral(inner_radius: float, outer_radius: float, inner_thic
     >>> f"{segment_windup(800.0, 8.1153846153846e10, power_law_disk_integral(0.04, 0.08, 0.004, 2)):.9e}"
     '1.699207821e-04'
     """
-    ratio = outer_radius / inner_radius
-    growth = np.log(ratio) if exponent == 2 else (ratio ** (exponent - 2) - 1) / (exponent - 2)  # noqa: PLR2004
+    stretch = np.log(outer_radius / inner_radius)
+    excess = exponent - 2
+    growth = np.expm1(excess * stretch) / excess if excess else stretch
     return float(growth / (inner_thickness * inner_radius**2))
 
 
@@ -151,7 +152,8 @@ def tapered_disk_integral(
     >>> f"{segment_windup(800.0, 8.1153846153846e10, tapered_disk_integral(0.04, 0.08, 0.004, 0.0016)):.10e}"
     '1.2086009619e-04'
     """
-    slope = (outer_thickness - inner_thickness) / (outer_radius - inner_radius)
+    width = np.asarray(outer_radius) - inner_radius
+    slope = (outer_thickness - inner_thickness) / np.where(width == 0, 1.0, width)
     half = (1 / np.asarray(inner_radius) - 1 / np.asarray(outer_radius)) * 0.5
     middle = (1 / np.asarray(inner_radius) + 1 / np.asarray(outer_radius)) * 0.5
     total = np.zeros(np.shape(half * slope))

@@ -50,9 +50,30 @@ def _require_order(low: float, high: float) -> None:
         raise ValueError(f"low = {low:g} must be less than high = {high:g}")
 
 
-def _require_positive(sd: float) -> None:
+def _require_finite(low: float, high: float) -> None:
+    if not (math.isfinite(low) and math.isfinite(high)):
+        raise ValueError(f"low = {low:g} and high = {high:g} must be finite")
+
+
+def _require_normal(mean: float, sd: float) -> None:
+    if not math.isfinite(mean):
+        raise ValueError(f"mean = {mean:g} must be finite")
     if not (sd > 0 and math.isfinite(sd)):
         raise ValueError(f"sd = {sd:g} must be a finite number greater than 0")
+
+
+_NARROW = 2.0
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
+
+
+def _narrow_moments(first: float, last: float) -> tuple[float, float]:
+    """Return mean and variance of a standard normal cut to a narrow range, where the closed form cancels."""
+    middle, half = (first + last) / 2, (last - first) / 2
+    offset = half * _NODES
+    weight = _WEIGHTS * np.exp(-middle * offset - offset * offset / 2)
+    weight = weight / weight.sum()
+    shift = float((weight * offset).sum())
+    return middle + shift, float((weight * (offset - shift) ** 2).sum())
 
 
 @dataclass(frozen=True)
@@ -67,7 +88,7 @@ class Normal:
     sd: float
 
     def __post_init__(self) -> None:
-        _require_positive(self.sd)
+        _require_normal(self.mean, self.sd)
 
     shape = ("normal",)
 
@@ -106,7 +127,7 @@ class TruncatedNormal:
     high: float
 
     def __post_init__(self) -> None:
-        _require_positive(self.sd)
+        _require_normal(self.mean, self.sd)
         _require_order(self.low, self.high)
         if not self._mass > 0:
             raise ValueError("low and high leave no part of the normal distribution")
@@ -124,6 +145,8 @@ class TruncatedNormal:
     def _moments(self) -> tuple[float, float]:
         """Mean and variance of the standard shape."""
         first, last = self._cuts
+        if last - first < _NARROW:
+            return _narrow_moments(first, last)
         density = [math.exp(-cut * cut / 2) / math.sqrt(2 * math.pi) for cut in (first, last)]
         weighted = [cut * d if math.isfinite(cut) else 0.0 for cut, d in zip((first, last), density, strict=True)]
         mean = (density[0] - density[1]) / self._mass
@@ -173,6 +196,7 @@ class Uniform:
 
     def __post_init__(self) -> None:
         _require_order(self.low, self.high)
+        _require_finite(self.low, self.high)
 
     shape = ("uniform",)
 
@@ -211,6 +235,7 @@ class Triangular:
 
     def __post_init__(self) -> None:
         _require_order(self.low, self.high)
+        _require_finite(self.low, self.high)
         if not self.low <= self._peak <= self.high:
             raise ValueError(f"mode = {self._peak:g} must lie between low = {self.low:g} and high = {self.high:g}")
 

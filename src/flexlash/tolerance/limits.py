@@ -121,13 +121,9 @@ def shape_problems(
             problems.append(LimitsProblem(kind="cut", dimension=name, detail="0"))
         else:
             kept[name] = limit
-    gap = _disk_gap(variant, kept)
-    if gap:
-        inner, outer, low, high = gap
-        if low >= high:
-            problems.append(LimitsProblem(kind="impossible", dimension="disk_inner_radius", detail=outer))
-        else:
-            problems.extend(_cut_disk(kept, inner, outer, (low, high)))
+    sides = _disk_sides(variant)
+    if sides:
+        problems.extend(_keep_disk_open(variant, kept, *sides))
     return kept, tuple(problems)
 
 
@@ -153,47 +149,49 @@ def _ends(variant: Variant, limits: Mapping[str, Limits], name: str) -> tuple[fl
     return variant.dimensions[name], variant.dimensions[name]
 
 
-def _disk_gap(variant: Variant, limits: Mapping[str, Limits]) -> tuple[str, str, float, float] | None:
-    """Return the dimensions that bound the disk and the limits that face each other, or None without a disk."""
+def _disk_sides(variant: Variant) -> tuple[dict[str, float], dict[str, float]] | None:
+    """Return what makes up inner and outer radius of the disk, each dimension with its factor; None without disk."""
     if variant.flexspline_type == "cylinder":
         return None
-    sizes = {
-        side: f"disk_{side}_radius" if f"disk_{side}_radius" in variant.dimensions else _radius_name(variant)
-        for side in ("inner", "outer")
-    }
-    facing = []
-    for side, end in (("inner", 1), ("outer", 0)):
-        radius = _ends(variant, limits, sizes[side])[end]
-        if sizes[side] == "bore_diameter":
-            radius = (radius + _ends(variant, limits, "wall_thickness")[end]) / 2
-        facing.append(radius)
-    return sizes["inner"], sizes["outer"], facing[0], facing[1]
+    mean_radius = {"mean_radius": 1.0}
+    if "bore_diameter" in variant.dimensions:
+        mean_radius = {"bore_diameter": 0.5, "wall_thickness": 0.5}
+    inner = {"disk_inner_radius": 1.0} if "disk_inner_radius" in variant.dimensions else mean_radius
+    outer = {"disk_outer_radius": 1.0} if "disk_outer_radius" in variant.dimensions else mean_radius
+    return inner, outer
 
 
-def _radius_name(variant: Variant) -> str:
-    return "mean_radius" if "mean_radius" in variant.dimensions else "bore_diameter"
+def _keep_disk_open(
+    variant: Variant, limits: dict[str, Limits], inner: Mapping[str, float], outer: Mapping[str, float]
+) -> Iterator[LimitsProblem]:
+    """Yield whether the hub reaches the disk's edge; cut the far tails that would let it.
 
-
-def _cut_disk(limits: dict[str, Limits], inner: str, outer: str, gap: tuple[float, float]) -> Iterator[LimitsProblem]:
-    """Cut the tails that would let the hub outgrow the disk, at a wall between the facing limits."""
-    halves = {inner: 2 if inner == "bore_diameter" else 1, outer: 2 if outer == "bore_diameter" else 1}
-    ends = []
-    for name, end in ((inner, 1), (outer, 0)):
-        limit = limits.get(name)
-        slack = 0.0
-        if limit and limit.distribution == "normal":
-            slack = abs(limit.reach[end] - (limit.high if end else limit.low)) / halves[name]
-        ends.append(slack)
-    if sum(ends) < gap[1] - gap[0]:
+    Each normal keeps as much of its tail as its share in the gap between the facing limits.
+    """
+    facing_inner = sum(factor * _ends(variant, limits, name)[1] for name, factor in inner.items())
+    facing_outer = sum(factor * _ends(variant, limits, name)[0] for name, factor in outer.items())
+    gap = facing_outer - facing_inner
+    if gap <= 0:
+        yield LimitsProblem(kind="impossible", dimension=next(iter(inner)), detail=next(iter(outer)))
         return
-    fence = gap[0] + (gap[1] - gap[0]) * ends[0] / sum(ends)
-    for name, end in ((inner, 1), (outer, 0)):
-        limit = limits.get(name)
-        if limit and ends[1 - end] > 0:
-            low, high = limit.cut or _bounds(name)
-            edge = fence * halves[name]
-            limits[name] = replace(limit, cut=(low, edge) if end else (edge, high))
-            yield LimitsProblem(kind="cut", dimension=name, detail="the other disk radius")
+    tails = {}
+    for factors, upwards in ((inner, True), (outer, False)):
+        for name, factor in factors.items():
+            limit = limits.get(name)
+            if limit and limit.distribution == "normal":
+                tail = limit.reach[1] - limit.high if upwards else limit.low - limit.reach[0]
+                if tail > 0:
+                    tails[name] = (tail, factor, upwards)
+    total = sum(tail * factor for tail, factor, _ in tails.values())
+    if total < gap:
+        return
+    for name, (tail, _, upwards) in tails.items():
+        limit = limits[name]
+        low, high = limit.cut or _bounds(name)
+        kept = tail * gap / total
+        cut = (low, min(high, limit.high + kept)) if upwards else (max(low, limit.low - kept), high)
+        limits[name] = replace(limit, cut=cut)
+        yield LimitsProblem(kind="cut", dimension=name, detail="the other disk radius")
 
 
 def distributions(limits: Mapping[str, Limits]) -> dict[str, Distribution]:

@@ -49,33 +49,44 @@ class Spread:
     def _ordered(self) -> Array:
         return np.sort(self.values, axis=None)
 
+    @property
+    def _origin(self) -> float:
+        return float(self.values[0, 0])
+
+    @property
+    def _deviations(self) -> Array:
+        """Values less the first one: a model that does not vary has a spread of exactly 0."""
+        return self.values - self._origin
+
     @cached_property
     def mean(self) -> float:
         """Mean of the output."""
-        return float(self.values.mean())
+        return self._origin + float(self._deviations.mean())
 
     @cached_property
     def sd(self) -> float:
         """Standard deviation of the output."""
-        return float(self.values.std(ddof=1))
+        return float(self._deviations.std())
 
     @property
     def mean_standard_error(self) -> float:
         """Standard error of the mean."""
-        return _standard_error(self.values.mean(axis=1))
+        return _standard_error(self._deviations.mean(axis=1))
 
     @property
     def sd_standard_error(self) -> float:
         """Standard error of the standard deviation."""
         if self.values.shape[1] == 1:
             return self.sd
-        return _standard_error(self.values.std(axis=1, ddof=1))
+        return _standard_error(self._deviations.std(axis=1))
 
     @cached_property
     def skewness(self) -> float:
         """Third central moment over the cube of the standard deviation."""
-        deviation = self.values - self.mean
-        return float((deviation * deviation * deviation).mean() / self.sd**3) if self.sd > 0 else 0.0
+        if self.sd == 0:
+            return 0.0
+        deviation = (self.values - self.mean) / self.sd
+        return float((deviation * deviation * deviation).mean())
 
     @overload
     def quantile(self, probability: float) -> float: ...
@@ -139,8 +150,8 @@ class Spread:
 
         Both point sets are crossed one input at a time (Saltelli et al. 2010, equation b).
         """
-        if len(self._inputs) == 1:
-            return dict.fromkeys(self._inputs, 1.0)
+        if len(self._inputs) == 1 or self.sd == 0:
+            return dict.fromkeys(self._inputs, float(self.sd > 0))
         count = self._points.share_count
         first = {name: self._points.standard(name, self._inputs[name], "leading") for name in self._inputs}
         second = {name: self._points.standard(name, self._inputs[name], "second") for name in self._inputs}
@@ -148,8 +159,6 @@ class Spread:
         other = _evaluate(self._model, second, self._inputs)
         middle = (base.mean() + other.mean()) / 2
         variance = float(((base - middle) ** 2).mean() + ((other - middle) ** 2).mean()) / 2
-        if not variance > 0:
-            return dict.fromkeys(self._inputs, 0.0)
         shares = {}
         for name in self._inputs:
             crossed = _evaluate(self._model, first | {name: second[name]}, self._inputs)
@@ -195,7 +204,7 @@ def propagate(
     are the points in all, rounded up to replicates × a power of two. `points` are points drawn before, so
     that many models meet the same draws; they stand for method, samples and seed.
 
-    Raises ValueError for an unknown method, no inputs, or a model that returns another shape or a number
+    Raises ValueError for an unknown method, no inputs, no samples, or a model that returns another shape or a number
     that is not finite.
 
     >>> from flexlash.tolerance import Normal, propagate
@@ -207,8 +216,9 @@ def propagate(
         raise ValueError(f"method {method!r} is not one of {', '.join(get_args(Method))}")
     if not inputs:
         raise ValueError("at least one input must vary")
-    notes = (LINE_NOTE,) if method == "line" else ()
+    notes: tuple[str, ...] = ()
     if points is None:
+        notes = (LINE_NOTE,) if method == "line" else ()
         points = UnitPoints(
             list(inputs), method="random" if method == "random" else "sobol", samples=samples, seed=seed
         )

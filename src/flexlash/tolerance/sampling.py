@@ -38,7 +38,9 @@ class UnitPoints:
     def __init__(
         self, names: Sequence[str], *, method: Literal["sobol", "random"], samples: int | None, seed: int
     ) -> None:
-        wanted = samples or DEFAULT_SAMPLES[method]
+        wanted = DEFAULT_SAMPLES[method] if samples is None else samples
+        if wanted < 1:
+            raise ValueError(f"samples = {wanted} must be at least 1")
         self.method = method
         self.count = 1 << max(0, -(-wanted // REPLICATES) - 1).bit_length()
         self.share_count = min(self.count, _SHARE_POINTS)

@@ -44,7 +44,8 @@ def first_order_sd(model: Model, middle: Mapping[str, float], scatter: Mapping[s
     5.0
     """
     sds = {name: distribution.standard_deviation for name, distribution in scatter.items()}
-    slopes = gradient(model, middle, {name: 1e-3 * sd for name, sd in sds.items()})
+    steps = {name: max(1e-3 * sd, 1e-6 * abs(middle[name])) for name, sd in sds.items()}
+    slopes = gradient(model, middle, steps)
     return math.sqrt(sum((slopes[name] * sds[name]) ** 2 for name in sds))
 
 
