@@ -516,4 +516,11 @@ CATALOGUE = _rules(
         "Submit the filled template.",
         "Reports carry a mark by which they are recognised when a whole folder is submitted.",
     ),
+    (
+        "I509",
+        "values without a header",
+        "{place}: the values of column {value} have no header and were not read.",
+        "Write a header above them, or clear them.",
+        "A column takes part, or passes through to the report, by its header.",
+    ),
 )

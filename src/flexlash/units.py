@@ -30,7 +30,6 @@ _TABLE: dict[str, dict[str, float]] = {
         "cm": 1e-2,
         "mm": 1e-3,
         "µm": 1e-6,
-        "nm": 1e-9,
         "in": _INCH,
         "mil": _INCH / 1000,
         "ft": 12 * _INCH,

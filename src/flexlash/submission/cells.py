@@ -13,6 +13,7 @@ from flexlash.submission.read import ErrorCell, RawValue, Unstored
 __all__ = ["Fault", "as_number", "as_text", "suggested_number"]
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII)
+_UNIT_AT_END = re.compile(r"[\s%°′″'\"a-zA-Zµμ·⋅*/²³]+$")
 _DATES = (datetime.date, datetime.time, datetime.timedelta)
 _LONGEST_TEXT = 1000
 _LOOKALIKES = str.maketrans({"\u2212": "-", "\u2013": "-", "\u2012": "-", "\u066b": ".", "\u00a0": " "})
@@ -56,14 +57,15 @@ def as_number(value: RawValue, *, from_text: bool) -> float | Fault:
 
 
 def as_text(value: RawValue) -> str | Fault:
-    """Return a cell as a text without outer or non-breaking spaces; whole numbers lose their point."""
+    """Return a cell as a text without outer spaces and invisible characters; whole numbers lose their point."""
     if fault := _not_an_entry(value):
         return fault
     if isinstance(value, int | float):
         if not math.isfinite(value):
             return Fault(code="E212", value=value)
         return str(int(value)) if value == int(value) else repr(value)
-    text = " ".join(unicodedata.normalize("NFC", str(value)).split())
+    spaced = " ".join(unicodedata.normalize("NFC", str(value)).split())
+    text = "".join(character for character in spaced if unicodedata.category(character) not in {"Cc", "Cf", "Cs"})
     return text if len(text) <= _LONGEST_TEXT else Fault(code="E212", value=text)
 
 
@@ -73,8 +75,8 @@ def suggested_number(text: str) -> str:
     >>> suggested_number("1,6 mm"), suggested_number("±0.02"), suggested_number("5%"), suggested_number("n/a")
     ('1.6', '0.02', '5', '')
     """
-    kept = unicodedata.normalize("NFKC", text).translate(_LOOKALIKES).replace("'", "").replace("±", "")
-    kept = re.sub(r"[\s%°a-zA-Zµ·/²³]+$", "", kept.strip()).replace(" ", "")
+    bare = _UNIT_AT_END.sub("", text.translate(_LOOKALIKES).replace("±", "").strip())
+    kept = unicodedata.normalize("NFKC", bare).replace("'", "").replace(" ", "")
     if kept.count(",") == 1 and "." not in kept:
         kept = kept.replace(",", ".")
     return kept if _NUMBER.fullmatch(kept) else ""

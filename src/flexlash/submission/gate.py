@@ -1,12 +1,15 @@
 """Bytes → what kind of submission they are, or a refusal by name; judged by content, never by the ending.
 
 The gate also looks at each sheet's XML for what the workbook reader cannot tell: formulas without a stored
-result, and rows or cells out of order, which the reader would drop without a word.
+result, error cells, and what the reader would take for something else without a word (rows or cells out of
+order, texts where numbers belong).
 """
 
 from __future__ import annotations
 
+import datetime
 import io
+import re
 import zipfile
 import zlib
 from dataclasses import dataclass, field
@@ -27,6 +30,14 @@ MAXIMUM_ROW = 1_048_576
 MAXIMUM_COLUMN = 16_384
 MAXIMUM_CELLS = 1_000_000
 MAXIMUM_DEPTH = 64
+MAXIMUM_ATTRIBUTES = 256
+MAXIMUM_SHEETS = 100
+MAXIMUM_MERGES = 10_000
+
+_NUMBER = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
+_INDEX = re.compile(r"\s*\d+\s*", re.ASCII)
+_REFERENCE = re.compile(r"([A-Z]{1,3})([1-9]\d{0,6})", re.ASCII)
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 _OLE2 = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _STRICT = "http://purl.oclc.org/ooxml/"
@@ -44,11 +55,17 @@ class Refusal(Exception):
 
 @dataclass(frozen=True, kw_only=True)
 class Admitted:
-    """Bytes that passed the gate; `unstored` names the formula cells without a stored result by sheet."""
+    """Bytes that passed the gate.
+
+    `unstored` are the formula cells without a stored result, `errors` the error cells, both as (row, column)
+    by sheet; `modified` is the date that the workbook itself gives.
+    """
 
     kind: Kind
     data: bytes
-    unstored: dict[str, frozenset[str]] = field(default_factory=dict)
+    unstored: dict[str, frozenset[tuple[int, int]]] = field(default_factory=dict)
+    errors: dict[str, frozenset[tuple[int, int]]] = field(default_factory=dict)
+    modified: datetime.datetime | None = None
 
 
 def read_bytes(path: Path) -> bytes:
@@ -79,7 +96,7 @@ def _judge(data: bytes) -> Admitted:
     """Return what the content is, whatever its name says."""
     if data.startswith(b"PK\x03\x04"):
         try:
-            return Admitted(kind="workbook", data=data, unstored=_inspect(data))
+            return _inspect(data)
         except (
             zipfile.BadZipFile,
             zlib.error,
@@ -96,28 +113,36 @@ def _judge(data: bytes) -> Admitted:
         raise Refusal("E103") if locked else Refusal("E104", found="an old Excel file (.xls)")
     if data.startswith(b"PAR1"):
         return Admitted(kind="parquet", data=data)
+    if data.startswith(_UTF_16):
+        raise Refusal("E107")
     if b"\0" in data[:4096] or data.startswith((b"PK", b"%PDF", b"{\\rtf", b"<")):
         raise Refusal("E101", found="the content is neither a workbook nor a table")
     return Admitted(kind="csv", data=data)
 
 
-def _inspect(data: bytes) -> dict[str, frozenset[str]]:
-    """Check the archive and each worksheet; return formula cells without a stored result by sheet name."""
+def _inspect(data: bytes) -> Admitted:
+    """Check the archive and each worksheet."""
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         _check_archive(archive)
         names = set(archive.namelist())
         if "xl/workbook.bin" in names:
             raise Refusal("E104", found="a binary workbook (.xlsb)")
-        if "mimetype" in names and archive.read("mimetype").startswith(b"application/vnd.oasis"):
+        if "mimetype" in names or {"content.xml", "META-INF/manifest.xml"} <= names:
             raise Refusal("E104", found="an OpenDocument file (.ods)")
         start = _workbook_part(archive, names)
         sheets = _sheets(archive.read(start))
         targets = _targets(archive, start)
-        return {
-            title: frozenset(_Sheet(archive.read(targets[relation])).unstored)
-            for title, relation in sheets
-            if relation in targets
+        styles = _count_styles(archive, start, names)
+        found = {
+            title: _Sheet(archive.read(targets[relation]), styles) for title, relation in sheets if relation in targets
         }
+        return Admitted(
+            kind="workbook",
+            data=data,
+            unstored={title: frozenset(sheet.unstored) for title, sheet in found.items()},
+            errors={title: frozenset(sheet.errors) for title, sheet in found.items()},
+            modified=_modified(archive, names),
+        )
 
 
 def _check_archive(archive: zipfile.ZipFile) -> None:
@@ -126,6 +151,8 @@ def _check_archive(archive: zipfile.ZipFile) -> None:
     if len(parts) > MAXIMUM_PARTS:
         raise Refusal("E110", what="the number of parts", limit=f"{MAXIMUM_PARTS:,}")
     if len({part.filename.casefold() for part in parts}) < len(parts):
+        raise Refusal("E102")
+    if any(_strays(part.orig_filename) or part.compress_type not in {0, zipfile.ZIP_DEFLATED} for part in parts):
         raise Refusal("E102")
     total = 0
     for part in parts:
@@ -139,6 +166,11 @@ def _check_archive(archive: zipfile.ZipFile) -> None:
             raise Refusal("E110", what="the compression", limit=f"{MAXIMUM_RATIO} to 1")
     if archive.testzip() is not None:
         raise Refusal("E102")
+
+
+def _strays(name: str) -> bool:
+    """Whether a part's name points out of the archive or hides something."""
+    return name.startswith("/") or ".." in name.split("/") or any(sign in name for sign in "\\:\0")
 
 
 class _Elements:
@@ -160,7 +192,7 @@ class _Elements:
 
     def _open(self, name: str, attributes: dict[str, str]) -> None:
         self.depth += 1
-        if self.depth > MAXIMUM_DEPTH:
+        if self.depth > MAXIMUM_DEPTH or len(attributes) > MAXIMUM_ATTRIBUTES:
             raise Refusal("E102")
         self.start(name.rpartition(" ")[2], attributes, name)
 
@@ -210,7 +242,60 @@ def _sheets(workbook: bytes) -> list[tuple[str, str]]:
     listing = _Listing(workbook, "sheet")
     if listing.root.startswith(_STRICT):
         raise Refusal("E106")
+    if len(listing.found) > MAXIMUM_SHEETS:
+        raise Refusal("E110", what="the number of sheets", limit=f"{MAXIMUM_SHEETS:,}")
     return [(sheet["name"], sheet.get(f"{_RELATIONS} id", "")) for sheet in listing.found]
+
+
+class _Styles(_Elements):
+    """Counts the cell formats."""
+
+    def __init__(self, data: bytes) -> None:
+        self.count = 0
+        self.inside = False
+        super().__init__(data)
+
+    def start(self, name: str, attributes: dict[str, str], qualified: str) -> None:  # noqa: ARG002
+        self.inside = self.inside or name == "cellXfs"
+        self.count += self.inside and name == "xf"
+
+    def end(self, name: str) -> None:
+        self.inside = self.inside and name != "cellXfs"
+
+
+def _count_styles(archive: zipfile.ZipFile, workbook: str, names: set[str]) -> int:
+    """Return how many cell formats the workbook has; cells may always refer to the first."""
+    part = f"{workbook.rpartition('/')[0]}/styles.xml"
+    return max(1, _Styles(archive.read(part)).count) if part in names else MAXIMUM_CELLS
+
+
+class _Dates(_Elements):
+    """Collects when the workbook was modified."""
+
+    def __init__(self, data: bytes) -> None:
+        self.reading = False
+        self.modified = ""
+        super().__init__(data)
+
+    def start(self, name: str, attributes: dict[str, str], qualified: str) -> None:  # noqa: ARG002
+        self.reading = name == "modified"
+
+    def end(self, name: str) -> None:  # noqa: ARG002
+        self.reading = False
+
+    def text(self, text: str) -> None:
+        self.modified += text if self.reading else ""
+
+
+def _modified(archive: zipfile.ZipFile, names: set[str]) -> datetime.datetime | None:
+    """Return the workbook's own date of its last change, in UTC, or None when it has none."""
+    if "docProps/core.xml" not in names:
+        return None
+    try:
+        found = datetime.datetime.fromisoformat(_Dates(archive.read("docProps/core.xml")).modified.strip())
+    except ValueError:
+        return None
+    return (found.astimezone(datetime.UTC) if found.tzinfo else found).replace(tzinfo=None, microsecond=0)
 
 
 def _targets(archive: zipfile.ZipFile, workbook: str) -> dict[str, str]:
@@ -226,31 +311,38 @@ def _targets(archive: zipfile.ZipFile, workbook: str) -> dict[str, str]:
 
 
 class _Sheet(_Elements):
-    """Finds formula cells without a stored result; refuses rows and cells that do not rise strictly."""
+    """Finds formula cells without a stored result and error cells; refuses what would be read wrongly."""
 
-    def __init__(self, data: bytes) -> None:
-        self.unstored: list[str] = []
-        self.row = 0
-        self.column = 0
-        self.cells = 0
-        self.reference = ""
-        self.is_text = self.is_formula = self.has_result = self.in_value = False
+    def __init__(self, data: bytes, styles: int) -> None:
+        self.unstored: list[tuple[int, int]] = []
+        self.errors: list[tuple[int, int]] = []
+        self.styles = styles
+        self.row = self.column = self.cells = self.merges = 0
+        self.kind = self.value = ""
+        self.in_row = self.is_formula = self.in_value = False
         super().__init__(data)
 
     def start(self, name: str, attributes: dict[str, str], qualified: str) -> None:  # noqa: ARG002
         if name == "c":
             self._place_cell(attributes.get("r"))
-            self.is_text = attributes.get("t") == "str"
-            self.is_formula = self.has_result = False
+            self.kind = attributes.get("t", "n")
+            self.value = ""
+            self.is_formula = False
+            if not 0 <= int(attributes.get("s", 0)) < self.styles:
+                raise Refusal("E102")
         elif name == "row":
             number = int(attributes.get("r", self.row + 1))
-            if not self.row < number <= MAXIMUM_ROW:
+            if self.in_row or not self.row < number <= MAXIMUM_ROW:
                 raise Refusal("E102")
-            self.row, self.column = number, 0
+            self.row, self.column, self.in_row = number, 0, True
         elif name == "f":
             self.is_formula = True
         elif name == "v":
             self.in_value = True
+        elif name == "mergeCell":
+            self.merges += 1
+            if self.merges > MAXIMUM_MERGES:
+                raise Refusal("E110", what="the number of merged areas", limit=f"{MAXIMUM_MERGES:,}")
 
     def _place_cell(self, reference: str | None) -> None:
         """Check a cell's own address against its row and the cell before."""
@@ -259,22 +351,38 @@ class _Sheet(_Elements):
             raise Refusal("E110", what="the number of cells", limit=f"{MAXIMUM_CELLS:,}")
         if reference is None:
             self.column += 1
-            self.reference = ""
             return
-        letters = reference.rstrip("0123456789")
-        column = 0
-        for letter in letters:
-            column = column * 26 + ord(letter) - 64
-        if not self.column < column <= MAXIMUM_COLUMN or reference[len(letters) :] != str(self.row):
+        match = _REFERENCE.fullmatch(reference)
+        if match is None or int(match[2]) != self.row:
             raise Refusal("E102")
-        self.column, self.reference = column, reference
+        column = 0
+        for letter in match[1]:
+            column = column * 26 + ord(letter) - 64
+        if not self.column < column <= MAXIMUM_COLUMN:
+            raise Refusal("E102")
+        self.column = column
 
     def end(self, name: str) -> None:
         if name == "v":
             self.in_value = False
-        elif name == "c" and self.is_formula and not (self.has_result or self.is_text):
-            self.unstored.append(self.reference)
+        elif name == "row":
+            self.in_row = False
+        elif name == "c":
+            self._close_cell()
+
+    def _close_cell(self) -> None:
+        """Judge a cell's stored value by its kind."""
+        place = (self.row, self.column)
+        if self.is_formula and not self.value and self.kind != "str":
+            self.unstored.append(place)
+        elif self.kind == "e":
+            self.errors.append(place)
+        elif self.value and (
+            (self.kind == "n" and not _NUMBER.fullmatch(self.value))
+            or (self.kind == "s" and not _INDEX.fullmatch(self.value))
+        ):
+            raise Refusal("E102")
 
     def text(self, text: str) -> None:
-        if self.in_value and text:
-            self.has_result = True
+        if self.in_value:
+            self.value += text

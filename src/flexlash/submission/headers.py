@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from flexlash.columns import Column, columns_of
+from flexlash.findings import shown
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.read import RawSheet, RawValue, column_letters
 from flexlash.units import Unit, find_unit
@@ -40,7 +41,7 @@ class Heading:
 
 def plain(text: str) -> str:
     """Return a text without case, spaces, underscores and hyphens, in one Unicode form."""
-    folded = unicodedata.normalize("NFKC", text).casefold()
+    folded = unicodedata.normalize("NFKC", text).casefold().replace("’", "'")
     return "".join(character for character in folded if not character.isspace() and character not in "_-\u200b")
 
 
@@ -91,10 +92,11 @@ class _Recogniser:
             return None
         heading = Heading(row=best)
         for place, cell in rows[best].items():
-            if isinstance(cell, str) and plain(cell) == plain(STATUS_HEADER):
+            header = cell if isinstance(cell, str) else shown(cell)
+            if plain(header) == plain(STATUS_HEADER):
                 heading.ignored.add(place)
-            elif isinstance(cell, str):
-                self._place(heading, place, cell)
+            elif header.strip():
+                self._place(heading, place, header)
         self._require(heading, max(rows[best]) + 1)
         return heading
 

@@ -7,9 +7,11 @@ import datetime
 import hashlib
 import io
 import warnings
+from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from flexlash.submission.gate import Admitted, Refusal, admit, read_bytes
 
@@ -27,7 +29,17 @@ __all__ = [
 PROPERTY = "flexlash"
 """Document property in which a template or a report says what it is."""
 
-_ERRORS = frozenset({"#REF!", "#DIV/0!", "#VALUE!", "#NAME?", "#N/A", "#NUM!", "#NULL!", "#SPILL!", "#CALC!"})
+_ERRORS = frozenset((
+    "#REF!", "#DIV/0!", "#VALUE!", "#NAME?", "#N/A", "#NUM!", "#NULL!", "#SPILL!", "#CALC!", "#FIELD!", "#BLOCKED!",
+    "#CONNECT!", "#UNKNOWN!", "#BUSY!", "#GETTING_DATA", "#EXTERNAL!", "#PYTHON!",
+))  # fmt: skip
+"""Error words, which some programs store as plain texts."""
+
+_TOP = 15
+"""Rows among which the header, and so the widest row of a table, is looked for."""
+
+MAXIMUM_ROWS = 20_000
+MAXIMUM_COLUMNS = 256
 
 
 @dataclass(frozen=True)
@@ -112,11 +124,17 @@ def _read_workbook(admitted: Admitted, name: str, digest: str) -> Submission:
             sheets = {}
             for worksheet in workbook.worksheets:
                 worksheet.reset_dimensions()
-                unstored = admitted.unstored.get(worksheet.title, frozenset())
-                rows = _rows(worksheet.iter_rows(values_only=True), unstored)
-                sheets[worksheet.title] = RawSheet(name=worksheet.title, rows=rows)
+                rows = _rows(worksheet.iter_rows(values_only=True))
+                for row, place in admitted.errors.get(worksheet.title, ()):
+                    shows = rows.setdefault(row, {}).get(place, "an error")
+                    rows[row][place] = shows if isinstance(shows, ErrorCell) else ErrorCell(str(shows))
+                for row, place in admitted.unstored.get(worksheet.title, ()):
+                    rows.setdefault(row, {})[place] = Unstored()
+                _check_size(rows)
+                sheets[worksheet.title] = RawSheet(name=worksheet.title, rows=dict(sorted(rows.items())))
         properties = {one.name: str(one.value) for one in workbook.custom_doc_props.props}
-        modified = workbook.properties.modified
+    except Refusal:
+        raise
     except Exception as fault:
         # openpyxl leaks a dozen exception types on damaged parts; none of their texts is for a user.
         raise Refusal("E102") from fault
@@ -125,30 +143,32 @@ def _read_workbook(admitted: Admitted, name: str, digest: str) -> Submission:
         sha256=digest,
         kind="workbook",
         sheets=sheets,
-        modified=modified,
+        modified=admitted.modified,
         role=properties.get(PROPERTY, ""),
         template_version=properties.get(f"{PROPERTY}_template_version", ""),
     )
 
 
-def _rows(rows: object, unstored: frozenset[str]) -> dict[int, dict[int, RawValue]]:
-    """Return the non-blank cells of a sheet, with formulas that lack a result put in by address."""
+def _check_size(rows: dict[int, dict[int, RawValue]]) -> None:
+    """Refuse a sheet that holds more than a submission can mean."""
+    if len(rows) > MAXIMUM_ROWS:
+        raise Refusal("E110", what="the number of rows", limit=f"{MAXIMUM_ROWS:,}")
+    if max((max(cells) for cells in rows.values()), default=0) > MAXIMUM_COLUMNS:
+        raise Refusal("E110", what="the number of columns", limit=f"{MAXIMUM_COLUMNS:,}")
+
+
+def _rows(rows: Iterable[tuple[Any, ...]]) -> dict[int, dict[int, RawValue]]:
+    """Return the non-blank cells of a sheet by row and column number."""
     found: dict[int, dict[int, RawValue]] = {}
-    for number, values in enumerate(rows, start=1):  # type: ignore[arg-type, var-annotated]
+    for number, values in enumerate(rows, start=1):
         cells = {
-            place: ErrorCell(value) if isinstance(value, str) and value in _ERRORS else value
+            place: ErrorCell(value) if value in _ERRORS else value
             for place, value in enumerate(values, start=1)
             if value is not None
         }
         if cells:
             found[number] = cells
-    for address in unstored:
-        letters = address.rstrip("0123456789")
-        place = 0
-        for letter in letters:
-            place = place * 26 + ord(letter) - 64
-        found.setdefault(int(address[len(letters) :]), {})[place] = Unstored()
-    return dict(sorted(found.items()))
+    return found
 
 
 def read_table(data: bytes, name: str) -> tuple[RawSheet, str]:
@@ -160,17 +180,31 @@ def read_table(data: bytes, name: str) -> tuple[RawSheet, str]:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as fault:
         raise Refusal("E107") from fault
-    first = next((line for line in text.splitlines() if line.strip()), "")
-    delimiter = max(",;\t", key=first.count)
-    found = {}
+    tables = {sign: cells for sign in ",;\t" if (cells := _cells(text, sign)) is not None}
+    if not tables:
+        raise Refusal("E102")
+    delimiter = max(tables, key=lambda sign: _evenness(tables[sign]))
+    return RawSheet(name=name, rows=tables[delimiter]), delimiter
+
+
+def _evenness(rows: dict[int, dict[int, RawValue]]) -> int:
+    """Return how many cells of the top rows stand in rows of the commonest width: high for the true delimiter."""
+    widths = Counter(max(cells) for cells in list(rows.values())[:_TOP] if len(cells) > 1)
+    return max((width * count for width, count in widths.items()), default=0)
+
+
+def _cells(text: str, delimiter: str) -> dict[int, dict[int, RawValue]] | None:
+    """Return the non-blank cells of a CSV text by row and column number; None where its quotes do not close."""
+    found: dict[int, dict[int, RawValue]] = {}
+    lines = io.StringIO(text, newline=None)
     try:
-        for number, values in enumerate(csv.reader(io.StringIO(text), delimiter=delimiter, strict=True), start=1):
+        for number, values in enumerate(csv.reader(lines, delimiter=delimiter, strict=True), start=1):
             cells: dict[int, RawValue] = {place: cell for place, cell in enumerate(values, start=1) if cell.strip()}
             if cells:
                 found[number] = cells
-    except csv.Error as fault:
-        raise Refusal("E102") from fault
-    return RawSheet(name=name, rows=found), delimiter
+    except csv.Error:
+        return None
+    return found
 
 
 def _read_parquet(data: bytes) -> RawSheet:

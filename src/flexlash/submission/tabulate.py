@@ -16,6 +16,9 @@ from flexlash.submission.read import RawSheet, RawValue, column_letters
 
 __all__ = ["Table", "tabulate"]
 
+_MEANT_BESIDE = "setting"
+"""First column of Settings, where the template explains each setting in a column without a header."""
+
 _BLANK = " \t\r\n\u00a0\u200b\ufeff"
 
 
@@ -24,8 +27,7 @@ class Table:
     """Typed cells of an entry sheet in the template's units.
 
     `frame` has the column `row` and one column per key of the schema, null where blank or unreadable;
-    `cells` are the raw cells by row and place; `faulty` holds (row, key) of cells that already have a finding;
-    `extra` the other columns as texts.
+    `cells` are the raw cells by row and place; `faulty` holds (row, key) of cells that already have a finding.
     """
 
     sheet: str
@@ -34,7 +36,6 @@ class Table:
     frame: pl.DataFrame
     cells: dict[int, dict[int, RawValue]] = field(default_factory=dict)
     faulty: set[tuple[int, str]] = field(default_factory=set)
-    extra: dict[str, list[str]] = field(default_factory=dict)
 
     def address(self, row: int, key: str) -> str:
         """Return a cell's address; a column that the sheet lacks stands at the row's first cell."""
@@ -62,10 +63,6 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger, *, from_text: bool) -
         table.cells[number] = cells
     types = {key: pl.Float64 if column.is_number else pl.String for key, column in columns.items()}
     table.frame = pl.DataFrame(records, schema={"row": pl.Int64, **types}, orient="row")
-    table.extra = {
-        header: [_as_shown(cells.get(place)) for cells in table.cells.values()]
-        for place, header in heading.extra.items()
-    }
     return table
 
 
@@ -83,6 +80,7 @@ def _data_rows(
     """Yield the rows below the header that hold data; a lone cell elsewhere than in the first column is none."""
     named = {*heading.places.values(), *heading.extra, *heading.doubtful}
     first = heading.places.get(first_key)
+    nameless: dict[int, int] = {}
     for number, every in sheet.rows.items():
         if number <= heading.row:
             continue
@@ -93,11 +91,16 @@ def _data_rows(
         }
         entered = {place: value for place, value in cells.items() if place in named}
         if len(entered) > 1 or first in entered:
+            for place in cells.keys() - named:
+                nameless.setdefault(place, number)
             yield number, entered
         elif cells:
             place, value = next(iter((entered or cells).items()))
             address = f"{column_letters(place)}{number}"
             ledger.add("W408", sheet=sheet.name, cell=address, value=_as_shown(value))
+    for place, number in sorted(nameless.items()) if first_key != _MEANT_BESIDE else ():
+        letters = column_letters(place)
+        ledger.add("I509", sheet=sheet.name, cell=f"{letters}{number}", value=letters)
 
 
 def _typed(
