@@ -25,7 +25,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from flexlash.pipeline import Outcome, check, run
+    from flexlash.outcome import Outcome
+    from flexlash.pipeline import check, run
 
 __all__ = ["Outcome", "__version__", "check", "run"]
 

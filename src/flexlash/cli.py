@@ -17,7 +17,8 @@ from flexlash import __version__
 from flexlash.findings import CATALOGUE, shown
 
 if TYPE_CHECKING:
-    from flexlash.pipeline import Outcome, Progress
+    from flexlash.outcome import Outcome
+    from flexlash.pipeline import Progress
 
 __all__ = ["cli", "main"]
 

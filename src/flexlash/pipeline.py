@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
-from flexlash import __version__
 from flexlash.assessment import Computed, assess
 from flexlash.columns import DIMENSIONS
 from flexlash.findings import Finding, finding
 from flexlash.mechanics.flexspline import backlash
+from flexlash.outcome import Outcome
 from flexlash.results import result_record, results_frame
 from flexlash.submission.gate import Refusal, admit, read_bytes
 from flexlash.submission.read import RawSheet, Submission, read_submission, read_table
-from flexlash.submission.validate import Validated, validate
+from flexlash.submission.validate import validate
 from flexlash.tolerance.sampling import UnitPoints
 from flexlash.tolerance.variation import variation_of
 from flexlash.variant import Settings
@@ -45,63 +44,6 @@ class Options:
     tolerances: Path | None = None
     materials: Path | None = None
     progress: Progress | None = None
-
-
-@dataclass(kw_only=True)
-class Outcome:
-    """What came out of one submission.
-
-    `results` is the Results table; `findings` all findings in the order of the submission; `outputs` the
-    files written; `points` those drawn per variant. `computed` holds, by row number, what the report draws on.
-    `skipped` says that the file is a report or a marked copy, not a submission.
-    """
-
-    submission: Submission
-    results: pl.DataFrame
-    findings: list[Finding]
-    settings: Settings
-    validated: Validated | None = None
-    computed: dict[int, Computed] = field(default_factory=dict)
-    outputs: list[Path] = field(default_factory=list)
-    points: int = 0
-    skipped: bool = False
-
-    @property
-    def counts(self) -> dict[str, int]:
-        """Submitted and computed rows, error and warning findings."""
-        levels = Counter(found.level for found in self.findings)
-        rows = len(self.validated.submitted) if self.validated else 0
-        return {
-            "rows": rows,
-            "computed": len(self.computed),
-            "errors": levels["error"],
-            "warnings": levels["warning"],
-        }
-
-    def as_dictionary(self) -> dict[str, Any]:
-        """Return the object that `--json` prints."""
-        return {
-            "submission": self.submission.name,
-            "sha256": self.submission.sha256,
-            "version": __version__,
-            "seed": self.settings.seed,
-            "method": self.method,
-            "counts": self.counts,
-            "findings": [found.as_dictionary() for found in self.findings],
-            "outputs": [str(path) for path in self.outputs],
-        }
-
-    @property
-    def method(self) -> Literal["sobol", "random"]:
-        """The method that made the spread, which is not always the one asked for."""
-        return "random" if self.settings.method == "random" else "sobol"
-
-    @property
-    def exit_code(self) -> int:
-        """0 every row fine, 3 some rows not computed, 4 nothing computable."""
-        if not self.computed:
-            return 4
-        return 3 if self.counts["errors"] else 0
 
 
 def check(submission: str | Path, **options: Any) -> Outcome:

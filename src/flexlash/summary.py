@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flexlash.columns import DIMENSIONS
 from flexlash.findings import CATALOGUE, Finding, shown
-
-if TYPE_CHECKING:
-    from flexlash.pipeline import Outcome
+from flexlash.outcome import Outcome
 
 __all__ = [
     "cell_ranges",

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from flexlash.columns import DIMENSIONS, SETTINGS
+from flexlash.outcome import Outcome
 from flexlash.report.styles import Book
 from flexlash.result_columns import RESULTS
 from flexlash.tolerance.propagate import LINE_NOTE
 from flexlash.tolerance.sampling import REPLICATES
-
-if TYPE_CHECKING:
-    from flexlash.pipeline import Outcome
 
 __all__ = ["ERRATA", "LEFT_OUT", "MODEL", "write_about"]
 

@@ -7,12 +7,10 @@ import json
 import os
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import polars as pl
 
-if TYPE_CHECKING:
-    from flexlash.pipeline import Outcome
+from flexlash.outcome import Outcome
 
 __all__ = ["ENDINGS", "write_bytes", "write_outcome"]
 

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from flexlash.assessment import Computed
+from flexlash.outcome import Outcome
 from flexlash.summary import worst_first
-
-if TYPE_CHECKING:
-    from flexlash.assessment import Computed
-    from flexlash.pipeline import Outcome
 
 __all__ = ["DRAWN", "Drawn", "drawn_variants"]
 

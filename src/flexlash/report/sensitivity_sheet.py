@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flexlash.columns import DIMENSIONS
+from flexlash.outcome import Outcome
 from flexlash.report.selection import Drawn
 from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.summary import dimension_words
 from flexlash.units import ARCMIN
-
-if TYPE_CHECKING:
-    from flexlash.pipeline import Outcome
 
 __all__ = ["write_sensitivity"]
 

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from xlsxwriter.utility import xl_cell_to_rowcol
 
 from flexlash.columns import ENTRY_SHEETS
 from flexlash.findings import Finding, shown
+from flexlash.outcome import Outcome
 from flexlash.report.styles import Book
 from flexlash.result_columns import FINDINGS
 from flexlash.submission.headers import STATUS_HEADER, plain
 from flexlash.submission.read import ErrorCell, RawSheet, RawValue, Unstored
-
-if TYPE_CHECKING:
-    from flexlash.pipeline import Outcome
 
 __all__ = ["write_findings", "write_submission"]
 

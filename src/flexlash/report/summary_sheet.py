@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from flexlash.outcome import Outcome
 from flexlash.report.selection import Drawn
 from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.summary import dimension_words, rounded, share_words
-
-if TYPE_CHECKING:
-    from flexlash.pipeline import Outcome
 
 __all__ = ["light", "sentences", "write_summary"]
 

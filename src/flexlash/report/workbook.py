@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import datetime
 import io
-from typing import TYPE_CHECKING
 
 import xlsxwriter
 
+from flexlash.outcome import Outcome
 from flexlash.report.about_sheet import write_about
 from flexlash.report.results_sheet import write_results
 from flexlash.report.selection import drawn_variants
@@ -16,9 +16,6 @@ from flexlash.report.spread_sheet import write_curves, write_spread
 from flexlash.report.styles import Book
 from flexlash.report.submission_sheets import write_findings, write_submission
 from flexlash.report.summary_sheet import write_summary
-
-if TYPE_CHECKING:
-    from flexlash.pipeline import Outcome
 
 __all__ = ["report_bytes"]
 

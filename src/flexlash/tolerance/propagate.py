@@ -163,7 +163,7 @@ class Spread:
         for name in self._inputs:
             crossed = _evaluate(self._model, first | {name: second[name]}, self._inputs)
             caused = float(((other - middle) * (crossed - base)).mean())
-            shares[name] = min(max(caused / variance, 0.0), 1.0)
+            shares[name] = min(max(caused / variance, 0.0), 1.0) if variance > 0 else 0.0
         return shares
 
 
