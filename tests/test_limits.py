@@ -415,6 +415,24 @@ def test_one_tail_alone_is_cut_at_the_other_limit(one, inner, outer):
         assert set(exact) == {normal}
 
 
+@each_gap
+def test_limits_beyond_8_3_sigma_have_no_tail_to_cut(one, inner, outer):
+    """Normals whose limits lie 10σ away never leave them, so that nothing is cut between facing limits."""
+    rows = [row(name, -0.0002, 0.0002, limits_sigma=10.0) for name in (inner, outer)]
+    limits = limits_for(one, *rows)
+    assert shape_problems(one, limits) == (limits, ())
+
+
+@each_gap
+def test_tail_that_meets_limits_beyond_8_3_sigma_is_cut_alone(one, inner, outer):
+    """A normal whose tail faces one with limits at 10σ is cut at that one's limit, and it alone."""
+    limits = limits_for(one, row(inner, -0.0002, 0.0002), row(outer, -0.0002, 0.0002, limits_sigma=10.0))
+    kept, problems = shape_problems(one, limits)
+    assert kinds(problems) == [("cut", inner)]
+    assert kept[outer] == limits[outer]
+    assert reach_of(distributions(kept)[inner])[1] <= limits[outer].low * (1 + 1e-12)
+
+
 def test_cylinder_has_no_disk_to_close():
     """A flexspline without disk has no gap that tolerances could close."""
     one = variant("cylinder", disk_inner_radius=None)
@@ -503,6 +521,27 @@ def test_cut_bore_never_meets_the_hub(one, inner, outer):
         assert (ends[inner][1] + wall) / 2 <= ends[outer][0] * (1 + 1e-12)
     else:
         assert ends[inner][1] <= (ends[outer][0] + wall) / 2 * (1 + 1e-12)
+
+
+def test_bore_wall_and_hub_share_the_gap():
+    """With normal bore, wall and hub all three tails are cut so that not even their far ends meet together."""
+    one = from_bore(0.081, 0.0016, disk_inner_radius=0.040)
+    limits = limits_for(
+        one,
+        row("bore_diameter", -0.0005, 0.0005),
+        row("wall_thickness", -0.0004, 0.0004),
+        row("disk_inner_radius", -0.0003, 0.0003),
+    )
+    kept, problems = shape_problems(one, limits)
+    told = {problem.dimension for problem in problems if problem.detail != "0"}
+    assert told == {"bore_diameter", "wall_thickness", "disk_inner_radius"}
+    scatter = distributions(kept)
+    ends = {name: reach_of(distribution) for name, distribution in scatter.items()}
+    thinnest = (ends["bore_diameter"][0] + ends["wall_thickness"][0]) / 2
+    assert ends["disk_inner_radius"][1] <= thinnest * (1 + 1e-12)
+    assert ends["wall_thickness"][0] >= 0
+    inner, outer = radii(one, scatter)
+    assert (inner < outer).all()
 
 
 def test_wall_tail_that_would_close_the_disk_is_cut():

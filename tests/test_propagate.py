@@ -263,6 +263,16 @@ def test_shares_of_pure_interaction(method):
     assert all(0 <= share <= 0.08 for share in shares.values())
 
 
+def test_shares_of_an_event_too_rare_for_their_points():
+    """An output that differs in none of the points that make the shares has finite shares between 0 and 1."""
+    points = UnitPoints(["a", "b"], method="random", samples=2**17, seed=0)
+    normal = Normal(mean=0, sd=1)
+    seen = max(points.standard("a", normal, which).max() for which in ("leading", "second"))
+    spread = propagate(lambda a, b: (a > seen) + 0.0 * b, {"a": normal, "b": normal}, points=points)
+    assert spread.sd > 0
+    assert all(0 <= share <= 1 for share in spread.shares.values())
+
+
 def test_shares_do_not_depend_on_a_shift_of_the_output():
     """A large constant added to the output changes no share beyond rounding."""
     plain = propagate(ishigami, ISHIGAMI, method="sobol")

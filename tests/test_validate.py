@@ -541,13 +541,18 @@ def test_defaults_without_a_settings_sheet():
     assert validate(_submission([ROW])).settings == Settings()
 
 
-def test_the_right_one_of_two_tables_is_named(table, sound, tmp_path):
+UNREADABLE = {"E107": "Länge,b\n".encode("cp1252"), "E101": b"PAR1", "E102": b'a,b\n"x,2\n'}
+
+
+@pytest.mark.parametrize("code", UNREADABLE)
+@pytest.mark.parametrize("which", ["tolerances", "materials"])
+def test_a_bad_table_beside_is_named_itself(which, code, table, sound, tmp_path):
     """A table given beside a submission that cannot be read is named itself, not the submission."""
-    beside = tmp_path / "tolerances.csv"
-    beside.write_bytes("Länge,b\n".encode("cp1252"))
-    (found,) = check(table([sound]), tolerances=beside).findings
-    assert found.code == "E107"
-    assert found.message.startswith("tolerances.csv ")
+    beside = tmp_path / f"{which}.csv"
+    beside.write_bytes(UNREADABLE[code])
+    (found,) = check(table([sound]), **{which: beside}).findings
+    assert found.code == code
+    assert found.message.startswith(f"{which}.csv ")
 
 
 TEXTS = pytest.mark.xfail(strict=True, reason="beside a workbook the numbers of a CSV file are told as texts")

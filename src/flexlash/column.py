@@ -11,6 +11,10 @@ from flexlash.units import Unit, find_unit
 __all__ = ["Column"]
 
 
+_FEW = 8
+"""Most choices that a sentence lists."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Column:
     """One field of one sheet; bounds are in the printed unit."""
@@ -62,6 +66,8 @@ class Column:
     @property
     def requirement(self) -> str:
         """What a cell must hold, in words: `a number in mm greater than 0`."""
+        if len(self.choices) > _FEW:
+            return "an entry of its list"
         if self.choices:
             return "one of " + ", ".join(self.choices)
         if not self.is_number:

@@ -118,7 +118,7 @@ class Spread:
         """Return the standard error of one quantile."""
         below = (self.values <= self.quantile(probability)).mean(axis=1)
         of_share = max(_standard_error(below), 0.5 / self.size)
-        reach = max(0.2 * min(probability, 1 - probability), of_share)
+        reach = max(0.5 * min(probability, 1 - probability), of_share)
         low, high = max(probability - reach, 0.0), min(probability + reach, 1.0)
         slope = (self.quantile(high) - self.quantile(low)) / (high - low)
         return of_share * slope
