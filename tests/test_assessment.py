@@ -277,20 +277,17 @@ def test_findings_need_a_table(judge):
 
 @pytest.mark.parametrize("change", [{"rim_length_mm": 159.9, "rim_thickness_mm": 3}])
 @pytest.mark.parametrize("tolerance", ["rim_length,-0.2,0.2,mm,,uniform", "cylinder_length,-0.2,0.2,mm,,uniform"])
-@pytest.mark.xfail(strict=True, reason="limits at which the rim outgrows the cylinder pass untold")
 def test_a_rim_that_may_outgrow_the_cylinder(judge, change, tolerance):
-    """Limits at which the tooth rim is longer than the cylinder are impossible as well."""
-    assert "E314" in {found.code for found in judge(change, tolerances=[tolerance]).findings}
+    """Limits at which the tooth rim is longer than the cylinder are computed, and told."""
+    assert "W409" in {found.code for found in judge(change, tolerances=[tolerance]).findings}
 
 
-@pytest.mark.xfail(strict=True, reason="a hub whose tail is cut at both ends is told twice in the same words")
 def test_a_tail_cut_at_both_ends_is_told_once(judge):
     """A hub whose tails reach both 0 and the wall has one finding."""
     outcome = judge({}, tolerances=["disk_inner_radius,-15,15,mm,,normal"])
     assert _found(outcome) == [("W405", "disk_inner_radius_mm")]
 
 
-@pytest.mark.xfail(strict=True, reason="0.02 mm less half of IT10 is 3e-21 m, not 0, in binary")
 def test_a_wall_that_reaches_0_in_decimals(judge):
     """A wall of 0.02 mm with ± 0.02 mm from its grade reaches 0, whatever the last binary digit says."""
     outcome = judge({"wall_thickness_mm": 0.02}, tolerances=["wall_thickness,,,,IT10,uniform"])

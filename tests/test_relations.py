@@ -31,7 +31,7 @@ def _found(row):
     cells = {KEYS.index(key) + 1: value for key, value in row.items() if value is not None}
     ledger = Ledger("a.xlsx")
     raw = RawSheet(name="Variants", rows={1: dict(enumerate(KEYS, start=1)), 2: cells})
-    table = tabulate(raw, "Variants", ledger, from_text=False)
+    table = tabulate(raw, "Variants", ledger)
     own = len(ledger.findings)
     check_relations(table, ledger)
     return {(found.code, found.column): found for found in ledger.findings[own:]}

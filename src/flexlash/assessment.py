@@ -16,7 +16,7 @@ from flexlash.variant import Settings, Variant
 __all__ = ["Computed", "assess"]
 
 _REFINEMENTS = {column.dimension: column.key for column in VARIANTS if column.group == "Refinements"}
-_CODES = {"impossible": "E314", "untabulated": "E315", "cut": "W405"}
+_CODES = {"impossible": "E314", "untabulated": "E315", "cut": "W405", "overlap": "W409"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,6 +71,7 @@ def _blame_limits(validated: Validated, variant: Variant, problem: LimitsProblem
 def _details(problem: LimitsProblem) -> Iterator[tuple[str, str]]:
     """Yield the words that say what the limits reach, or which grade has no entry."""
     yield "untabulated", problem.detail
+    yield "overlap", problem.detail
     radius = problem.detail in DIMENSIONS
     yield "impossible", "the other radius of the disk" if radius else problem.detail
 

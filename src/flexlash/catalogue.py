@@ -157,6 +157,13 @@ CATALOGUE = _rules(
         "A newer template may hold columns that this program would not take into account.",
     ),
     (
+        "E117",
+        "two sheets of one name",
+        "{file} has two sheets of one name but for case and spaces: {other} and {found}.",
+        "Rename or delete one of them.",
+        "With two sheets of one name flexlash cannot know which holds.",
+    ),
+    (
         "E201",
         "required cell empty",
         "{place} {name} is empty: {requirement} is required.",
@@ -237,9 +244,16 @@ CATALOGUE = _rules(
     (
         "E212",
         "value not usable",
+        "{place} {name} = {value}: {requirement} is required, and it must be finite or short.",
+        "Type a number that Excel can show, or a shorter text.",
+        "Infinity, not-a-number, names over 200 and remarks over 1,000 characters cannot be used.",
+    ),
+    (
+        "E213",
+        "not a whole number",
         "{place} {name} = {value}: {requirement} is required.",
-        "Type a finite value.",
-        "Infinity, not-a-number and texts over 1,000 characters cannot be used.",
+        "Type a whole number.",
+        "A count, such as seed or samples, has no decimals.",
     ),
     (
         "E301",
@@ -459,6 +473,13 @@ CATALOGUE = _rules(
         '{place} holds "{value}" in an otherwise empty row, which was not read as a variant.',
         "Clear the cell, or complete the row.",
         "A stray character far below the table should not stop the work; it is reported in case it was meant.",
+    ),
+    (
+        "W409",
+        "refinements overlap at the limits",
+        "{place} {name} = {value}: at its limit in class {other} it exceeds {detail}.",
+        "Check the lengths and tolerances of rim and fillets.",
+        "The entered dimensions fit, but some units would not. Their wind-up is computed by continuing the formula.",
     ),
     (
         "I501",

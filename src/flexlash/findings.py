@@ -38,7 +38,8 @@ class Finding:
 def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **facts: Any) -> Finding:
     """Return a finding with the catalogue's words filled in.
 
-    `facts` are what the message names; `variant`, `value` and `suggestion` also become fields.
+    `facts` are what the message names; `variant`, `value` and `suggestion` also become fields. `entered` is the
+    value as entered, where the message names another.
     """
     rule = CATALOGUE[code]
     place = f"{sheet}!{cell}" if sheet and cell else sheet or str(facts.get("file", ""))
@@ -54,7 +55,7 @@ def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **f
         cell=cell,
         column=column,
         variant=str(facts.get("variant", "")),
-        value=shown(facts.get("value", "")),
+        value=shown(facts.get("entered", facts.get("value", ""))),
         message=message,
         fix=rule.fix.format(**words),
         suggestion=suggestion,

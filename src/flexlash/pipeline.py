@@ -30,6 +30,7 @@ __all__ = ["Options", "Outcome", "check", "run"]
 Progress = Callable[[int, int], None]
 
 _ROWS_PER_TASK = 8
+_ELSEWHERE = "stopped by an error of another row or sheet, see Findings"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,8 +42,8 @@ class Options:
     samples: int | None = None
     strict: bool = False
     jobs: int = 1
-    tolerances: Path | None = None
-    materials: Path | None = None
+    tolerances: str | Path | None = None
+    materials: str | Path | None = None
     progress: Progress | None = None
 
 
@@ -103,7 +104,7 @@ def _with_tables(submission: Submission, options: Options) -> Submission:
     given: dict[str, RawSheet] = {}
     for name, path in (("Tolerances", options.tolerances), ("Materials", options.materials)):
         if path is not None:
-            given[name] = _table_beside(path, name)
+            given[name] = _table_beside(Path(path), name)
     return replace(submission, sheets=submission.sheets | given)
 
 
@@ -211,8 +212,10 @@ def _results(outcome: Outcome) -> pl.DataFrame:
     records = []
     for row, name in outcome.validated.submitted:
         mine = by_row.get(row, [])
-        listed = ", ".join(f"{found.code} {found.cell}" for found in mine)
         one = outcome.computed.get(row)
+        listed = ", ".join(f"{found.code} {found.cell}" for found in mine)
+        if one is None and not any(found.level == "error" for found in mine):
+            listed = ", ".join(filter(None, [listed, _ELSEWHERE]))
         record = result_record(one.variant, one.nominal, one.variation) if one else {}
         status = "error" if one is None else "warning" if mine else "ok"
         records.append({**record, "variant": name, "status": status, "findings": listed or None})

@@ -15,7 +15,6 @@ __all__ = ["Fault", "as_number", "as_text", "suggested_number"]
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII)
 _UNIT_AT_END = re.compile(r"[\s%°′″'\"a-zA-Zµμ·⋅*/²³]+$")
 _DATES = (datetime.date, datetime.time, datetime.timedelta)
-_LONGEST_TEXT = 1000
 _LOOKALIKES = str.maketrans({"\u2212": "-", "\u2013": "-", "\u2012": "-", "\u066b": ".", "\u00a0": " "})
 
 
@@ -56,7 +55,7 @@ def as_number(value: RawValue, *, from_text: bool) -> float | Fault:
     return Fault(code="E202", value=value, suggestion=suggested_number(str(value)))
 
 
-def as_text(value: RawValue) -> str | Fault:
+def as_text(value: RawValue, longest: int) -> str | Fault:
     """Return a cell as a text without outer spaces and invisible characters; whole numbers lose their point."""
     if fault := _not_an_entry(value):
         return fault
@@ -66,7 +65,7 @@ def as_text(value: RawValue) -> str | Fault:
         return str(int(value)) if value == int(value) else repr(value)
     spaced = " ".join(unicodedata.normalize("NFC", str(value)).split())
     text = "".join(character for character in spaced if unicodedata.category(character) not in {"Cc", "Cf", "Cs"})
-    return text if len(text) <= _LONGEST_TEXT else Fault(code="E212", value=text)
+    return text if len(text) <= longest else Fault(code="E212", value=text)
 
 
 def suggested_number(text: str) -> str:

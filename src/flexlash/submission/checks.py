@@ -79,7 +79,7 @@ def check_cells(table: Table, ledger: Ledger) -> None:
             column=key,
             name=column.name,
             requirement=column.requirement,
-            value="" if value is None else value,
+            value=table.entered(row, key),
             suggestion=closest(value, list(column.choices)) if check == "E209" else "",
             rows=[row] if table.schema == "Variants" else [],
         )
@@ -96,7 +96,11 @@ def check_relations(table: Table, ledger: Ledger) -> None:
         if any((row, key) in table.faulty for key in relation.keys):
             continue
         value = record[relation.key]
-        facts = {"value": "" if value is None else value, **relation.facts(record)}
+        facts = {
+            "value": "" if value is None else value,
+            "entered": table.entered(row, relation.key),
+            **relation.facts(record),
+        }
         ledger.add(
             relation.code,
             sheet=table.sheet,

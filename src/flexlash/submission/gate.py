@@ -146,7 +146,7 @@ def _inspect(data: bytes) -> Admitted:
 
 
 def _check_archive(archive: zipfile.ZipFile) -> None:
-    """Refuse archives that are too large, that hide parts, or whose parts fail their checksum."""
+    """Refuse archives that are too large, that hide parts, or whose parts fail their checksum when read."""
     parts = archive.infolist()
     if len(parts) > MAXIMUM_PARTS:
         raise Refusal("E110", what="the number of parts", limit=f"{MAXIMUM_PARTS:,}")
@@ -164,8 +164,9 @@ def _check_archive(archive: zipfile.ZipFile) -> None:
             raise Refusal("E110", what="the unpacked size", limit=limit)
         if part.file_size > 2**20 and part.file_size > MAXIMUM_RATIO * part.compress_size:
             raise Refusal("E110", what="the compression", limit=f"{MAXIMUM_RATIO} to 1")
-    if archive.testzip() is not None:
-        raise Refusal("E102")
+    for part in parts:
+        if b"<!DOCTYPE" in archive.read(part):
+            raise Refusal("E105")
 
 
 def _strays(name: str) -> bool:

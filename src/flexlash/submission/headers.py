@@ -11,7 +11,7 @@ from typing import Any
 from flexlash.columns import Column, columns_of
 from flexlash.findings import shown
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.read import RawSheet, RawValue, column_letters
+from flexlash.submission.read import ErrorCell, RawSheet, RawValue, Unstored, column_letters
 from flexlash.units import Unit, find_unit
 
 __all__ = ["STATUS_HEADER", "Heading", "closest", "find_headings", "plain"]
@@ -50,6 +50,15 @@ def closest(text: str, names: list[str], cutoff: float = 0.6) -> str:
     by_plain = {plain(name): name for name in names}
     near = difflib.get_close_matches(plain(text), list(by_plain), n=1, cutoff=cutoff)
     return by_plain[near[0]] if near else ""
+
+
+def _as_header(cell: RawValue) -> str:
+    """Return a header cell as a text, whatever it holds."""
+    if isinstance(cell, ErrorCell):
+        return cell.text
+    if isinstance(cell, Unstored):
+        return "(formula without a result)"
+    return cell if isinstance(cell, str) else shown(cell)
 
 
 def _spellings(columns: dict[str, Column]) -> dict[str, str]:
@@ -92,7 +101,7 @@ class _Recogniser:
             return None
         heading = Heading(row=best)
         for place, cell in rows[best].items():
-            header = cell if isinstance(cell, str) else shown(cell)
+            header = _as_header(cell)
             if plain(header) == plain(STATUS_HEADER):
                 heading.ignored.add(place)
             elif header.strip():
@@ -106,11 +115,13 @@ class _Recogniser:
     def _require(self, heading: Heading, next_place: int) -> None:
         """Tell which required columns are missing, at the cell where they could be added."""
         for key, column in self.columns.items():
-            if column.required and key not in heading.places and key not in heading.doubtful.values():
+            if not column.required or key in heading.places:
+                continue
+            self.ledger.everything = True
+            if key not in heading.doubtful.values():
                 address = f"{column_letters(next_place)}{heading.row}"
                 facts: dict[str, Any] = {"column": key, "name": column.name, "label": column.label}
                 self.ledger.add("E111", sheet=self.sheet.name, cell=address, **facts)
-                self.ledger.everything = True
 
     def _place(self, heading: Heading, place: int, header: str) -> None:
         """Recognise one header cell, or say what is wrong with it."""

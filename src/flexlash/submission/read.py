@@ -38,9 +38,6 @@ _ERRORS = frozenset((
 _TOP = 15
 """Rows among which the header, and so the widest row of a table, is looked for."""
 
-MAXIMUM_ROWS = 20_000
-MAXIMUM_COLUMNS = 256
-
 
 @dataclass(frozen=True)
 class ErrorCell:
@@ -61,10 +58,14 @@ RawValue: TypeAlias = (
 
 @dataclass(frozen=True, kw_only=True)
 class RawSheet:
-    """Cells by row and column number, both from 1 as the user counts; blank cells are absent."""
+    """Cells by row and column number, both from 1 as the user counts; blank cells are absent.
+
+    `numbers_are_texts` tells a CSV sheet, in which a text may be a number.
+    """
 
     name: str
     rows: dict[int, dict[int, RawValue]]
+    numbers_are_texts: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,11 +131,8 @@ def _read_workbook(admitted: Admitted, name: str, digest: str) -> Submission:
                     rows[row][place] = shows if isinstance(shows, ErrorCell) else ErrorCell(str(shows))
                 for row, place in admitted.unstored.get(worksheet.title, ()):
                     rows.setdefault(row, {})[place] = Unstored()
-                _check_size(rows)
                 sheets[worksheet.title] = RawSheet(name=worksheet.title, rows=dict(sorted(rows.items())))
         properties = {one.name: str(one.value) for one in workbook.custom_doc_props.props}
-    except Refusal:
-        raise
     except Exception as fault:
         # openpyxl leaks a dozen exception types on damaged parts; none of their texts is for a user.
         raise Refusal("E102") from fault
@@ -147,14 +145,6 @@ def _read_workbook(admitted: Admitted, name: str, digest: str) -> Submission:
         role=properties.get(PROPERTY, ""),
         template_version=properties.get(f"{PROPERTY}_template_version", ""),
     )
-
-
-def _check_size(rows: dict[int, dict[int, RawValue]]) -> None:
-    """Refuse a sheet that holds more than a submission can mean."""
-    if len(rows) > MAXIMUM_ROWS:
-        raise Refusal("E110", what="the number of rows", limit=f"{MAXIMUM_ROWS:,}")
-    if max((max(cells) for cells in rows.values()), default=0) > MAXIMUM_COLUMNS:
-        raise Refusal("E110", what="the number of columns", limit=f"{MAXIMUM_COLUMNS:,}")
 
 
 def _rows(rows: Iterable[tuple[Any, ...]]) -> dict[int, dict[int, RawValue]]:
@@ -180,39 +170,39 @@ def read_table(data: bytes, name: str) -> tuple[RawSheet, str]:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as fault:
         raise Refusal("E107") from fault
-    tables = {sign: cells for sign in ",;\t" if (cells := _cells(text, sign)) is not None}
-    if not tables:
+    tables = {sign: records for sign in ",;\t" if (records := _records(text, sign)) is not None}
+    delimiter = max(tables, key=lambda sign: _evenness(tables[sign]), default="")
+    if not delimiter or (len(tables) < len(",;\t") and not _evenness(tables[delimiter])):
         raise Refusal("E102")
-    delimiter = max(tables, key=lambda sign: _evenness(tables[sign]))
-    return RawSheet(name=name, rows=tables[delimiter]), delimiter
+    rows: dict[int, dict[int, RawValue]] = {}
+    for number, values in enumerate(tables[delimiter], start=1):
+        cells: dict[int, RawValue] = {place: cell for place, cell in enumerate(values, start=1) if cell.strip()}
+        if cells:
+            rows[number] = cells
+    return RawSheet(name=name, rows=rows, numbers_are_texts=True), delimiter
 
 
-def _evenness(rows: dict[int, dict[int, RawValue]]) -> int:
+def _evenness(records: list[list[str]]) -> int:
     """Return how many cells of the top rows stand in rows of the commonest width: high for the true delimiter."""
-    widths = Counter(max(cells) for cells in list(rows.values())[:_TOP] if len(cells) > 1)
+    widths = Counter(len(values) for values in records[:_TOP] if len(values) > 1)
     return max((width * count for width, count in widths.items()), default=0)
 
 
-def _cells(text: str, delimiter: str) -> dict[int, dict[int, RawValue]] | None:
-    """Return the non-blank cells of a CSV text by row and column number; None where its quotes do not close."""
-    found: dict[int, dict[int, RawValue]] = {}
-    lines = io.StringIO(text, newline=None)
+def _records(text: str, delimiter: str) -> list[list[str]] | None:
+    """Return the records of a CSV text; None where its quotes do not close."""
     try:
-        for number, values in enumerate(csv.reader(lines, delimiter=delimiter, strict=True), start=1):
-            cells: dict[int, RawValue] = {place: cell for place, cell in enumerate(values, start=1) if cell.strip()}
-            if cells:
-                found[number] = cells
+        return list(csv.reader(io.StringIO(text, newline=None), delimiter=delimiter, strict=True))
     except csv.Error:
         return None
-    return found
 
 
 def _read_parquet(data: bytes) -> RawSheet:
     """Return a Parquet file as a sheet whose header stands in row 1."""
     import polars as pl
+    from polars import selectors
 
     try:
-        frame = pl.read_parquet(io.BytesIO(data))
+        frame = pl.read_parquet(io.BytesIO(data)).with_columns(selectors.decimal().cast(pl.Float64))
     except Exception as fault:
         raise Refusal("E102") from fault
     rows: dict[int, dict[int, RawValue]] = {1: dict(enumerate(frame.columns, start=1))}

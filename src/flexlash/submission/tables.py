@@ -6,10 +6,12 @@ from collections import defaultdict
 from typing import Any
 
 from flexlash import tables
+from flexlash.column import Column
 from flexlash.columns import DIMENSIONS, MATERIALS, SETTINGS, TOLERANCES
 from flexlash.submission.cells import Fault, as_number, as_text
 from flexlash.submission.headers import closest, plain
 from flexlash.submission.ledger import Ledger
+from flexlash.submission.read import RawValue
 from flexlash.submission.tabulate import Table
 from flexlash.tolerance.grades import is_grade
 from flexlash.units import find_unit
@@ -52,26 +54,14 @@ def _material(record: dict[str, Any], name: str) -> Material:
 def materials_of(table: Table, ledger: Ledger) -> dict[str, Material]:
     """Return the materials of a sheet by plain name; faulty ones are named in the ledger."""
     found: dict[str, Material] = {}
-    first: dict[str, int] = {}
+    doubled = _tell_doubled(table, ledger, ("material",), "E321")
     for record in table.frame.iter_rows(named=True):
         row, name = record["row"], record["material"]
         if name is None:
             continue
         key = plain(name)
-        if any((row, column) in table.faulty for column in _MATERIAL):
+        if row in doubled or any((row, column) in table.faulty for column in _MATERIAL):
             ledger.materials.add(key)
-        if key in first:
-            ledger.materials.add(key)
-            _blame(
-                table,
-                ledger,
-                "E321",
-                row,
-                "material",
-                value=name,
-                other=table.address(first[key], "material"),
-            )
-        first.setdefault(key, row)
         found.setdefault(key, _material(record, name))
         _check_constants(table, ledger, record, key)
     return found
@@ -92,6 +82,19 @@ def _check_constants(table: Table, ledger: Ledger, record: dict[str, Any], mater
         implied = young / (2 * (1 + poisson))
         if abs(shear / implied - 1) > 5e-4:  # noqa: PLR2004
             _blame(table, ledger, "W404", row, "shear_modulus_GPa", value=shear, other=implied)
+
+
+def _tell_doubled(table: Table, ledger: Ledger, keys: tuple[str, ...], code: str) -> set[int]:
+    """Mark every row whose keys another row has too, each with its partners; return the rows."""
+    groups: dict[tuple[str, ...], list[int]] = defaultdict(list)
+    for row, *names in table.frame.select("row", *keys).iter_rows():
+        if all(name is not None for name in names):
+            groups[tuple(plain(name) for name in names)].append(row)
+    doubled = {row: rows for rows in groups.values() if len(rows) > 1 for row in rows}
+    for row, rows in doubled.items():
+        others = ", ".join(table.address(other, keys[-1]) for other in rows if other != row)
+        _blame(table, ledger, code, row, keys[-1], value=table.entered(row, keys[-1]), other=others)
+    return set(doubled)
 
 
 def _blame(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts: Any) -> None:
@@ -135,23 +138,17 @@ def _tolerance_row(record: dict[str, Any]) -> ToleranceRow:
 def tolerance_classes_of(table: Table, ledger: Ledger) -> dict[str, list[ToleranceRow]]:
     """Return the tolerance classes of a sheet by plain name; faulty ones are named in the ledger."""
     classes: dict[str, list[ToleranceRow]] = defaultdict(list)
-    first: dict[tuple[str, str], int] = {}
+    doubled = _tell_doubled(table, ledger, ("tolerance_class", "dimension"), "E319")
     for record in table.frame.iter_rows(named=True):
-        row, name, dimension = record["row"], record["tolerance_class"], record["dimension"]
+        row, name = record["row"], record["tolerance_class"]
         if name is None:
             ledger.everything = True
             continue
         key = plain(name)
         classes[key] += []
-        sound = not any((row, column) in table.faulty for column in _TOLERANCE)
-        if sound and (key, dimension) in first:
-            other = table.address(first[key, dimension], "dimension")
-            _blame(table, ledger, "E319", row, "dimension", value=dimension, other=other)
-            sound = False
-        if sound:
-            first[key, dimension] = row
-            sound = _check_tolerance(table, ledger, record)
-        if sound:
+        sound = row not in doubled and record["dimension"] is not None
+        sound = sound and not any((row, column) in table.faulty for column in _TOLERANCE)
+        if sound and _check_tolerance(table, ledger, record):
             classes[key].append(_tolerance_row(record))
         else:
             ledger.classes.add(key)
@@ -192,50 +189,48 @@ def _meant_grade(text: str) -> str:
     return ""
 
 
-def settings_of(table: Table, ledger: Ledger, *, from_text: bool) -> Settings:
+def settings_of(table: Table, ledger: Ledger) -> Settings:
     """Return the settings of a sheet; a faulty one leaves nothing computable."""
     columns = {column.key: column for column in SETTINGS}
     values: dict[str, Any] = {}
-    first: dict[str, int] = {}
     before = len(ledger.findings)
-    place = table.heading.places.get("value", 2)
+    doubled = _tell_doubled(table, ledger, ("setting",), "E323")
+    place = table.heading.places.get("value", 0)
     for record in table.frame.iter_rows(named=True):
         row, name = record["row"], record["setting"]
-        if name is None or (row, "setting") in table.faulty:
-            continue
-        if name in first:
-            other = table.address(first[name], "setting")
-            _blame(table, ledger, "E323", row, "setting", value=name, other=other)
-            continue
-        first[name] = row
         raw = table.cells[row].get(place)
-        if raw is None:
+        if name not in columns or row in doubled or raw is None:
             continue
         column = columns[name]
-        value = as_number(raw, from_text=from_text) if column.is_number else as_text(raw)
-        if column.choices and isinstance(value, str):
-            value = value.casefold()
-        fault = value if isinstance(value, Fault) else _setting_fault(name, value)
-        if fault is None:
+        value = _setting_value(column, raw, from_text=table.numbers_are_texts)
+        if not isinstance(value, Fault):
             values[name] = value
-        elif (row, "value") not in table.faulty:
-            facts: dict[str, Any] = {"suggestion": fault.suggestion, "requirement": column.requirement}
-            cell = table.address(row, "value")
-            ledger.add(fault.code, sheet=table.sheet, cell=cell, column=name, name=name, value=fault.value, **facts)
-    if any(one.level == "error" for one in ledger.findings[before:]):
+            continue
+        facts: dict[str, Any] = {"suggestion": value.suggestion, "requirement": column.requirement}
+        cell = table.address(row, "value")
+        ledger.add(value.code, sheet=table.sheet, cell=cell, column=name, name=name, value=value.value, **facts)
+    faulty = any((row, "setting") in table.faulty for row in table.frame["row"])
+    if faulty or any(one.level == "error" for one in ledger.findings[before:]):
         ledger.everything = True
     return settings_from(values)
 
 
-def _setting_fault(name: str, value: str | float) -> Fault | None:
-    """Return why a setting's value is out of its bounds or list, or None."""
-    column = next(column for column in SETTINGS if column.key == name)
-    if isinstance(value, str):
-        known = value in column.choices
-        return None if known else Fault(code="E209", value=value, suggestion=closest(value, list(column.choices)))
+def _setting_value(column: Column, raw: RawValue, *, from_text: bool) -> str | float | Fault:
+    """Return a setting's value within its bounds or list, or why it has none."""
+    if column.is_number:
+        value = as_number(raw, from_text=from_text)
+        return value if isinstance(value, Fault) else _number_fault(column, value) or value
+    text = as_text(raw, longest=200)
+    if isinstance(text, Fault) or text.casefold() in column.choices:
+        return text if isinstance(text, Fault) else text.casefold()
+    return Fault(code="E209", value=text, suggestion=closest(text, list(column.choices)))
+
+
+def _number_fault(column: Column, value: float) -> Fault | None:
+    """Return why a number is out of a setting's bounds, or None."""
     low, high = column.minimum, column.maximum
     if column.type == "integer" and value != int(value):
-        return Fault(code="E212", value=value)
+        return Fault(code="E213", value=value)
     if low is not None and (value < low or (column.exclusive_minimum and value == low)):
         return Fault(code="E207", value=value)
     return Fault(code="E208", value=value) if high is not None and value > high else None

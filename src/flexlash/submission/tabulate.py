@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -18,6 +19,9 @@ __all__ = ["Table", "tabulate"]
 
 _MEANT_BESIDE = "setting"
 """First column of Settings, where the template explains each setting in a column without a header."""
+
+_JUDGED_LATER = ("Settings", "value")
+"""The cell whose meaning depends on the cell beside it."""
 
 _BLANK = " \t\r\n\u00a0\u200b\ufeff"
 
@@ -36,26 +40,38 @@ class Table:
     frame: pl.DataFrame
     cells: dict[int, dict[int, RawValue]] = field(default_factory=dict)
     faulty: set[tuple[int, str]] = field(default_factory=set)
+    numbers_are_texts: bool = False
+
+    def entered(self, row: int, key: str) -> Any:
+        """Return a cell as the user entered it, an empty text where it is blank."""
+        return self.cells[row].get(self.heading.places.get(key, 0), "")
 
     def address(self, row: int, key: str) -> str:
         """Return a cell's address; a column that the sheet lacks stands at the row's first cell."""
         return f"{column_letters(self.heading.places.get(key, 1))}{row}"
 
 
-def tabulate(sheet: RawSheet, schema: str, ledger: Ledger, *, from_text: bool) -> Table | None:
+def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
     """Return the typed table of an entry sheet, or None (with a finding) when it has no header row."""
     heading = find_headings(sheet, schema, ledger)
     if heading is None:
         return None
     columns = columns_of(schema)
-    table = Table(sheet=sheet.name, schema=schema, heading=heading, frame=pl.DataFrame())
+    table = Table(
+        sheet=sheet.name,
+        schema=schema,
+        heading=heading,
+        frame=pl.DataFrame(),
+        numbers_are_texts=sheet.numbers_are_texts,
+    )
     read = {place: columns[key] for key, place in heading.places.items()}
     records: list[dict[str, Any]] = []
     for number, cells in _data_rows(sheet, heading, next(iter(columns)), ledger):
         record: dict[str, Any] = {"row": number}
         for place, value in cells.items():
             if place in read:
-                record[read[place].key] = _typed(table, read[place], number, value, ledger, from_text=from_text)
+                cell = _Cell(table=table, column=read[place], row=number, value=value)
+                record[read[place].key] = _typed(cell, ledger)
             elif place in heading.doubtful:
                 _spoil(ledger, schema, number)
                 table.faulty.add((number, heading.doubtful[place]))
@@ -103,31 +119,54 @@ def _data_rows(
         ledger.add("I509", sheet=sheet.name, cell=f"{letters}{number}", value=letters)
 
 
-def _typed(
-    table: Table, column: Column, row: int, value: RawValue, ledger: Ledger, *, from_text: bool
-) -> str | float | None:
+@dataclass(frozen=True, kw_only=True)
+class _Cell:
+    """A raw cell with its row and column."""
+
+    table: Table
+    column: Column
+    row: int
+    value: RawValue
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What a finding says of its place."""
+        column, table = self.column, self.table
+        address = table.address(self.row, column.key)
+        return {"sheet": table.sheet, "cell": address, "column": column.key, "name": column.name}
+
+
+def _typed(cell: _Cell, ledger: Ledger) -> str | float | None:
     """Return a cell's typed value; None, with a finding, when it has none."""
-    found = as_number(value, from_text=from_text) if column.is_number else as_text(value)
-    address = table.address(row, column.key)
-    place: dict[str, Any] = {"sheet": table.sheet, "cell": address, "column": column.key, "name": column.name}
+    column, value = cell.column, cell.value
+    if (column.sheet, column.key) == _JUDGED_LATER:
+        return _as_shown(value)
+    found = (
+        as_number(value, from_text=cell.table.numbers_are_texts)
+        if column.is_number
+        else as_text(value, _longest(column))
+    )
+    if isinstance(found, float):
+        factor = cell.table.heading.factors[column.key]
+        found = found if factor == 1 else found * factor
+        found = found if math.isfinite(found) else Fault(code="E212", value=value)
     if isinstance(found, Fault):
-        table.faulty.add((row, column.key))
-        ledger.add(
-            found.code,
-            value=found.value,
-            suggestion=found.suggestion,
-            requirement=column.requirement,
-            rows=[row] if table.schema == "Variants" else [],
-            **place,
-        )
+        cell.table.faulty.add((cell.row, column.key))
+        rows = [cell.row] if cell.table.schema == "Variants" else []
+        facts = {"suggestion": found.suggestion, "requirement": column.requirement, **cell.facts}
+        ledger.add(found.code, value=found.value, rows=rows, **facts)
         return None
     if isinstance(found, float):
-        factor = table.heading.factors[column.key]
-        return found if factor == 1 else found * factor
+        return found
     meant = _choice(column, found)
     if meant != found or (isinstance(value, str) and found != value):
-        ledger.add("I504", value=value, suggestion=meant, **place)
+        ledger.add("I504", value=value, suggestion=meant, **cell.facts)
     return meant or None
+
+
+def _longest(column: Column) -> int:
+    """Return how many characters a text may have: names are short, remarks are not."""
+    return 1000 if column.key in {"notes", "source"} else 200
 
 
 def _choice(column: Column, text: str) -> str:
@@ -142,5 +181,5 @@ def _as_shown(value: RawValue | None) -> str:
     """Return a cell of an extra column as a text."""
     if value is None:
         return ""
-    found = as_text(value)
+    found = as_text(value, longest=1000)
     return str(found.value) if isinstance(found, Fault) else found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -25,6 +26,8 @@ from flexlash.variant import Material, Settings, ToleranceRow, Variant
 __all__ = ["TEMPLATE_VERSION", "Validated", "validate"]
 
 TEMPLATE_VERSION = 1
+MAXIMUM_ROWS = 20_000
+MAXIMUM_COLUMNS = 256
 
 _OTHER_SOURCES = "Other sources"
 
@@ -65,14 +68,14 @@ def validate(submission: Submission) -> Validated:
     sheets = _entry_sheets(submission)
     tables: dict[str, Table] = {}
     for schema, sheet in sheets.items():
-        table = tabulate(sheet, schema, ledger, from_text=_from_text(submission, schema))
+        table = tabulate(sheet, schema, ledger)
         if table is not None:
             check_cells(table, ledger)
             result.header_rows[schema] = table.heading.row
             tables[schema] = table
     if submission.delimiter not in {"", ","}:
         ledger.add("I507", value={";": "semicolon", "\t": "tab"}[submission.delimiter])
-    _fill_tables(result, submission, tables)
+    _fill_tables(result, submission, sheets.keys(), tables)
     result.table = tables.get("Variants")
     if result.table is not None:
         _check_rows(result, result.table)
@@ -87,11 +90,6 @@ def validate(submission: Submission) -> Validated:
     return result
 
 
-def _from_text(submission: Submission, schema: str) -> bool:
-    """Whether a sheet's numbers are texts: in CSV, also in a CSV given beside another kind."""
-    return submission.kind == "csv" or (submission.kind == "parquet" and schema != "Variants")
-
-
 def _check_version(submission: Submission) -> None:
     """Refuse a template of a later version."""
     version = submission.template_version
@@ -101,32 +99,47 @@ def _check_version(submission: Submission) -> None:
 
 def _entry_sheets(submission: Submission) -> dict[str, RawSheet]:
     """Return the entry sheets by schema; letter case and spaces of their names do not matter."""
-    by_plain = {plain(name): sheet for name, sheet in submission.sheets.items()}
+    by_plain: dict[str, RawSheet] = {}
+    for name, sheet in submission.sheets.items():
+        if plain(name) in by_plain and plain(name) in map(plain, ENTRY_SHEETS):
+            raise Refusal("E117", found=name, other=by_plain[plain(name)].name)
+        by_plain[plain(name)] = sheet
     if plain("Variants") not in by_plain:
         names = list(submission.sheets)
         listed = "the sheets " + ", ".join(names[:8]) if names else "no sheet"
         raise Refusal("E108", found=listed, suggestion=closest("Variants", names))
-    return {schema: by_plain[plain(schema)] for schema in ENTRY_SHEETS if plain(schema) in by_plain}
+    found = {schema: by_plain[plain(schema)] for schema in ENTRY_SHEETS if plain(schema) in by_plain}
+    if submission.kind == "workbook":
+        for sheet in found.values():
+            _check_size(sheet)
+    return found
 
 
-def _fill_tables(result: Validated, submission: Submission, tables: dict[str, Table]) -> None:
+def _check_size(sheet: RawSheet) -> None:
+    """Refuse a sheet that holds more than a submission can mean."""
+    if len(sheet.rows) > MAXIMUM_ROWS:
+        raise Refusal("E110", what="the number of rows", limit=f"{MAXIMUM_ROWS:,}")
+    if max((max(cells) for cells in sheet.rows.values()), default=0) > MAXIMUM_COLUMNS:
+        raise Refusal("E110", what="the number of columns", limit=f"{MAXIMUM_COLUMNS:,}")
+
+
+def _fill_tables(result: Validated, submission: Submission, present: Collection[str], tables: dict[str, Table]) -> None:
     """Take materials, tolerance classes and settings from the submission, else the built-in ones."""
     ledger = result.ledger
     if "Materials" in tables:
         result.materials = materials_of(tables["Materials"], ledger)
-    else:
+    elif "Materials" not in present:
         result.materials = built_in_materials()
         if submission.kind == "workbook":
             ledger.add("I505", value="sheet Materials", other="materials")
     if "Tolerances" in tables:
         result.classes = tolerance_classes_of(tables["Tolerances"], ledger)
-    if "standard" not in result.classes:
+    if "standard" not in result.classes and ("Tolerances" in tables or "Tolerances" not in present):
         result.classes["standard"] = standard_class()
         if submission.kind == "workbook":
             ledger.add("I505", value="rows for tolerance class standard", other="class")
     if "Settings" in tables:
-        from_text = _from_text(submission, "Settings")
-        result.settings = settings_of(tables["Settings"], ledger, from_text=from_text)
+        result.settings = settings_of(tables["Settings"], ledger)
 
 
 def _check_rows(result: Validated, table: Table) -> None:
@@ -148,7 +161,7 @@ def _check_rows(result: Validated, table: Table) -> None:
             ("tolerance_class", "E309", result.classes, ledger.classes, known_classes),
         ):
             value = record[key]
-            if value is None or (row, key) in table.faulty:
+            if value is None or (row, key) in table.faulty or not known:
                 continue
             if plain(value) not in known:
                 _blame(table, ledger, code, row, key, value=value, suggestion=closest(value, names, 0.5))

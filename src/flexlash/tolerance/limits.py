@@ -14,6 +14,9 @@ from flexlash.variant import ToleranceRow, Variant
 __all__ = ["Limits", "LimitsProblem", "distributions", "limits_of", "shape_problems"]
 
 _RADII = frozenset({"mean_radius", "disk_inner_radius", "disk_outer_radius"})
+_ROUNDING = 1e-12
+"""Decimals become binary with a relative error below this; limits that close count as reached."""
+
 _FAR = 8.3
 """Beyond this many standard deviations a normal has no weight in double precision."""
 
@@ -107,7 +110,7 @@ def shape_problems(
     """Return limits with far normal tails cut at the valid region, and the problems found.
 
     Kind `impossible`: the limits themselves reach an impossible shape. Kind `cut`: only the tail of an
-    unbounded normal would.
+    unbounded normal would. Kind `overlap`: refinements overlap at the limits, beyond what they are meant for.
     """
     problems = list(_beyond_bounds(limits))
     if problems:
@@ -124,7 +127,9 @@ def shape_problems(
     sides = _disk_sides(variant)
     if sides:
         problems.extend(_keep_disk_open(variant, kept, *sides))
-    return kept, tuple(problems)
+    problems.extend(_overlaps(variant, limits))
+    once = {(problem.kind, problem.dimension): problem for problem in problems}
+    return kept, tuple(once.values())
 
 
 def _bounds(name: str) -> tuple[float, float]:
@@ -138,8 +143,11 @@ def _beyond_bounds(limits: Mapping[str, Limits]) -> Iterator[LimitsProblem]:
     """Yield the dimensions whose own limits leave the valid region."""
     for name, limit in limits.items():
         low, high = _bounds(name)
-        if limit.low <= low or limit.high > high:
-            yield LimitsProblem(kind="impossible", dimension=name, detail="0" if limit.low <= low else "0.5")
+        slack = _ROUNDING * (abs(limit.low) + abs(limit.high))
+        if limit.low <= low + slack:
+            yield LimitsProblem(kind="impossible", dimension=name, detail="0")
+        elif limit.high > high + slack:
+            yield LimitsProblem(kind="impossible", dimension=name, detail="0.5")
 
 
 def _ends(variant: Variant, limits: Mapping[str, Limits], name: str) -> tuple[float, float]:
@@ -192,6 +200,24 @@ def _keep_disk_open(
         cut = (low, min(high, limit.high + kept)) if upwards else (max(low, limit.low - kept), high)
         limits[name] = replace(limit, cut=cut)
         yield LimitsProblem(kind="cut", dimension=name, detail="the other disk radius")
+
+
+def _overlaps(variant: Variant, limits: Mapping[str, Limits]) -> Iterator[LimitsProblem]:
+    """Yield the refinements that at their limits outgrow the cylinder or the disk."""
+
+    def reached(name: str, end: int) -> float:
+        return _ends(variant, limits, name)[end] if name in variant.dimensions else 0.0
+
+    along = [name for name in ("rim_length", "junction_fillet_radius") if name in variant.dimensions]
+    if sum(reached(name, 1) for name in along) > reached("cylinder_length", 0) and along:
+        yield LimitsProblem(kind="overlap", dimension=along[-1], detail="the cylinder length")
+    sides = _disk_sides(variant)
+    if sides and "hub_fillet_radius" in variant.dimensions:
+        inner, outer = sides
+        width = sum(factor * reached(name, 0) for name, factor in outer.items())
+        width -= sum(factor * reached(name, 1) for name, factor in inner.items())
+        if reached("hub_fillet_radius", 1) > width:
+            yield LimitsProblem(kind="overlap", dimension="hub_fillet_radius", detail="the width of the disk")
 
 
 def distributions(limits: Mapping[str, Limits]) -> dict[str, Distribution]:

@@ -209,8 +209,8 @@ def propagate(
 
     >>> from flexlash.tolerance import Normal, propagate
     >>> spread = propagate(lambda a, b: a + b, {"a": Normal(0, 3), "b": Normal(0, 4)}, method="sobol")
-    >>> f"{spread.sd:.3f} {spread.shares['b']:.2f}"
-    '5.000 0.64'
+    >>> f"{spread.sd:.2f} {spread.shares['b']:.2f}"
+    '5.00 0.64'
     """
     if method not in get_args(Method):
         raise ValueError(f"method {method!r} is not one of {', '.join(get_args(Method))}")
