@@ -87,6 +87,13 @@ def test_findings_of_one_rule_are_drawn_together(table, sound, capsys, main_in):
     assert len(lines) < 10
 
 
+def test_repairs_of_one_kind_are_one_line(table, sound, capsys, main_in):
+    """Information of one kind is drawn together without its messages, which are in the report."""
+    rows = [{**sound, "variant": f"v{number}", "flexspline_type": "Cup"} for number in range(4)]
+    assert main_in("check", table(rows)) == 0
+    assert capsys.readouterr().out.splitlines()[0] == "info I504 spelling repaired: Variants!B2:B5"
+
+
 def test_run_keeps_results_and_messages_apart(table, sound, capsys, main_in):
     """Run prints findings on stderr and the summary on stdout."""
     path = table([sound, {**sound, "variant": "b", "torque_Nm": -1}])

@@ -213,6 +213,23 @@ def test_the_same_outcome_gives_the_same_bytes(study):
     assert report_bytes(study[0]) == study[1].read_bytes()
 
 
+def test_a_table_alone_shows_the_built_in_materials_and_tolerances(table, sound, tmp_path):
+    """A CSV submission's report shows the built-in materials and the class standard that were used."""
+    run(table([sound]), tmp_path / "report.xlsx", samples=256)
+    book = _open(tmp_path / "report.xlsx")
+    assert book["Materials"]["A2"].value == "20Cr2Ni4"
+    assert book["Materials"]["B2"].value == 211
+    assert [cell.value for cell in book["Tolerances"][3]][:1] == ["mean_radius"]
+
+
+def test_notes_that_say_row_status_stay(table, sound, tmp_path):
+    """Only the header of the status column hides a column, not a note of the same words."""
+    run(table([{**sound, "notes": "Row status"}]), tmp_path / "report.xlsx", samples=256)
+    cells = [cell.value for row in _open(tmp_path / "report.xlsx")["Submission"].iter_rows() for cell in row]
+    assert "Row status" in cells
+    assert "notes" in cells
+
+
 @needs_libreoffice
 def test_every_formula_is_stored_with_its_value(study, tmp_path):
     """Recalculated by a spreadsheet program, every cell of the report keeps its stored value."""

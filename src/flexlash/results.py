@@ -1,4 +1,4 @@
-"""Numbers of all stages → the Results table: contract's columns, printed units, submitted order."""
+"""Numbers of all stages → the Results table: its columns in order, printed units, submitted order."""
 
 from __future__ import annotations
 

@@ -13,6 +13,7 @@ from flexlash.report.styles import Book
 from flexlash.result_columns import FINDINGS
 from flexlash.submission.headers import STATUS_HEADER, plain
 from flexlash.submission.read import ErrorCell, RawSheet, RawValue, Unstored
+from flexlash.submission.tables import BUILT_IN_SHEETS, built_in_sheet
 
 __all__ = ["write_findings", "write_submission"]
 
@@ -52,21 +53,20 @@ def _write_finding(book: Book, sheet: Any, row: int, found: Finding) -> None:
 
 
 def write_submission(book: Book, outcome: Outcome) -> None:
-    """Write each entry sheet of the submission as read, guilty cells coloured."""
+    """Write each entry sheet of the submission as read, guilty cells coloured, or the built-in table used instead."""
     levels: dict[tuple[str, str], str] = {}
     for found in outcome.findings:
         if found.cell and found.level != "info" and levels.get((found.sheet, found.cell)) != "error":
             levels[found.sheet, found.cell] = found.level
-    for raw in outcome.submission.sheets.values():
-        title = _TITLES.get(plain(raw.name))
-        if title:
+    rows = outcome.validated.header_rows if outcome.validated else {}
+    by_title = {_TITLES.get(plain(raw.name), ""): raw for raw in outcome.submission.sheets.values()}
+    for schema, title in zip(ENTRY_SHEETS, _TITLES.values(), strict=True):
+        raw = by_title.get(title)
+        if raw:
             marked = {xl_cell_to_rowcol(cell): level for (name, cell), level in levels.items() if name == raw.name}
-            header = (
-                outcome.validated.header_rows.get("Variants" if title == "Submission" else title, 0)
-                if outcome.validated
-                else 0
-            )
-            _write_mirror(book, raw, title, marked, header)
+            _write_mirror(book, raw, title, marked, rows.get(schema, 0))
+        elif schema in BUILT_IN_SHEETS:
+            _write_mirror(book, built_in_sheet(schema), title, {}, 1)
 
 
 def _write_mirror(book: Book, raw: RawSheet, title: str, marked: dict[tuple[int, int], str], header: int) -> None:
@@ -78,8 +78,7 @@ def _write_mirror(book: Book, raw: RawSheet, title: str, marked: dict[tuple[int,
         sheet.repeat_rows(header - 1)
     ignored = {
         place
-        for cells in raw.rows.values()
-        for place, value in cells.items()
+        for place, value in raw.rows.get(header, {}).items()
         if isinstance(value, str) and plain(value) == plain(STATUS_HEADER)
     }
     places = [place for cells in raw.rows.values() for place in cells if place not in ignored]

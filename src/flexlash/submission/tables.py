@@ -7,22 +7,46 @@ from typing import Any
 
 from flexlash import tables
 from flexlash.column import Column
-from flexlash.columns import DIMENSIONS, MATERIALS, SETTINGS, TOLERANCES
+from flexlash.columns import DIMENSIONS, ENTRY_SHEETS, MATERIALS, SETTINGS, TOLERANCES
 from flexlash.submission.cells import Fault, as_number, as_text
 from flexlash.submission.headers import closest, plain
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.read import RawValue
+from flexlash.submission.read import RawSheet, RawValue
 from flexlash.submission.tabulate import Table
 from flexlash.tolerance.grades import is_grade
 from flexlash.units import find_unit
 from flexlash.variant import Material, Settings, ToleranceRow
 
-__all__ = ["built_in_materials", "materials_of", "settings_of", "standard_class", "tolerance_classes_of"]
+__all__ = [
+    "BUILT_IN_SHEETS",
+    "built_in_materials",
+    "built_in_sheet",
+    "materials_of",
+    "settings_of",
+    "standard_class",
+    "tolerance_classes_of",
+]
 
 _MATERIAL = {column.key: column for column in MATERIALS}
 _TOLERANCE = {column.key: column for column in TOLERANCES}
+BUILT_IN_SHEETS = {"Materials": "materials", "Tolerances": "standard_class"}
+"""Sheets that a submission may lack, with the table that is used instead."""
+
 _CONSTANTS = ("youngs_modulus_GPa", "poisson_ratio", "shear_modulus_GPa")
 _UNGRADED = frozenset({"hub_fillet_radius", "junction_fillet_radius"})
+
+
+def built_in_sheet(schema: str) -> RawSheet:
+    """Return a built-in table as it would stand on its sheet."""
+    columns = [column for column in ENTRY_SHEETS[schema] if column.key != "tolerance_class"]
+    rows: dict[int, dict[int, RawValue]] = {1: {place: column.label for place, column in enumerate(columns, start=1)}}
+    for number, row in enumerate(tables.rows(BUILT_IN_SHEETS[schema]), start=2):
+        rows[number] = {
+            place: float(row[column.key]) if column.is_number else row[column.key]
+            for place, column in enumerate(columns, start=1)
+            if row.get(column.key)
+        }
+    return RawSheet(name=schema, rows=rows)
 
 
 def built_in_materials() -> dict[str, Material]:

@@ -177,9 +177,7 @@ def _choice(column: Column, text: str) -> str:
     return text
 
 
-def _as_shown(value: RawValue | None) -> str:
-    """Return a cell of an extra column as a text."""
-    if value is None:
-        return ""
+def _as_shown(value: RawValue) -> str:
+    """Return a cell as a message shows it."""
     found = as_text(value, longest=1000)
     return str(found.value) if isinstance(found, Fault) else found

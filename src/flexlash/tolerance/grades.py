@@ -42,14 +42,14 @@ def deviations(grade: str, size: float) -> tuple[float, float] | None:
     millimetres = round(size * 1e3, 9)
     if general := _GENERAL.fullmatch(grade):
         half = _cell("iso2768", general[1], millimetres)
-        return None if half is None else (-half * 1e-3, half * 1e-3)
+        return None if half is None else (-half / 1e3, half / 1e3)
     fundamental = _GRADE.fullmatch(grade)
     if fundamental is None:
         raise ValueError(f"{grade!r} is not a tolerance grade")
     width = _cell("iso286", f"IT{fundamental[2]}", millimetres)
     if width is None:
         return None
-    metres = width * 1e-6
+    metres = width / 1e6
     if fundamental[1] == "h":
         return -metres, 0.0
     return (0.0, metres) if fundamental[1] == "H" else (-metres / 2, metres / 2)
