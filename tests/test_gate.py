@@ -131,6 +131,7 @@ REFUSED = {
     "an encrypted workbook": ("E103", OLE2 + b"\0" * 504 + "EncryptedPackage".encode("utf-16-le")),
     "an encrypted part": ("E103", _encrypted()),
     "an .ods": ("E104", _zip({"mimetype": "application/vnd.oasis.opendocument.spreadsheet", "content.xml": "<a/>"})),
+    "an .ods without its type": ("E104", _zip({"content.xml": "<a/>", "META-INF/manifest.xml": "<a/>"})),
     "an .xlsb": ("E104", _book_of(**{"xl/workbook.bin": "x"})),
     "an archive without relations": ("E101", _zip({"a.txt": "x"})),
     "an archive whose relations lead nowhere": ("E101", _book_of(**{"xl/workbook.xml": None})),
@@ -398,7 +399,9 @@ def test_a_limit_at_its_edge(name, monkeypatch):
 
 def test_styles_at_their_edge():
     """A cell may refer to the last of the workbook's cell formats, not beyond; other lists of formats do not count."""
-    styles = ONE_STYLE.replace("<cellXfs><xf/>", "<cellXfs><xf><alignment/></xf><xf><alignment/></xf>")
+    styles = ONE_STYLE.replace(
+        "<xf/></cellXfs>", "<xf><alignment/></xf><xf><alignment/></xf></cellXfs><dxfs><xf/></dxfs>"
+    )
     for style, code in ((0, None), (1, None), (2, "E102"), (-1, "E102")):
         cells = f'<row r="1"><c r="A1" s="{style}"><v>1</v></c></row>'
         assert _refused(_book_of(cells, **{STYLES: styles})) == code
@@ -561,6 +564,12 @@ def test_a_doctype_in_another_encoding(tmp_path):
     parts = _parts()
     (part,) = [name for name in parts if name.startswith("xl/worksheets/")]
     assert _refused_or_read(tmp_path / "a.xlsx", _book_of(**{part: sheet.encode("utf-16")})) == "E105"
+
+
+def test_a_picture_may_declare_its_type():
+    """A picture that Excel keeps beside the sheets, and nobody reads, may have a DOCTYPE as SVG files do."""
+    picture = '<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/x.dtd"><svg/>'
+    assert _refused(_book_of(**{"xl/media/image1.svg": picture})) is None
 
 
 def test_a_formula_without_address_or_result(tmp_path):

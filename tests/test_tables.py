@@ -1,5 +1,7 @@
 """Materials, Tolerances and Settings: every fault by its code and cell, and what a sound row becomes in SI."""
 
+from dataclasses import replace
+
 import pytest
 
 from flexlash.submission.checks import check_cells
@@ -7,6 +9,7 @@ from flexlash.submission.ledger import Ledger
 from flexlash.submission.read import ErrorCell, RawSheet, Unstored
 from flexlash.submission.tables import (
     built_in_materials,
+    built_in_sheet,
     materials_of,
     settings_of,
     standard_class,
@@ -84,6 +87,28 @@ def test_built_in_materials():
         assert 500e6 < material.yield_strength < 2500e6
 
 
+def test_built_in_materials_are_shown_as_they_are_used():
+    """The built-in materials, read as a sheet as the report shows them, are those that are computed with."""
+    ledger = Ledger("a.xlsx")
+    table = tabulate(built_in_sheet("Materials"), "Materials", ledger)
+    assert materials_of(table, ledger) == built_in_materials()
+    assert ledger.findings == []
+
+
+def test_the_built_in_class_is_shown_as_it_is_used():
+    """Class standard, read as the report shows it with its name put in, is the one that is computed with."""
+    shown = built_in_sheet("Tolerances")
+    width = len(TOLERANCES)
+    rows = {
+        number: {**cells, width: "Tolerance class" if number == 1 else "standard"}
+        for number, cells in shown.rows.items()
+    }
+    ledger = Ledger("a.xlsx")
+    table = tabulate(RawSheet(name="Tolerances", rows=rows), "Tolerances", ledger)
+    found = tolerance_classes_of(table, ledger)["standard"]
+    assert [replace(row, row=0) for row in found] == standard_class()
+
+
 def test_a_material_in_si():
     """A material becomes its constants in Pa, found by its name in any case and spacing."""
     materials, ledger = _materials(["My Steel", 211, 0.3, None, 7850, 900], ["G only", None, None, 80.5, None, None])
@@ -121,9 +146,19 @@ def test_a_faulty_material_is_named(row, told):
     assert not ledger.everything
 
 
-@pytest.mark.parametrize("row", [["X", 211, 0], ["X", 211, 0.5], ["X", 211, 0.3, 81.1], ["X", None, None, 80]])
+@pytest.mark.parametrize(
+    "row",
+    [
+        ["X", 211, 0],
+        ["X", 211, 0.5],
+        ["X", 211, 0.3, 81.1],
+        ["X", None, None, 80],
+        ["X", 211, None, 80],
+        ["X", None, 0.3, 80],
+    ],
+)
 def test_a_material_at_the_edge(row):
-    """Poisson's ratio may be 0 or 0.5, and G may be given alone or in accord with E and ν."""
+    """Poisson's ratio may be 0 or 0.5, and G may be given alone, with one or with both of E and ν."""
     materials, ledger = _materials(row)
     assert set(materials) == {"x"}
     assert [found.code for found in ledger.findings if found.level == "error"] == []

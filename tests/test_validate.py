@@ -1,17 +1,20 @@
 """The whole submission: every fault at once at its own cell, sound rows kept, and what one fault spoils elsewhere."""
 
+import datetime
 import decimal
 import math
 
+import numpy as np
 import openpyxl
 import polars as pl
 import pytest
 
 import regenerate
+from flexlash.assessment import assess
 from flexlash.columns import VARIANTS, columns_of
 from flexlash.pipeline import check
 from flexlash.submission.gate import Refusal
-from flexlash.submission.read import RawSheet, Submission
+from flexlash.submission.read import ErrorCell, RawSheet, Submission, Unstored
 from flexlash.submission.validate import validate
 from flexlash.variant import Settings
 
@@ -221,13 +224,22 @@ def test_duplicates_name_all_partners():
     assert _kept(validated) == ["B", "C"]
 
 
-def test_many_duplicates_are_summed_up():
+@pytest.mark.parametrize(("count", "rest"), [(11, "A11."), (12, "A11 and 1 more."), (15, "A11 and 4 more.")])
+def test_many_duplicates_are_summed_up(count, rest):
     """Of more than ten partners the rest is counted."""
-    validated = validate(_submission([ROW] * 15))
-    assert len(_told(validated, "error")) == 15
-    assert validated.ledger.findings[-1].message.endswith(
-        "also stands in A2, A3, A4, A5, A6, A7, A8, A9, A10, A11 and 4 more."
-    )
+    validated = validate(_submission([ROW] * count))
+    assert len(_told(validated, "error")) == count
+    last = validated.ledger.findings[-1].message
+    assert last.endswith(f" also stands in A2, A3, A4, A5, A6, A7, A8, A9, A10, {rest}")
+
+
+def test_only_findings_of_a_row_name_its_variant():
+    """A finding on another sheet, or on the header row, names no variant; one in a row names that row's."""
+    materials = [*MATERIALS, ["20Cr2Ni4", -1, 0.3]]
+    headers = [("notes", "Customer")]
+    validated = validate(_submission([ROW | {"torque_Nm": 0}], headers=headers, Materials=materials))
+    named = {found.place: found.variant for found in validated.ledger.findings if found.cell}
+    assert named == {"Variants!T1": "", "Variants!D2": "A", "Materials!B2": ""}
 
 
 def test_names_after_their_repair_are_compared():
@@ -655,12 +667,65 @@ def test_a_row_that_is_not_computed_says_why(table, tmp_path, sound):
     assert outcome.results["findings"][0] is not None
 
 
+@pytest.mark.parametrize("rows", [[], [[None, 211, 0.3]]], ids=["header alone", "row without name"])
+def test_materials_without_rows(rows):
+    """A Materials sheet that names no material leaves no variant, each of which is told so."""
+    materials = [["Material", "youngs_modulus_GPa", "poisson_ratio"], *rows]
+    validated = validate(_submission(_named(2), Materials=materials))
+    assert validated.variants == []
+    assert {place for code, place in _told(validated) if code == "E307"} == {"Variants!C2", "Variants!C3"}
+
+
+NASTY = [
+    None, "", " ", "x", "1,6", "1.6", 0, -1, 1e300, 5e-324, math.inf, math.nan, True, ErrorCell("#REF!"), Unstored(),
+    datetime.datetime(2026, 4, 1), datetime.time(1, 4), "a" * 2000, "{0}", "%", "=1+1", "\u202e", 1e-9,  # noqa: DTZ001
+]  # fmt: skip
+SOUND = {
+    "Variants": [ROW, ROW | {"variant": "B", "mean_radius_mm": None, "bore_diameter_mm": 158.4, "notes": "x"}],
+    "Materials": [
+        {"material": "20Cr2Ni4", "youngs_modulus_GPa": 211, "poisson_ratio": 0.3, "yield_MPa": 900},
+        {"material": "X", "shear_modulus_GPa": 80},
+    ],
+    "Tolerances": [
+        {"tolerance_class": "standard", "dimension": "wall_thickness", "grade": "IT9"},
+        {"tolerance_class": "fine", "dimension": "torque", "lower_deviation": -1, "upper_deviation": 1},
+    ],
+    "Settings": [{"setting": "seed", "value": 1}, {"setting": "method", "value": "line"}],
+}
+
+
+def _spoilt(draw):
+    """Return a submission of which a few cells and headers hold something nasty."""
+    sheets = {}
+    for name, rows in SOUND.items():
+        keys = list(columns_of(name))
+        lines = [keys, *([row.get(key) for key in keys] for row in rows)]
+        for _ in range(draw.integers(0, 3)):
+            line, place = draw.integers(0 if draw.random() < 0.3 else 1, len(lines)), draw.integers(len(keys))
+            lines[line][place] = (
+                f"{keys[place]}s" if line == 0 and draw.random() < 0.5 else NASTY[draw.integers(len(NASTY))]
+            )
+        if name == "Variants" or draw.random() < 0.7:
+            sheets[name] = _sheet(name, lines)
+    return Submission(name="a.xlsx", sha256="", kind="workbook", sheets=sheets)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_nasty_cells_never_end_in_an_exception(seed):
+    """Whatever stands in a few cells or headers, each fault is a finding with an address, and the rest is computed."""
+    validated = validate(_spoilt(np.random.default_rng(seed)))
+    computed = assess(validated, validated.settings)
+    assert all(found.cell for found in validated.ledger.findings if found.level == "error")
+    assert {variant.row for variant in validated.variants} <= {row for row, _ in validated.submitted}
+    assert set(computed) == {variant.row for variant in validated.variants} - validated.ledger.rows
+    if not any(found.level == "error" for found in validated.ledger.findings):
+        assert len(computed) == len(validated.submitted) > 0
+
+
 @pytest.mark.parametrize(("name", "size", "promised"), [("MAXIMUM_ROWS", 3, 20_000), ("MAXIMUM_COLUMNS", 28, 256)])
 def test_a_sheet_at_its_limit(name, size, promised, monkeypatch):
     """Rows and columns of an entry sheet at their limit are read; one more is refused, in a workbook alone."""
     from flexlash.submission import validate as module
-    from flexlash.submission.gate import Refusal
-    from flexlash.submission.read import RawSheet, Submission
 
     rows = {1: {1: "variant", 2: "material"}, 6: {28: 1.0}, 900: {1: "a"}}
     sheets = {"Variants": RawSheet(name="Variants", rows=rows)}

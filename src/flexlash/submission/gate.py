@@ -165,7 +165,7 @@ def _check_archive(archive: zipfile.ZipFile) -> None:
         if part.file_size > 2**20 and part.file_size > MAXIMUM_RATIO * part.compress_size:
             raise Refusal("E110", what="the compression", limit=f"{MAXIMUM_RATIO} to 1")
     for part in parts:
-        if b"<!DOCTYPE" in archive.read(part):
+        if b"<!DOCTYPE" in archive.read(part) and part.filename.lower().endswith((".xml", ".rels")):
             raise Refusal("E105")
 
 
