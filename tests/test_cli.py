@@ -12,6 +12,7 @@ from click.testing import CliRunner
 
 import regenerate
 from flexlash import __version__
+from flexlash.catalogue import CATALOGUE
 from flexlash.cli import cli, main
 from flexlash.columns import ENTRY_SHEETS
 
@@ -134,8 +135,9 @@ def test_a_missing_file_ends_with_five(tmp_path, capsys, main_in):
 
 def test_an_unwritable_output_ends_with_five(table, sound, tmp_path, capsys, main_in):
     """An output whose folder does not exist ends with 5, by name."""
-    assert main_in("run", table([sound]), "-o", tmp_path / "none" / "out.csv", "--samples", 256) == 5
-    assert "could not be opened or written" in capsys.readouterr().err
+    target = tmp_path / "none" / "out.csv"
+    assert main_in("run", table([sound]), "-o", target, "--samples", 256) == 5
+    assert f"{target} could not be opened or written: No such file or directory" in capsys.readouterr().err
 
 
 def test_several_submissions_need_a_folder_and_get_distinct_names(table, sound, tmp_path, main_in, capsys):
@@ -266,13 +268,15 @@ def test_explain_prints_meaning_and_mend():
     out = CliRunner().invoke(cli, ["explain", "e303"]).stdout
     assert out.startswith("E303 error: hub outside the disk\n")
     assert "Mend: Check for a diameter" in out
+    for code in CATALOGUE:
+        assert "{" not in CliRunner().invoke(cli, ["explain", code]).stdout
     assert "W402  warning  beyond yield" in CliRunner().invoke(cli, ["explain"]).stdout
 
 
 def test_help_and_version():
     """Help leads with examples and tells the exit codes; --version names the program."""
     out = CliRunner().invoke(cli, ["--help"]).stdout
-    assert "flexlash run variants.xlsx" in out
+    assert "\n  flexlash run variants.xlsx             compute it, write variants-report.xlsx\n" in out
     assert "Exit codes" in out
     assert CliRunner().invoke(cli, ["--version"]).stdout == f"flexlash, version {__version__}\n"
 

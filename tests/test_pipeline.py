@@ -279,3 +279,36 @@ def test_the_package_knows_no_other_names():
     """An unknown name of the package is an AttributeError."""
     with pytest.raises(AttributeError, match="nothing"):
         _ = flexlash.nothing
+
+
+def test_names_that_differ_by_case_alone_are_one_name(table, sound):
+    """Two variants whose names differ only by letter case are doubles, as Excel sees them."""
+    outcome = check(table([{**sound, "variant": "cup A"}, {**sound, "variant": "CUP a"}]))
+    assert [(one.code, one.cell) for one in outcome.findings] == [("E308", "A2"), ("E308", "A3")]
+
+
+def test_notes_stand_beside_the_results(table, sound):
+    """A row's notes are carried to the Results, also where the row has an error."""
+    rows = [{**sound, "notes": "drawing 7"}, {**sound, "variant": "b", "torque_Nm": "", "notes": "drawing 8"}]
+    assert check(table(rows)).results["notes"].to_list() == ["drawing 7", "drawing 8"]
+
+
+def test_a_renamed_status_column_is_quiet(workbook, sound, tmp_path):
+    """Formulas without a result under a header that is not ours are blank, not two thousand findings."""
+    path = workbook([sound])
+    book = openpyxl.load_workbook(path)
+    book["Variants"]["U4"] = "Status"
+    book.save(tmp_path / "renamed.xlsx")
+    outcome = check(tmp_path / "renamed.xlsx")
+    assert [(one.code, one.value) for one in outcome.findings] == [("I502", "Status")]
+    assert outcome.counts["computed"] == 1
+
+
+def test_a_symbol_is_header_enough(table, sound):
+    """A column headed by its symbol and unit alone is recognised."""
+    row = {**sound}
+    row["r_ci [mm]"] = row.pop("disk_inner_radius_mm")
+    row["Δ [µm]"] = row.pop("wall_thickness_mm") * 1000
+    outcome = check(table([row]))
+    assert outcome.exit_code == 0
+    assert outcome.results["backlash_rad"][0] == pytest.approx(1.0725044299e-3, rel=1e-9)

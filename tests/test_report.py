@@ -197,9 +197,37 @@ def test_a_report_without_scatter_or_limit(table, sound, tmp_path):
     )
     outcome = run(table([{**sound, "backlash_limit_arcmin": ""}]), tmp_path / "report.xlsx", tolerances=tolerances)
     book = _open(tmp_path / "report.xlsx")
-    assert list(sentences(outcome, selection.drawn_variants(outcome)))[1].endswith("stay below 3.687′.")
+    assert list(sentences(outcome, selection.drawn_variants(outcome)))[1].endswith(
+        "stay below 3.687′; no limit was given for it."
+    )
     assert book["Sensitivity"]["A4"].value is None
     assert book["Spread"]["B4"].value.startswith("=IF(")
+
+
+def test_the_summary_names_what_was_not_computed(faulty):
+    """The first sentence names the first variants that were not computed and counts the others."""
+    outcome, _ = faulty
+    said = next(sentences(outcome, selection.drawn_variants(outcome)))
+    assert said.startswith("3 of 23 variants were computed. Not computed, see Findings: fault E201, fault E202,")
+    assert said.endswith("and 16 more.")
+
+
+def test_a_given_shear_modulus_without_tolerance_is_said(table, sound, tmp_path):
+    """A material that gives G has no scatter in class standard, which the Summary says."""
+    materials = tmp_path / "materials.csv"
+    materials.write_text("material,shear_modulus_GPa\n20Cr2Ni4,81\n", encoding="utf-8")
+    outcome = run(table([sound]), materials=materials, samples=256)
+    said = list(sentences(outcome, selection.drawn_variants(outcome)))
+    assert said[-1] == "The shear modulus of 1 variants is given and has no tolerance: it does not scatter."
+
+
+def test_long_names_do_not_spill(table, sound, tmp_path):
+    """A long name is shortened under charts and in the Summary, and whole in Results."""
+    name = "pinned sleeve with a really long name for the design review"
+    run(table([{**sound, "variant": name}]), tmp_path / "report.xlsx", samples=256)
+    book = _open(tmp_path / "report.xlsx")
+    assert book["Curves"]["B3"].value == "pinned sleeve with a re…"
+    assert book["Results"]["A3"].value == name
 
 
 def test_a_report_of_nothing_still_opens(table, sound):
@@ -260,6 +288,20 @@ def test_another_variant_can_be_picked(study, tmp_path):
     keys = ("backlash_limit_arcmin", "mean_arcmin", "sd_arcmin", "p2_5_arcmin", "p50_arcmin")
     for place, key in enumerate(keys, start=4):
         assert sheet.cell(place, 2).value == pytest.approx(row[key], rel=1e-12)
+
+
+@needs_libreoffice
+def test_a_name_with_a_star_picks_itself(table, sound, tmp_path):
+    """A picked name stands for itself: neither letter case nor * and ? in it pick another variant."""
+    rows = [{**sound, "variant": name, "torque_Nm": torque} for name, torque in (("cup A", 900), ("cup *", 300))]
+    outcome = run(table(rows), tmp_path / "report.xlsx", samples=256)
+    book = _open(tmp_path / "report.xlsx")
+    book["Spread"]["B3"] = "cup *"
+    book.save(tmp_path / "picked.xlsx")
+    sheet = _open(convert(tmp_path / "picked.xlsx", "xlsx", tmp_path), data_only=True)["Spread"]
+    assert sheet["C3"].value == 2
+    assert sheet["B5"].value == pytest.approx(outcome.results["mean_arcmin"][1], rel=1e-12)
+    assert sheet["B12"].value.startswith("at most")
 
 
 @needs_libreoffice

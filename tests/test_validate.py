@@ -242,9 +242,10 @@ def test_only_findings_of_a_row_name_its_variant():
     assert named == {"Variants!T1": "", "Variants!D2": "A", "Materials!B2": ""}
 
 
-def test_names_after_their_repair_are_compared():
-    """Two names that differ by spaces alone are the same name."""
-    assert _told(validate(_submission([ROW, ROW | {"variant": " A "}])), "error") == [
+@pytest.mark.parametrize("name", [" A ", "a", "A\u200b"], ids=ascii)
+def test_names_after_their_repair_are_compared(name):
+    """Two names that differ by outer spaces, letter case or hidden characters alone are the same name."""
+    assert _told(validate(_submission([ROW, ROW | {"variant": name}])), "error") == [
         ("E308", "Variants!A2"),
         ("E308", "Variants!A3"),
     ]
@@ -716,7 +717,7 @@ def test_nasty_cells_never_end_in_an_exception(seed):
     validated = validate(_spoilt(np.random.default_rng(seed)))
     computed = assess(validated, validated.settings)
     assert all(found.cell for found in validated.ledger.findings if found.level == "error")
-    assert {variant.row for variant in validated.variants} <= {row for row, _ in validated.submitted}
+    assert {variant.row for variant in validated.variants} <= {row for row, *_ in validated.submitted}
     assert set(computed) == {variant.row for variant in validated.variants} - validated.ledger.rows
     if not any(found.level == "error" for found in validated.ledger.findings):
         assert len(computed) == len(validated.submitted) > 0

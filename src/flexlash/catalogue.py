@@ -309,7 +309,7 @@ CATALOGUE = _rules(
         "variant twice",
         '{place} {name} = "{value}" also stands in {other}.',
         "Give each variant a name of its own.",
-        "The report names rows by their variant. All rows of the same name are marked.",
+        "The report names rows by their variant; letter case does not make two names. All rows of a name are marked.",
     ),
     (
         "E309",
@@ -491,7 +491,7 @@ CATALOGUE = _rules(
     (
         "I502",
         "extra column",
-        "{place}: the column {value} is not part of the template; it is carried to the report.",
+        "{place}: the column {value} is not part of the template; it is carried to the report's Submission sheet.",
         "Nothing to do.",
         "Extra columns do not take part in the calculation.",
     ),

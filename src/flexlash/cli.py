@@ -36,7 +36,7 @@ _SEVERITY = (INTERNAL, NO_FILE, NOTHING, SOME_ROWS, 0)
 )
 @click.version_option(__version__, prog_name="flexlash")
 def cli() -> None:
-    r"""Excel in, tolerance-spread report out: backlash of strain wave gear flexsplines.
+    """Excel in, tolerance-spread report out: backlash of strain wave gear flexsplines.
 
     \b
     Examples:
@@ -44,7 +44,7 @@ def cli() -> None:
       flexlash check variants.xlsx           say what is wrong with it
       flexlash run variants.xlsx             compute it, write variants-report.xlsx
       flexlash run variants.xlsx -o out.csv  the results table alone
-    """
+    """  # noqa: D301
 
 
 @cli.command()
@@ -96,7 +96,12 @@ def explain(code: str | None) -> None:
     found = CATALOGUE.get(code.strip().upper())
     if found is None:
         raise click.UsageError(f"{shown(code)} is not a finding's code. flexlash explain lists them all.")
-    click.echo(f"{found.code} {found.level}: {found.title}\n\n{found.explanation}\n\nMend: {found.fix}")
+    click.echo(f"{found.code} {found.level}: {found.title}\n\n{found.explanation}\n\nMend: {_generally(found.fix)}")
+
+
+def _generally(fix: str) -> str:
+    """Return a mend without a cell at hand."""
+    return fix.format(label="the header of the template", unit="the template's unit", dimension="the dimension")
 
 
 _SUBMISSIONS = click.argument("submissions", nargs=-1, required=True, type=click.Path(path_type=Path))

@@ -240,7 +240,7 @@ SETTINGS = (
     _setting(
         "method",
         "method",
-        "How the tolerance spread is sampled: line (best), sobol, or random (plain Monte Carlo).",
+        "How the spread is sampled: line (answered by sobol in this version), sobol, or random (plain Monte Carlo).",
         **_CHOICE,
         choices=("line", "sobol", "random"),
         default="line",

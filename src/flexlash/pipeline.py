@@ -210,7 +210,7 @@ def _results(outcome: Outcome) -> pl.DataFrame:
             row = int(found.cell.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
             by_row.setdefault(row, []).append(found)
     records = []
-    for row, name in outcome.validated.submitted:
+    for row, name, notes in outcome.validated.submitted:
         mine = by_row.get(row, [])
         one = outcome.computed.get(row)
         listed = ", ".join(f"{found.code} {found.cell}" for found in mine)
@@ -218,5 +218,7 @@ def _results(outcome: Outcome) -> pl.DataFrame:
             listed = ", ".join(filter(None, [listed, _ELSEWHERE]))
         record = result_record(one.variant, one.nominal, one.variation) if one else {}
         status = "error" if one is None else "warning" if mine else "ok"
-        records.append({**record, "variant": name, "status": status, "findings": listed or None})
+        records.append(
+            {**record, "variant": name, "status": status, "notes": notes or None, "findings": listed or None}
+        )
     return results_frame(records)

@@ -81,6 +81,7 @@ RESULTS = (
     _result("von_mises_MPa", "Von Mises stress", "√3 times the greater shear stress.", "MPa", "stress"),
     _angle("mean_standard_error", "Mean standard error", "Standard error of the mean from replicates."),
     _angle("sd_standard_error", "Sd standard error", "Standard error of the standard deviation."),
+    _result("notes", "Notes", "Notes as submitted.", type="text"),
     _result("findings", "Findings", "Codes and cells of the errors and warnings of this row.", type="text"),
 )
 

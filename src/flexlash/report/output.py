@@ -56,7 +56,10 @@ def _as_csv(results: pl.DataFrame) -> bytes:
 
 def write_bytes(data: bytes, path: Path) -> Path:
     """Write a file by way of a temporary one beside it, so that it is whole or absent."""
-    handle, name = tempfile.mkstemp(prefix=".flexlash-", suffix=".tmp", dir=path.parent)
+    try:
+        handle, name = tempfile.mkstemp(prefix=".flexlash-", suffix=".tmp", dir=path.parent)
+    except OSError as fault:
+        raise OSError(fault.errno, fault.strerror, str(path)) from fault
     temporary = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:

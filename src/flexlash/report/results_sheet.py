@@ -48,7 +48,7 @@ def write_results(book: Book, results: pl.DataFrame) -> None:
             elif value is not None:
                 sheet.write_number(row, place, value, style)
     sheet.set_row(0, 48)
-    sheet.set_row(1, 24)
+    sheet.set_row(1, 32)
     sheet.freeze_panes(FIRST_ROW, 1)
     sheet.autofilter(1, 0, last, len(RESULTS) - 1)
     sheet.repeat_rows(0, 1)

@@ -36,12 +36,12 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn) -> None:
     if variation is None or not variation.swings:
         return
     name = worst.row["variant"]
-    text = f"Worst variant, {name}: backlash [arcmin] with one dimension at its limits, the others in the middle."
+    text = f"Worst variant, {name}: backlash [arcmin] with one dimension at its limits, by its share of variance."
     sheet.write_string(1, 0, text, book.format("quiet"))
     for place, heading in enumerate(("Dimension", "At lower limit", "At upper limit", "Share of variance")):
         sheet.write_string(3, place, heading, book.format("header"))
     sheet.set_row(3, 32)
-    swings = sorted(variation.swings.items(), key=lambda item: -abs(item[1][1] - item[1][0]))
+    swings = sorted(variation.swings.items(), key=lambda item: -variation.shares[item[0]])
     for row, (dimension, (low, high)) in enumerate(swings, start=4):
         sheet.write_string(row, 0, dimension_words(dimension), book.format("text"))
         sheet.write_number(row, 1, low / ARCMIN, book.format("text", "arcmin"))

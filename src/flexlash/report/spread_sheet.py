@@ -11,19 +11,45 @@ from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
 
-from flexlash.report.selection import DRAWN, Drawn
+from flexlash.findings import shown
+from flexlash.report.selection import Drawn
 from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.summary import share_words
 from flexlash.tolerance.variation import CURVE_PROBABILITIES, HISTOGRAM_BINS
 from flexlash.units import ARCMIN
 
-__all__ = ["write_curves", "write_spread"]
+__all__ = ["curve_place", "write_curves", "write_spread"]
 
-_FIXED = ("Variant", "P2.5", "P2.5 to P97.5", "P50", "Limit", "Mean", "sd", "Bin start", "Bin width")
+_FIXED = (
+    "Variant", "Label", "Over limit", "P2.5", "P2.5 to P97.5", "P50", "Limit", "Mean", "sd", "P97.5", "P99.865", "Ppk",
+    "Bin start", "Bin width",
+)  # fmt: skip
+_LABEL = 24
+"""Most characters of a name under a chart."""
+
 _CURVE = len(_FIXED)
 _BARS = _CURVE + len(CURVE_PROBABILITIES)
-_FIGURES = (("Limit", 4), ("Mean", 5), ("Standard deviation", 6), ("P2.5", 1), ("P50", 3))
+_FIGURES = (
+    ("Limit [arcmin]", "Limit"),
+    ("Mean [arcmin]", "Mean"),
+    ("Standard deviation [arcmin]", "sd"),
+    ("P2.5 [arcmin]", "P2.5"),
+    ("P50 [arcmin]", "P50"),
+    ("P97.5 [arcmin]", "P97.5"),
+    ("P99.865 [arcmin]", "P99.865"),
+    ("Ppk upper", "Ppk"),
+    ("Units over the limit", "Over limit"),
+)
+_OPTIONAL = {"Limit", "Ppk", "Over limit"}
+_FIRST_FIGURE = 3
+_FIRST_CHART = 13
 _HELPER = 14
+_LIMIT, _MEDIAN = "$B$4", "$B$8"
+
+
+def curve_place(heading: str) -> int:
+    """Return the place of a column of Curves, from 0."""
+    return _FIXED.index(heading)
 
 
 def write_curves(book: Book, drawn: Sequence[Drawn]) -> None:
@@ -36,39 +62,40 @@ def write_curves(book: Book, drawn: Sequence[Drawn]) -> None:
     )
     for place, heading in enumerate(headings):
         sheet.write_string(1, place, heading, book.format("header"))
-    sheet.set_column(0, 0, 24)
+    sheet.set_column(0, 2, 24)
     for row, one in enumerate(drawn, start=2):
-        sheet.write_string(row, 0, one.row["variant"], book.format("text"))
-        for place, value in enumerate(_numbers(one), start=1):
-            if value is not None:
+        for place, value in enumerate(_stored(one)):
+            if isinstance(value, str):
+                sheet.write_string(row, place, value, book.format("text"))
+            elif value is not None:
                 sheet.write_number(row, place, value, book.format("text", "general"))
     sheet.freeze_panes(2, 1)
     sheet.repeat_rows(0, 1)
     sheet.print_area(0, 0, max(2, len(drawn) + 1), len(_FIXED) - 1)
 
 
-def _numbers(one: Drawn) -> list[float | None]:
-    """Return a variant's row of Curves after its name."""
+def _stored(one: Drawn) -> list[str | float | None]:
+    """Return a variant's row of Curves."""
     row, variation = one.row, one.computed.variation
-    numbers = [
+    name, limit = row["variant"], row["backlash_limit_arcmin"]
+    stored = [
+        name,
+        shown(name, longest=_LABEL),
+        None if limit is None else share_words(row),
         row["p2_5_arcmin"],
         row["p97_5_arcmin"] - row["p2_5_arcmin"],
         row["p50_arcmin"],
-        row["backlash_limit_arcmin"],
+        limit,
         row["mean_arcmin"],
         row["sd_arcmin"],
+        row["p97_5_arcmin"],
+        row["p99_865_arcmin"],
+        row["ppk"],
     ]
     if variation is None or variation.curve is None or variation.edges is None or variation.heights is None:
-        return [*numbers, row["mean_arcmin"], 0.0, *([row["mean_arcmin"]] * len(CURVE_PROBABILITIES)), 1.0]
-    edges = variation.edges / ARCMIN
-    curve = variation.curve / ARCMIN
-    return [
-        *numbers,
-        float(edges[0]),
-        float(edges[1] - edges[0]),
-        *curve.tolist(),
-        *variation.heights.tolist(),
-    ]
+        return [*stored, row["mean_arcmin"], 0.0, *([row["mean_arcmin"]] * len(CURVE_PROBABILITIES)), 1.0]
+    edges, curve = variation.edges / ARCMIN, variation.curve / ARCMIN
+    return [*stored, float(edges[0]), float(edges[1] - edges[0]), *curve.tolist(), *variation.heights.tolist()]
 
 
 def write_spread(book: Book, drawn: Sequence[Drawn], total: int) -> None:
@@ -82,35 +109,37 @@ def write_spread(book: Book, drawn: Sequence[Drawn], total: int) -> None:
     if not drawn:
         return
     first, last = 3, len(drawn) + 2
-    numbers = _numbers(drawn[0])
+    stored = _stored(drawn[0])
+    names = f"Curves!$A${first}:$A${last}"
     sheet.write_string(2, 0, "Pick a variant", book.format("label"))
     sheet.write_string(2, 1, drawn[0].row["variant"], book.format("input"))
     sheet.data_validation(2, 1, 2, 1, {
         "validate": "list",
-        "source": f"=Curves!$A${first}:$A${last}",
+        "source": f"={names}",
         "input_title": "Variant",
         "input_message": "The figures and both charts follow.",
         "error_title": "Variant",
         "error_message": "Pick a variant of the list.",
     })  # fmt: skip
-    sheet.write_formula(2, 2, f"=MATCH($B$3,Curves!$A${first}:$A${last},0)", book.format("quiet"), 1)
+    # EXACT, since MATCH by itself ignores letter case and takes * and ? in a name for any letters.
+    place = f'=MATCH(TRUE,INDEX(EXACT({names},$B$3&""),0),0)'
+    sheet.write_formula(2, 2, place, book.format("quiet"), 1)
     sheet.write_string(2, 3, "◄ its place in the list, worst first", book.format("quiet"))
-    for row, (label, place) in enumerate(_FIGURES, start=3):
-        sheet.write_string(row, 0, f"{label} [arcmin]", book.format("label"))
-        value = numbers[place - 1]
-        formula = _look_up(place, first, last)
-        shown = f'=IF({formula[1:]}="","none",{formula[1:]})' if label == "Limit" else formula
-        sheet.write_formula(row, 1, shown, book.format("text", "arcmin"), "none" if value is None else value)
-    worst = drawn[0].row
-    if worst["probability_over_limit"] is not None:
-        note = f"{worst['variant']}: {share_words(worst)} of its units are over the limit."
-        sheet.write_string(8, 0, note, book.format("quiet"))
+    for row, (label, name) in enumerate(_FIGURES, start=_FIRST_FIGURE):
+        column = _FIXED.index(name)
+        sheet.write_string(row, 0, label, book.format("label"))
+        formula = _look_up(column, first, last)
+        if name in _OPTIONAL:
+            formula = f'=IF({formula[1:]}="","none",{formula[1:]})'
+        value = "none" if stored[column] is None else stored[column]
+        style = book.format("figure", "" if name == "Over limit" else "plain" if name == "Ppk" else "arcmin")
+        sheet.write_formula(row, 1, formula, style, value)
     if len(drawn) < total:
-        note = f"The {DRAWN} variants of greatest probability over limit can be picked; all are in Results."
-        sheet.write_string(9, 0, note, book.format("quiet"))
-    _write_helper(book, sheet, numbers, first, last)
+        note = f"The {len(drawn)} variants of greatest probability over limit can be picked; all are in Results."
+        sheet.write_string(_FIRST_CHART - 1, 0, note, book.format("quiet"))
+    _write_helper(book, sheet, stored, first, last)
     _write_charts(book, sheet)
-    sheet.print_area(0, 0, 46, _HELPER - 3)
+    sheet.print_area(0, 0, 50, _HELPER - 3)
 
 
 def _look_up(place: int, first: int, last: int) -> str:
@@ -119,32 +148,35 @@ def _look_up(place: int, first: int, last: int) -> str:
     return f"=INDEX(Curves!${letter}${first}:${letter}${last},$C$3)"
 
 
-def _write_helper(book: Book, sheet: Any, numbers: list[float | None], first: int, last: int) -> None:
+def _write_helper(book: Book, sheet: Any, stored: list[str | float | None], first: int, last: int) -> None:
     """Write the data of both charts, to the right of the printed page."""
-    quiet, plain = book.format("quiet"), book.format("text", "general")
-    headings = (
-        "Bin middle",
-        "Share within",
-        "Share over limit",
-        "",
-        "Backlash",
-        "Share below",
-        "",
-        "Limit",
-        "Share",
-    )
+    quiet = book.format("quiet")
+    headings = ("Bin middle", "Share within", "Share over limit", "", "Backlash", "Share below", "", "Limit", "Share")
     for offset, heading in enumerate(headings):
         sheet.write_string(1, _HELPER + offset, heading, quiet)
-    start, width, limit = (
-        numbers[_FIXED.index("Bin start") - 1],
-        numbers[_FIXED.index("Bin width") - 1],
-        numbers[3],
-    )
-    heights = numbers[_BARS - 1 :]
-    letters = [xl_col_to_name(_HELPER + offset) for offset in range(9)]
-    start_formula, width_formula = (
-        _look_up(_FIXED.index(name), first, last)[1:] for name in ("Bin start", "Bin width")
-    )
+    numbers = [value if isinstance(value, float) else None for value in stored]
+    _write_bins(book, sheet, numbers, first, last)
+    plain = book.format("text", "general")
+    for offset, share in enumerate(CURVE_PROBABILITIES):
+        value = numbers[_CURVE + offset]
+        sheet.write_formula(2 + offset, _HELPER + 4, _look_up(_CURVE + offset, first, last), plain, value)
+        sheet.write_number(2 + offset, _HELPER + 5, share, plain)
+    limit, median = numbers[_FIXED.index("Limit")], numbers[_FIXED.index("P50")]
+    given = limit is not None
+    line = limit if given else median
+    for row, share in ((2, 0), (3, 1)):
+        sheet.write_formula(row, _HELPER + 7, f"=IF(ISNUMBER({_LIMIT}),{_LIMIT},{_MEDIAN})", plain, line)
+        sheet.write_formula(row, _HELPER + 8, f"=IF(ISNUMBER({_LIMIT}),{share},0)", plain, share if given else 0)
+
+
+def _write_bins(book: Book, sheet: Any, numbers: list[float | None], first: int, last: int) -> None:
+    """Write middle and height of each bin, its height in the column of its side of the limit."""
+    plain = book.format("text", "general")
+    places = [_FIXED.index(name) for name in ("Bin start", "Bin width", "Limit")]
+    start, width, limit = (numbers[place] for place in places)
+    start_formula, width_formula = (_look_up(place, first, last)[1:] for place in places[:2])
+    heights = numbers[_BARS:]
+    letter = xl_col_to_name(_HELPER)
     for number in range(HISTOGRAM_BINS):
         row = 2 + number
         middle = (start or 0.0) + (number + 0.5) * (width or 0.0)
@@ -152,26 +184,18 @@ def _write_helper(book: Book, sheet: Any, numbers: list[float | None], first: in
         over = limit is not None and middle > limit
         sheet.write_formula(row, _HELPER, f"={start_formula}+{number + 0.5}*{width_formula}", plain, middle)
         bar = _look_up(_BARS + number, first, last)[1:]
-        at = f"${letters[0]}{row + 1}"
-        is_over = f"AND(ISNUMBER($B$4),{at}>N($B$4))"
+        is_over = f"AND(ISNUMBER({_LIMIT}),${letter}{row + 1}>N({_LIMIT}))"
         sheet.write_formula(row, _HELPER + 1, f"=IF({is_over},0,{bar})", plain, 0 if over else height)
         sheet.write_formula(row, _HELPER + 2, f"=IF({is_over},{bar},0)", plain, height if over else 0)
-    for offset, share in enumerate(CURVE_PROBABILITIES):
-        value = numbers[_CURVE + offset - 1]
-        sheet.write_formula(2 + offset, _HELPER + 4, _look_up(_CURVE + offset, first, last), plain, value)
-        sheet.write_number(2 + offset, _HELPER + 5, share, plain)
-    given = limit is not None
-    line = limit if given else numbers[2]
-    for row, share in ((2, 0), (3, 1)):
-        sheet.write_formula(row, _HELPER + 7, "=IF(ISNUMBER($B$4),$B$4,$B$8)", plain, line)
-        sheet.write_formula(row, _HELPER + 8, f"=IF(ISNUMBER($B$4),{share},0)", plain, share if given else 0)
 
 
 def _write_charts(book: Book, sheet: Any) -> None:
     """Draw both charts below the figures."""
     size = (1020, 345)
-    book.insert(sheet, 10, 0, _density(book), size=size, text="Density of the picked variant")
-    book.insert(sheet, 28, 0, _cumulative(book), size=size, text="Cumulative curve of the picked variant")
+    book.insert(sheet, _FIRST_CHART, 0, _density(book), size=size, text="Density of the picked variant")
+    book.insert(
+        sheet, _FIRST_CHART + 18, 0, _cumulative(book), size=size, text="Cumulative curve of the picked variant"
+    )
 
 
 def _density(book: Book) -> Any:
@@ -187,7 +211,7 @@ def _density(book: Book) -> Any:
             "border": {"none": True},
             "gap": 4,
         })  # fmt: skip
-    labels = {"num_format": "0.000", "num_font": {"rotation": -45}, "interval_unit": 4}
+    labels = {"num_format": "0.00", "num_font": {"rotation": -45}, "interval_unit": 5}
     chart.set_x_axis({"name": "Backlash [arcmin]", **labels})
     chart.set_y_axis({"num_format": "0%", "major_gridlines": GRID})
     return chart

@@ -44,7 +44,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
     },
     "text": {},
     "indented": {"indent": 1},
-    "wrap": {"text_wrap": True, "valign": "top"},
+    "wrap": {"text_wrap": True},
     "quiet": {"font_color": "#595959", "italic": True},
     "label": {"bold": True, "font_color": "#404040"},
     "big": {
@@ -82,7 +82,8 @@ _FORMATS: dict[str, dict[str, Any]] = {
         "border_color": "#8EA9C1",
     },
     "link": {"font_color": PALETTE["blue"], "underline": 1},
-    "input": {"bg_color": "#FFF5D6", "border": 1, "border_color": PALETTE["orange"], "bold": True},
+    "figure": {"align": "right"},
+    "input": {"num_format": "@", "bg_color": "#FFF5D6", "border": 1, "border_color": PALETTE["orange"], "bold": True},
     "error": {"bg_color": "#F8CBAD"},
     "warning": {"bg_color": "#FFE699"},
     "ok": {"bg_color": "#C6E5D8"},

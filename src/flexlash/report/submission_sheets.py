@@ -17,7 +17,8 @@ from flexlash.submission.tables import BUILT_IN_SHEETS, built_in_sheet
 
 __all__ = ["write_findings", "write_submission"]
 
-_WIDTHS = {"message": 100, "fix": 84, "suggestion": 18, "variant": 20, "column": 24, "value": 20}
+_WIDTHS = {"message": 66, "fix": 50, "suggestion": 18, "variant": 20, "column": 24, "value": 20}
+_LEVELS = ("error", "warning", "info")
 _TITLES = {plain(name): "Submission" if name == "Variants" else name for name in ENTRY_SHEETS}
 
 
@@ -28,7 +29,8 @@ def write_findings(book: Book, outcome: Outcome) -> None:
         sheet.set_column(place, place, _WIDTHS.get(column.key, 11))
         sheet.write_string(0, place, column.label, book.format("header"))
         sheet.write_comment(0, place, column.help)
-    for row, found in enumerate(outcome.findings, start=1):
+    worst_first = sorted(outcome.findings, key=lambda found: _LEVELS.index(found.level))
+    for row, found in enumerate(worst_first, start=1):
         _write_finding(book, sheet, row, found)
     if not outcome.findings:
         sheet.write_string(1, 0, "Nothing was found.", book.format("quiet"))
@@ -40,7 +42,7 @@ def write_findings(book: Book, outcome: Outcome) -> None:
 def _write_finding(book: Book, sheet: Any, row: int, found: Finding) -> None:
     """Write one finding, its level coloured and its cell linked."""
     styles = {"error": "error", "warning": "warning", "info": "text"}
-    lines = max(len(found.message) // 105, len(found.fix) // 88)
+    lines = max(len(found.message) // 68, len(found.fix) // 52)
     sheet.set_row(row, 15.5 * (1 + lines))
     for place, (key, value) in enumerate(found.as_dictionary().items()):
         title = _TITLES.get(plain(found.sheet))
@@ -86,7 +88,7 @@ def _write_mirror(book: Book, raw: RawSheet, title: str, marked: dict[tuple[int,
     sheet.set_column(0, 0, 24)
     for row, cells in raw.rows.items():
         for place, value in cells.items():
-            if place not in ignored:
+            if place not in ignored and not (isinstance(value, Unstored) and row < header):
                 style = marked.get((row - 1, place - 1), "header" if row == header else "text")
                 _write_value(sheet, row - 1, place - 1, value, book.format(style))
     for (row, place), level in marked.items():

@@ -6,14 +6,20 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from flexlash.findings import shown
 from flexlash.outcome import Outcome
 from flexlash.report.selection import Drawn
+from flexlash.report.spread_sheet import curve_place
 from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.summary import dimension_words, rounded, share_words
 
 __all__ = ["light", "sentences", "write_summary"]
 
 _LISTED = 12
+_NAME = 30
+"""Most characters of a name in a sentence or a table."""
+
+_NAMED = 4
 _CHARTED = 60
 _COLUMNS = (
     ("Variant", 24),
@@ -28,7 +34,7 @@ _COLUMNS = (
 )
 LIGHT_RULE = (
     "Verdict: green, at least 99.865 % of units stay within the limit; amber, at least 97.5 % do; red, fewer do; "
-    "– , no limit given."
+    "–, no limit given. Order: share over the limit, then those without a limit."
 )
 
 
@@ -45,30 +51,52 @@ def light(row: dict[str, Any]) -> str:
 def sentences(outcome: Outcome, drawn: Sequence[Drawn]) -> Iterator[str]:
     """Yield what a design review wants to know, worst first, rounded by the standard error."""
     counts = outcome.counts
-    left = counts["rows"] - counts["computed"]
-    lost = f" {left} could not be, for errors; see Findings." if left else ""
-    yield f"{counts['computed']} of {counts['rows']} variants were computed.{lost}"
+    yield f"{counts['computed']} of {counts['rows']} variants were computed.{_lost(outcome)}"
     if not drawn:
         return
     judged = [one for one in drawn if one.row["backlash_limit_arcmin"] is not None]
     if judged:
         reds = sum(light(one.row) == "red" for one in judged)
         yield f"{reds} of {len(judged)} variants with a limit have more than 2.5 % of their units over it."
-    worst = drawn[0].row
+    worst, name = drawn[0].row, shown(drawn[0].row["variant"], longest=_NAME)
     tail = rounded(worst["p97_5_arcmin"], worst["p97_5_standard_error_arcmin"])
-    head = f"97.5 % of the units of {worst['variant']} stay below {tail}′"
+    head = f"97.5 % of the units of {name} stay below {tail}′"
     if worst["backlash_limit_arcmin"] is None:
-        yield f"{head}."
+        yield f"{head}; no limit was given for it."
     else:
         yield f"{head}; the limit of {worst['backlash_limit_arcmin']:g}′ is exceeded by {share_words(worst)} of them."
     if worst["main_contributor"]:
-        name = dimension_words(worst["main_contributor"])
-        yield f"Its spread comes first from {name}: {100 * worst['main_contributor_share']:.0f} % of the variance."
+        cause = dimension_words(worst["main_contributor"])
+        share = 100 * worst["main_contributor_share"]
+        yield f"The spread of {name} comes first from {cause}: {share:.0f} % of the variance."
     low, high = worst["worst_case_low_arcmin"], worst["worst_case_high_arcmin"]
-    yield f"With every dimension at a limit its backlash would lie between {low:.3f}′ and {high:.3f}′."
-    missed = [1 - one.row["cylinder_only_backlash_arcmin"] / one.row["backlash_arcmin"] for one in drawn]
-    least, most = 100 * min(missed), 100 * max(missed)
-    yield f"The classical cylinder-only formula would miss {_missed(least, most)} of the backlash."
+    yield f"With every dimension at a limit the backlash of {name} lies between {low:.3f}′ and {high:.3f}′."
+    missed = [
+        1 - one.row["cylinder_only_backlash_arcmin"] / one.row["backlash_arcmin"]
+        for one in drawn
+        if one.computed.variant.flexspline_type != "cylinder"
+    ]
+    if missed:
+        yield (
+            "The classical cylinder-only formula would miss "
+            f"{_missed(100 * min(missed), 100 * max(missed))} of the backlash of cups and hats."
+        )
+    exact = sum(
+        "shear_modulus" in one.variant.dimensions and "shear_modulus" not in one.limits
+        for one in outcome.computed.values()
+    )
+    if exact:
+        yield f"The shear modulus of {exact} variants is given and has no tolerance: it does not scatter."
+
+
+def _lost(outcome: Outcome) -> str:
+    """Return which rows were not computed, the first few by name."""
+    names = outcome.results.filter(outcome.results["status"] == "error")["variant"].to_list()
+    if not names:
+        return ""
+    listed = ", ".join(shown(name or "(no name)", longest=_NAME) for name in names[:_NAMED])
+    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+    return f" Not computed, see Findings: {listed}{more}."
 
 
 def _missed(least: float, most: float) -> str:
@@ -107,7 +135,7 @@ def _write_counts(book: Book, sheet: Any, outcome: Outcome, drawn: Sequence[Draw
     reds = sum(light(one.row) == "red" for one in drawn)
     figures = (
         (f"{counts['computed']} of {counts['rows']}", "variants computed"),
-        (str(reds), "red: over 2.5 % of units over limit"),
+        (str(reds) if any(light(one.row) != "–" for one in drawn) else "–", "red: over 2.5 % of units over limit"),
         (str(counts["errors"]), "errors"),
         (str(counts["warnings"]), "warnings"),
     )
@@ -127,7 +155,7 @@ def _write_table(book: Book, sheet: Any, drawn: Sequence[Drawn], row: int) -> in
         row += 1
         result = one.row
         verdict = light(result)
-        sheet.write_string(row, 0, result["variant"], book.format("text"))
+        sheet.write_string(row, 0, shown(result["variant"], longest=_NAME), book.format("text"))
         sheet.write_string(row, 1, verdict, book.format(colours[verdict]))
         for place, key in enumerate(("backlash", "p2_5", "p50", "p97_5", "backlash_limit"), start=2):
             value = result[f"{key}_arcmin"]
@@ -169,13 +197,15 @@ def _chart(book: Book, sheet: Any, drawn: Sequence[Drawn], row: int) -> None:
     marks = book.workbook.add_chart({"type": "line"})
     hidden = {"fill": {"none": True}, "border": {"none": True}, "gap": 60}
     band = {"fill": {"color": PALETTE["sky"]}, "border": {"color": PALETTE["blue"]}}
-    for chart, place, name, look in (
-        (bars, 1, "P2.5", hidden),
-        (bars, 2, "P2.5 to P97.5", band),
-        (marks, 3, "Median", _marker("diamond", PALETTE["ink"])),
-        (marks, 4, "Limit", _marker("long_dash", PALETTE["red"])),
+    labels = curve_place("Label")
+    for chart, heading, name, look in (
+        (bars, "P2.5", "P2.5", hidden),
+        (bars, "P2.5 to P97.5", "P2.5 to P97.5", band),
+        (marks, "P50", "Median", _marker("diamond", PALETTE["ink"])),
+        (marks, "Limit", "Limit", _marker("long_dash", PALETTE["red"])),
     ):
-        names = ["Curves", 2, 0, count + 1, 0]
+        place = curve_place(heading)
+        names = ["Curves", 2, labels, count + 1, labels]
         chart.add_series({"name": name, "categories": names, "values": ["Curves", 2, place, count + 1, place], **look})
     bars.combine(marks)
     bars.set_y_axis({"min": _axis_start(drawn[:count]), "num_format": "0.00", "major_gridlines": GRID})

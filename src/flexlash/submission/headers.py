@@ -62,11 +62,12 @@ def _as_header(cell: RawValue) -> str:
 
 
 def _spellings(columns: dict[str, Column]) -> dict[str, str]:
-    """Every accepted header without its unit → key: key, label, label without symbol."""
+    """Every accepted header without its unit → key: key, label, label without symbol, symbol alone."""
     found = {}
     for key, column in columns.items():
-        for spelling in (key, column.dimension, column.name, column.plain_name):
-            found[plain(spelling)] = key
+        for spelling in (key, column.dimension, column.name, column.plain_name, column.symbol):
+            if spelling:
+                found[plain(spelling)] = key
     return found
 
 

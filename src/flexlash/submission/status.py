@@ -44,6 +44,10 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
+def _same(one: Any, other: Any) -> bool:
+    return str(one).casefold() == str(other).casefold()
+
+
 def _type(row: Row) -> str:
     return str(row.get("flexspline_type") or "cup").lower()
 
@@ -121,7 +125,7 @@ _RULES = (
     _Rule(
         text="variant used twice",
         excel="COUNTIF(fl_variants,{variant})>1",
-        holds=lambda row, rows: sum(other.get("variant") == row["variant"] for other in rows) > 1,
+        holds=lambda row, rows: sum(_same(other.get("variant"), row["variant"]) for other in rows) > 1,
     ),
 )
 

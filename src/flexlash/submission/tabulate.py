@@ -13,7 +13,7 @@ from flexlash.columns import Column, columns_of
 from flexlash.submission.cells import Fault, as_number, as_text
 from flexlash.submission.headers import Heading, find_headings, plain
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.read import RawSheet, RawValue, column_letters
+from flexlash.submission.read import RawSheet, RawValue, Unstored, column_letters
 
 __all__ = ["Table", "tabulate"]
 
@@ -95,6 +95,7 @@ def _data_rows(
 ) -> Iterator[tuple[int, dict[int, RawValue]]]:
     """Yield the rows below the header that hold data; a lone cell elsewhere than in the first column is none."""
     named = {*heading.places.values(), *heading.extra, *heading.doubtful}
+    ours = {*heading.places.values(), *heading.doubtful}
     first = heading.places.get(first_key)
     nameless: dict[int, int] = {}
     for number, every in sheet.rows.items():
@@ -103,7 +104,9 @@ def _data_rows(
         cells = {
             place: value
             for place, value in every.items()
-            if place not in heading.ignored and not (isinstance(value, str) and not value.strip(_BLANK))
+            if place not in heading.ignored
+            and not (isinstance(value, str) and not value.strip(_BLANK))
+            and not (isinstance(value, Unstored) and place not in ours)
         }
         entered = {place: value for place, value in cells.items() if place in named}
         if len(entered) > 1 or first in entered:

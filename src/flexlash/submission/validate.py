@@ -50,11 +50,11 @@ class Validated:
     header_rows: dict[str, int] = field(default_factory=dict)
 
     @property
-    def submitted(self) -> list[tuple[int, str]]:
-        """Row number and name of every submitted variant, in submitted order."""
+    def submitted(self) -> list[tuple[int, str, str]]:
+        """Row number, name and notes of every submitted variant, in submitted order."""
         if self.table is None:
             return []
-        return list(self.table.frame.select("row", "variant").fill_null("").iter_rows())
+        return list(self.table.frame.select("row", "variant", "notes").fill_null("").iter_rows())
 
 
 def validate(submission: Submission) -> Validated:
@@ -86,7 +86,7 @@ def validate(submission: Submission) -> Validated:
             for record in result.table.frame.iter_rows(named=True)
             if record["row"] not in ledger.rows
         ]
-    ledger.name_variants(result.table.sheet if result.table else "", dict(result.submitted))
+    ledger.name_variants(result.table.sheet if result.table else "", {row: name for row, name, _ in result.submitted})
     return result
 
 
@@ -176,12 +176,12 @@ def _check_duplicates(table: Table, ledger: Ledger) -> None:
     partners: dict[str, list[int]] = defaultdict(list)
     for row, name in table.frame.select("row", "variant").iter_rows():
         if name is not None:
-            partners[name].append(row)
-    for name, rows in partners.items():
+            partners[name.casefold()].append(row)
+    for rows in partners.values():
         for row in rows if len(rows) > 1 else ():
             others = [table.address(other, "variant") for other in rows if other != row]
             listed = ", ".join(others[:10]) + (f" and {len(others) - 10} more" if len(others) > 10 else "")  # noqa: PLR2004
-            _blame(table, ledger, "E308", row, "variant", value=name, other=listed)
+            _blame(table, ledger, "E308", row, "variant", value=table.entered(row, "variant"), other=listed)
 
 
 def _blame(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts: Any) -> None:
