@@ -237,7 +237,7 @@ def test_requirement(place):
     ("key", "words"),
     [
         ("seed", "a whole number of at least 0 and at most 4294967295"),
-        ("coverage_percent", "a number in % greater than 0 and at most 99.99"),
+        ("coverage_percent", "a number in % of at least 50 and at most 99.99"),
         ("method", "one of line, sobol, random"),
         ("samples", "a whole number of at least 1 and at most 4194304"),
         ("cylinder_calibration", "a number greater than 0 and at most 10"),

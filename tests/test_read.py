@@ -395,7 +395,6 @@ def test_an_open_quote_in_a_later_column_is_damage(text):
     assert caught.value.code == "E102"
 
 
-@pytest.mark.xfail(strict=True, reason="an Excel error that was saved as CSV passes for a name")
 @pytest.mark.parametrize("error", ["#REF!", "#N/A"])
 def test_error_words_of_a_table_are_errors(text, error):
     """An Excel error that was saved as CSV is an error there too."""

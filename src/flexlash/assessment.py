@@ -16,6 +16,9 @@ from flexlash.variant import Settings, Variant
 __all__ = ["Computed", "assess"]
 
 _REFINEMENTS = {column.dimension: column.key for column in VARIANTS if column.group == "Refinements"}
+_LEAST, _GREATEST = 1e-12, 10.0
+"""Backlash [rad] between which linear elasticity of a steel cup can have a meaning."""
+
 _CODES = {"impossible": "E314", "untabulated": "E315", "cut": "W405", "overlap": "W409"}
 
 
@@ -42,11 +45,15 @@ def assess(validated: Validated, settings: Settings) -> dict[int, Computed]:
     sound = [variant for variant in validated.variants if variant.row not in validated.ledger.rows]
     numbers = nominal_numbers(sound, settings.lost_motion_percent / 100)
     for variant, nominal in zip(sound, numbers, strict=True):
+        if not _LEAST < nominal["backlash"] < _GREATEST:  # type: ignore[operator]
+            _add(validated, "E324", variant, "torque_Nm", value=f"{nominal['backlash']:.3g}")
+            continue
         _warn_strength(validated, variant, nominal)
         _warn_calibration(validated, variant)
     return {
         variant.row: Computed(variant=variant, limits=limits[variant.row], nominal=nominal)
         for variant, nominal in zip(sound, numbers, strict=True)
+        if variant.row not in validated.ledger.rows
     }
 
 

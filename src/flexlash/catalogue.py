@@ -244,7 +244,7 @@ CATALOGUE = _rules(
     (
         "E212",
         "value not usable",
-        "{place} {name} = {value}: {requirement} is required, and it must be finite or short.",
+        "{place} {name} = {value}: {requirement} is required; this is not finite, or too long.",
         "Type a number that Excel can show, or a shorter text.",
         "Infinity, not-a-number, names over 200 and remarks over 1,000 characters cannot be used.",
     ),
@@ -418,6 +418,13 @@ CATALOGUE = _rules(
         "With two rows flexlash cannot know which holds.",
     ),
     (
+        "E324",
+        "no meaningful result",
+        "{place}: the row gives a backlash of {value} rad, which no flexspline can have.",
+        "Check the values of this row and their units, and the elastic constants of its material.",
+        "Each cell is within its bounds, but together they give a backlash below 1e-12 or above 10 rad.",
+    ),
+    (
         "W401",
         "disk does not meet the wall",
         "{place} {name} = {value} mm differs from the mean radius {other:g} mm.",
@@ -480,6 +487,13 @@ CATALOGUE = _rules(
         "{place} {name} = {value}: at its limit in class {other} it exceeds {detail}.",
         "Check the lengths and tolerances of rim and fillets.",
         "The entered dimensions fit, but some units would not. Their wind-up is computed by continuing the formula.",
+    ),
+    (
+        "W410",
+        "shift without scatter",
+        "{place} {name} = {value} equals the lower deviation: the dimension is shifted, but does not scatter.",
+        "For ± {value} enter -{value} as the lower deviation.",
+        "Deviations are signed: +0.02 and +0.02 mean that every part is larger by 0.02.",
     ),
     (
         "I501",

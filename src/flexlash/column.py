@@ -45,11 +45,6 @@ class Column:
         return " ".join(word for word in self.name.split(" ") if not _is_symbol(word)) or self.name
 
     @cached_property
-    def symbol(self) -> str:
-        """The symbol in the label, such as Δ or r_ci, or an empty text."""
-        return next((word for word in self.name.split(" ") if _is_symbol(word)), "")
-
-    @cached_property
     def dimension(self) -> str:
         """The key without its unit, as Tolerances and the report name a dimension."""
         stem, _, last = self.key.rpartition("_")

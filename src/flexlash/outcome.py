@@ -74,4 +74,4 @@ class Outcome:
         """0 every row fine, 3 some rows not computed, 4 nothing computable."""
         if not self.computed:
             return 4
-        return 3 if self.counts["errors"] else 0
+        return 3 if self.counts["computed"] < self.counts["rows"] else 0

@@ -19,7 +19,7 @@ def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> li
 
     Equation: as in `flexspline.windups`, `windup.wall_integral`, `strength`; lost motion 2 p T_rated / K
     Arguments: variants, and lost_motion_share p [-] of the rated torque at which lost motion is stated.
-    Valid: as for the functions it calls.
+    Valid: as for the functions it calls; absurd dimensions give infinite numbers or NaN, without a warning.
     Source: as for the functions it calls.
 
     >>> b3_160 = {"torque": 800.0, "cylinder_length": 0.16, "mean_radius": 0.08, "wall_thickness": 0.0016,
@@ -38,7 +38,8 @@ def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> li
         dimensions = {
             name: np.array([variants[place].dimensions[name] for place in places]) for name in first.dimensions
         }
-        columns = _group(flexspline_type, dimensions)
+        with np.errstate(all="ignore"):
+            columns = _group(flexspline_type, dimensions)
         for offset, place in enumerate(places):
             numbers[place] = {key: float(values[offset]) for key, values in columns.items()}
             rated = variants[place].rated_torque

@@ -311,6 +311,13 @@ def _targets(archive: zipfile.ZipFile, workbook: str) -> dict[str, str]:
     return targets
 
 
+def _whole(text: str) -> int:
+    """Return a whole number, written as one."""
+    if not _INDEX.fullmatch(text):
+        raise Refusal("E102")
+    return int(text)
+
+
 class _Sheet(_Elements):
     """Finds formula cells without a stored result and error cells; refuses what would be read wrongly."""
 
@@ -329,10 +336,10 @@ class _Sheet(_Elements):
             self.kind = attributes.get("t", "n")
             self.value = ""
             self.is_formula = False
-            if not 0 <= int(attributes.get("s", 0)) < self.styles:
+            if _whole(attributes.get("s", "0")) >= self.styles:
                 raise Refusal("E102")
         elif name == "row":
-            number = int(attributes.get("r", self.row + 1))
+            number = _whole(attributes.get("r", str(self.row + 1)))
             if self.in_row or not self.row < number <= MAXIMUM_ROW:
                 raise Refusal("E102")
             self.row, self.column, self.in_row = number, 0, True

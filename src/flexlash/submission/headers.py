@@ -20,6 +20,15 @@ STATUS_HEADER = "Row status"
 """Header of the template's own formula column, which is never data."""
 
 _LAST_HEADER_ROW = 15
+_SHORT = {
+    "flexspline_type": ("type",),
+    "mean_radius_mm": ("r_m",),
+    "wall_thickness_mm": ("Δ",),
+    "disk_inner_radius_mm": ("r_ci",),
+    "disk_outer_radius_mm": ("r_co",),
+}
+"""Short headers that can mean nothing else; T, l and t could."""
+
 _BRACKETS = re.compile(r"^(.*?)\s*[\[(]([^\])]*)[\])]\s*$", re.DOTALL)
 
 
@@ -62,12 +71,11 @@ def _as_header(cell: RawValue) -> str:
 
 
 def _spellings(columns: dict[str, Column]) -> dict[str, str]:
-    """Every accepted header without its unit → key: key, label, label without symbol, symbol alone."""
+    """Every accepted header without its unit → key: key, label with and without symbol, short forms."""
     found = {}
     for key, column in columns.items():
-        for spelling in (key, column.dimension, column.name, column.plain_name, column.symbol):
-            if spelling:
-                found[plain(spelling)] = key
+        for spelling in (key, column.dimension, column.name, column.plain_name, *_SHORT.get(key, ())):
+            found[plain(spelling)] = key
     return found
 
 

@@ -176,7 +176,11 @@ def read_table(data: bytes, name: str) -> tuple[RawSheet, str]:
         raise Refusal("E102")
     rows: dict[int, dict[int, RawValue]] = {}
     for number, values in enumerate(tables[delimiter], start=1):
-        cells: dict[int, RawValue] = {place: cell for place, cell in enumerate(values, start=1) if cell.strip()}
+        cells: dict[int, RawValue] = {
+            place: ErrorCell(cell.strip()) if cell.strip() in _ERRORS else cell
+            for place, cell in enumerate(values, start=1)
+            if cell.strip()
+        }
         if cells:
             rows[number] = cells
     return RawSheet(name=name, rows=rows, numbers_are_texts=True), delimiter

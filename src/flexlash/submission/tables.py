@@ -201,7 +201,10 @@ def _check_tolerance(table: Table, ledger: Ledger, record: dict[str, Any]) -> bo
                 _blame(table, ledger, "E317", row, key)
         if lower is not None and upper is not None and lower > upper:
             _blame(table, ledger, "E318", row, "lower_deviation", value=lower, other=upper)
-    return len(ledger.findings) == before
+    sound = len(ledger.findings) == before
+    if sound and lower and lower == upper:
+        _blame(table, ledger, "W410", row, "upper_deviation", value=upper)
+    return sound
 
 
 def _meant_grade(text: str) -> str:

@@ -167,6 +167,8 @@ def _check_rows(result: Validated, table: Table) -> None:
                 _blame(table, ledger, code, row, key, value=value, suggestion=closest(value, names, 0.5))
             elif plain(value) in faulty:
                 ledger.rows.add(row)
+            elif value not in names:
+                _blame(table, ledger, "I504", row, key, value=value, suggestion=closest(value, names))
         if record["tolerance_class"] is None and "standard" in ledger.classes:
             ledger.rows.add(row)
 
