@@ -147,7 +147,9 @@ def check(submissions: tuple[Path, ...], *, as_json: bool, **options: Any) -> No
 @click.option("--seed", type=click.IntRange(0, 2**32 - 1), help="Start of the random numbers.")
 @click.option("--method", type=click.Choice(["line", "sobol", "random"]), help="How the spread is sampled.")
 @click.option("--samples", type=click.IntRange(1, 2**22), help="Points per variant.")
-@click.option("--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default="all cores", help="Threads.")
+@click.option(
+    "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default="all cores", help="Processes."
+)
 @_STRICT
 @_JSON
 @click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from flexlash.assessment import Computed, assess
-from flexlash.columns import DIMENSIONS
+from flexlash.assessment import assess
 from flexlash.findings import Finding, finding
 from flexlash.mechanics.flexspline import backlash
 from flexlash.outcome import Outcome
@@ -18,8 +16,7 @@ from flexlash.results import result_record, results_frame
 from flexlash.submission.gate import Refusal, admit, read_bytes
 from flexlash.submission.read import RawSheet, Submission, read_submission, read_table
 from flexlash.submission.validate import validate
-from flexlash.tolerance.sampling import UnitPoints
-from flexlash.tolerance.variation import variation_of
+from flexlash.tolerance.spreading import Draws, spread_rows
 from flexlash.variant import Settings
 
 if TYPE_CHECKING:
@@ -29,7 +26,6 @@ __all__ = ["Options", "Outcome", "check", "run"]
 
 Progress = Callable[[int, int], None]
 
-_ROWS_PER_TASK = 8
 _ELSEWHERE = "stopped by an error of another row or sheet, see Findings"
 
 
@@ -157,46 +153,19 @@ def _spread(outcome: Outcome, options: Options) -> None:
     if not outcome.computed:
         return
     settings = outcome.settings
-    points = UnitPoints(
-        list(DIMENSIONS),
-        method=outcome.method,
-        samples=settings.samples,
-        seed=settings.seed,
-    )
-    outcome.points = points.size
+    draws = Draws(method=outcome.method, samples=settings.samples, seed=settings.seed)
+    outcome.points = draws.size
     rows = list(outcome.computed.values())
-    vary = partial(_vary, points=points, coverage=settings.coverage_percent / 100)
-    done = 0
-    with ThreadPoolExecutor(options.jobs) as pool:
-        for batch in pool.map(vary, _batches(rows)):
-            outcome.computed.update({one.variant.row: one for one in batch})
-            done += len(batch)
-            if options.progress:
-                options.progress(done, len(rows))
-    outcome.results = _results(outcome)
-
-
-def _batches(rows: Sequence[Computed]) -> Iterator[Sequence[Computed]]:
-    for start in range(0, len(rows), _ROWS_PER_TASK):
-        yield rows[start : start + _ROWS_PER_TASK]
-
-
-def _vary(batch: Sequence[Computed], points: UnitPoints, coverage: float) -> list[Computed]:
-    """Return computed rows with their spread."""
-    return [
-        replace(
-            one,
-            variation=variation_of(
-                partial(backlash, one.variant.flexspline_type),
-                one.variant.dimensions,
-                one.limits,
-                points,
-                limit=one.variant.backlash_limit,
-                coverage=coverage,
-            ),
-        )
-        for one in batch
+    tasks = [
+        (partial(backlash, one.variant.flexspline_type), one.variant.dimensions, one.limits, one.variant.backlash_limit)
+        for one in rows
     ]
+    spreads = spread_rows(tasks, draws, coverage=settings.coverage_percent / 100, jobs=options.jobs)
+    for done, (one, variation) in enumerate(zip(rows, spreads, strict=True), start=1):
+        outcome.computed[one.variant.row] = replace(one, variation=variation)
+        if options.progress:
+            options.progress(done, len(rows))
+    outcome.results = _results(outcome)
 
 
 def _results(outcome: Outcome) -> pl.DataFrame:
