@@ -11,7 +11,8 @@ import pytest
 __all__ = ["convert", "needs_libreoffice"]
 
 needs_libreoffice = pytest.mark.skipif(
-    shutil.which("soffice") is None, reason="LibreOffice (soffice) is not installed here"
+    not all(map(shutil.which, ("soffice", "pdfinfo", "pdftotext"))),
+    reason="LibreOffice (soffice) or poppler-utils are not installed here",
 )
 
 _PROFILE = """<?xml version="1.0" encoding="UTF-8"?>
