@@ -187,18 +187,11 @@ class TruncatedNormal:
         return np.clip(inside, first, last)
 
 
-@dataclass(frozen=True)
-class Uniform:
-    """Every value between low and high equally likely."""
+class _Interval:
+    """What distributions between two finite ends share."""
 
     low: float
     high: float
-
-    def __post_init__(self) -> None:
-        _require_order(self.low, self.high)
-        _require_finite(self.low, self.high)
-
-    shape = ("uniform",)
 
     @property
     def location(self) -> float:
@@ -209,6 +202,20 @@ class Uniform:
     def scale(self) -> float:
         """The width."""
         return self.high - self.low
+
+
+@dataclass(frozen=True)
+class Uniform(_Interval):
+    """Every value between low and high equally likely."""
+
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        _require_order(self.low, self.high)
+        _require_finite(self.low, self.high)
+
+    shape = ("uniform",)
 
     @property
     def expectation(self) -> float:
@@ -226,7 +233,7 @@ class Uniform:
 
 
 @dataclass(frozen=True)
-class Triangular:
+class Triangular(_Interval):
     """Triangle between low and high with its peak at mode, by default in the middle."""
 
     low: float
@@ -251,16 +258,6 @@ class Triangular:
     def shape(self) -> tuple[str | float, ...]:
         """The place of the peak as a fraction of the width."""
         return ("triangular", self._fraction)
-
-    @property
-    def location(self) -> float:
-        """The lower limit."""
-        return self.low
-
-    @property
-    def scale(self) -> float:
-        """The width."""
-        return self.high - self.low
 
     @property
     def expectation(self) -> float:
