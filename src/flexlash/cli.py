@@ -146,7 +146,8 @@ def check(submissions: tuple[Path, ...], *, as_json: bool, **options: Any) -> No
 )  # fmt: skip
 @click.option("--seed", type=click.IntRange(0, 2**32 - 1), help="Start of the random numbers.")
 @click.option("--method", type=click.Choice(["line", "sobol", "random"]), help="How the spread is sampled.")
-@click.option("--samples", type=click.IntRange(1, 2**22), help="Points per variant.")
+@click.option("--samples", type=click.IntRange(1, 2**22), help="Lines or points per variant.")
+@click.option("--cross-check", is_flag=True, help="Put plain Monte Carlo beside the spread and say whether they agree.")
 @click.option(
     "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default="all cores", help="Processes."
 )

@@ -240,7 +240,7 @@ SETTINGS = (
     _setting(
         "method",
         "method",
-        "How the spread is sampled: line (answered by sobol in this version), sobol, or random (plain Monte Carlo).",
+        "How the spread is sampled: line (sharp in the tails), sobol, or random (plain Monte Carlo).",
         **_CHOICE,
         choices=("line", "sobol", "random"),
         default="line",
@@ -248,7 +248,7 @@ SETTINGS = (
     _setting(
         "samples",
         "samples",
-        "Points per variant. Blank: chosen by the program.",
+        "Lines or points per variant. Blank: as many lines as the precision needs.",
         **_INTEGER,
         minimum=1,
         maximum=2**22,

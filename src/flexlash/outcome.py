@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from flexlash import __version__
 from flexlash.assessment import Computed
@@ -25,7 +25,7 @@ class Outcome:
     """What came out of one submission.
 
     `results` is the Results table; `findings` all findings in the order of the submission; `outputs` the
-    files written; `points` those drawn per variant. `computed` holds, by row number, what the report draws on.
+    files written. `computed` holds, by row number, what the report draws on.
     `skipped` says that the file is a report or a marked copy, not a submission.
     """
 
@@ -36,7 +36,6 @@ class Outcome:
     validated: Validated | None = None
     computed: dict[int, Computed] = field(default_factory=dict)
     outputs: list[Path] = field(default_factory=list)
-    points: int = 0
     skipped: bool = False
 
     @property
@@ -58,16 +57,11 @@ class Outcome:
             "sha256": self.submission.sha256,
             "version": __version__,
             "seed": self.settings.seed,
-            "method": self.method,
+            "method": self.settings.method,
             "counts": self.counts,
             "findings": [found.as_dictionary() for found in self.findings],
             "outputs": [str(path) for path in self.outputs],
         }
-
-    @property
-    def method(self) -> Literal["sobol", "random"]:
-        """The method that made the spread, which is not always the one asked for."""
-        return "random" if self.settings.method == "random" else "sobol"
 
     @property
     def exit_code(self) -> int:

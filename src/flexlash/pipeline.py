@@ -16,7 +16,8 @@ from flexlash.results import result_record, results_frame
 from flexlash.submission.gate import Refusal, admit, read_bytes
 from flexlash.submission.read import RawSheet, Submission, read_submission, read_table
 from flexlash.submission.validate import validate
-from flexlash.tolerance.spreading import Draws, spread_rows
+from flexlash.tolerance.spreading import spread_rows
+from flexlash.tolerance.variation import Draws
 from flexlash.variant import Settings
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ class Options:
     method: str | None = None
     samples: int | None = None
     strict: bool = False
+    cross_check: bool = False
     jobs: int = 1
     tolerances: str | Path | None = None
     materials: str | Path | None = None
@@ -55,8 +57,8 @@ def check(submission: str | Path, **options: Any) -> Outcome:
 def run(submission: str | Path, output: str | Path | None = None, **options: Any) -> Outcome:
     """Return the outcome of a submission and write it to `output`, unless that is None.
 
-    Options are those of the command line: seed, method, samples, strict, jobs, tolerances, materials. The
-    output's ending decides its form: .xlsx, .csv, .parquet or .json.
+    Options are those of the command line: seed, method, samples, cross_check, strict, jobs, tolerances,
+    materials. The output's ending decides its form: .xlsx, .csv, .parquet or .json.
 
     Raises OSError when a file cannot be opened or written, ValueError for an unknown ending.
     """
@@ -153,22 +155,29 @@ def _spread(outcome: Outcome, options: Options) -> None:
     if not outcome.computed:
         return
     settings = outcome.settings
-    draws = Draws(method=outcome.method, samples=settings.samples, seed=settings.seed)
-    outcome.points = draws.size
+    draws = Draws(
+        method=settings.method,
+        samples=settings.samples,
+        seed=settings.seed,
+        coverage=settings.coverage_percent / 100,
+        cross_check=options.cross_check,
+    )
     rows = list(outcome.computed.values())
+    models = {kind: partial(backlash, kind) for kind in ("cup", "hat", "cylinder")}
     tasks = [
-        (partial(backlash, one.variant.flexspline_type), one.variant.dimensions, one.limits, one.variant.backlash_limit)
+        (models[one.variant.flexspline_type], one.variant.dimensions, one.limits, one.variant.backlash_limit)
         for one in rows
     ]
-    spreads = spread_rows(tasks, draws, coverage=settings.coverage_percent / 100, jobs=options.jobs)
-    for done, (one, variation) in enumerate(zip(rows, spreads, strict=True), start=1):
+    spreads = spread_rows(tasks, draws, jobs=options.jobs)
+    for done, (place, variation) in enumerate(spreads, start=1):
+        one = rows[place]
         outcome.computed[one.variant.row] = replace(one, variation=variation)
         if options.progress:
             options.progress(done, len(rows))
-    outcome.results = _results(outcome)
+    outcome.results = _results(outcome, cross_check=options.cross_check)
 
 
-def _results(outcome: Outcome) -> pl.DataFrame:
+def _results(outcome: Outcome, *, cross_check: bool = False) -> pl.DataFrame:
     """Return the Results table, one row per submitted variant in submitted order."""
     if outcome.validated is None:
         return results_frame([])
@@ -190,4 +199,4 @@ def _results(outcome: Outcome) -> pl.DataFrame:
         records.append(
             {**record, "variant": name, "status": status, "notes": notes or None, "findings": listed or None}
         )
-    return results_frame(records)
+    return results_frame(records, cross_check=cross_check)

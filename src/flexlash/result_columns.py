@@ -6,7 +6,7 @@ from typing import Any
 
 from flexlash.columns import Column
 
-__all__ = ["FINDINGS", "RESULTS"]
+__all__ = ["CROSS_CHECK", "FINDINGS", "RESULTS", "result_columns"]
 
 
 def _result(key: str, label: str, text: str, unit: str = "", quantity: str = "", **rest: Any) -> Column:
@@ -20,7 +20,19 @@ def _angle(key: str, label: str, text: str, unit: str = "arcmin") -> Column:
 
 
 def _percentile(key: str, share: str) -> Column:
-    return _angle(key, f"P{share}", f"Backlash that {share} % of units stay below (quantile type 7).")
+    return _angle(key, f"P{share}", f"Backlash that {share} % of units stay below.")
+
+
+def _error(key: str, label: str) -> Column:
+    text = f"Standard error of {label}: ± 1.96 of them is a 95 % interval."
+    return _angle(f"{key}_standard_error", f"{label} standard error", text)
+
+
+def _plain_draws(key: str, label: str) -> tuple[Column, ...]:
+    return (
+        _angle(f"random_{key}", f"{label} by plain draws", f"{label} by plain Monte Carlo."),
+        _error(f"random_{key}", f"{label} by plain draws"),
+    )
 
 
 RESULTS = (
@@ -58,8 +70,8 @@ RESULTS = (
     _percentile("p95", "95"),
     _percentile("p97_5", "97.5"),
     _percentile("p99_865", "99.865"),
-    _angle("p97_5_standard_error", "P97.5 standard error", "Standard error of P97.5 from replicates."),
-    _angle("p99_865_standard_error", "P99.865 standard error", "Standard error of P99.865 from replicates."),
+    _error("p97_5", "P97.5"),
+    _error("p99_865", "P99.865"),
     _angle("coverage_low", "Coverage low", "Lower end of the coverage interval (Settings: coverage_percent)."),
     _angle("coverage_high", "Coverage high", "Upper end of the coverage interval."),
     _angle("worst_case_low", "Worst case low", "Every dimension at the limit that lowers the backlash."),
@@ -79,11 +91,60 @@ RESULTS = (
     _angle("disk_body_windup", "Disk body wind-up", "Part in the disk outside its hub fillet, or flange.", "rad"),
     _angle("hub_fillet_windup", "Hub fillet wind-up", "Part of the wind-up in the hub fillet.", "rad"),
     _result("von_mises_MPa", "Von Mises stress", "√3 times the greater shear stress.", "MPa", "stress"),
-    _angle("mean_standard_error", "Mean standard error", "Standard error of the mean from replicates."),
-    _angle("sd_standard_error", "Sd standard error", "Standard error of the standard deviation."),
+    _error("mean", "Mean"),
+    _error("sd", "Standard deviation"),
+    *(_error(key, label) for key, label in (("p0_135", "P0.135"), ("p2_5", "P2.5"), ("p5", "P5"))),
+    *(_error(key, label) for key, label in (("p50", "P50"), ("p95", "P95"))),
+    _result("skewness", "Skewness", "Third central moment over the cube of the standard deviation; 0 for a normal."),
+    _result("skewness_standard_error", "Skewness standard error", "Standard error of the skewness."),
+    _result("ppm_over_limit_low", "Over limit low", "Lower end of its 95 % interval.", "ppm"),
+    _result("ppm_over_limit_high", "Over limit high", "Upper end of its 95 % interval.", "ppm"),
+    _result("ppk_normal", "Ppk upper, normal theory", "(limit − mean)/(3 sd): right only for a normal backlash."),
+    _result(
+        "first_order_valid",
+        "First order enough",
+        "yes: the interval mean ± k·(first-order sd) meets the coverage interval within half a unit of the second "
+        "digit of the first-order sd (JCGM 101 clause 8).",
+        type="choice",
+        choices=("yes", "no"),
+    ),
+    _result("interaction_share", "Interaction", "Share of the variance that no dimension causes by itself."),
+    _result("spread_method", "Spread by", "line, sobol or random: what made the spread of this row.", type="text"),
+    _result("spread_points", "Lines or points", "Lines (method line) or points behind the spread of this row."),
+    _result("spread_note", "Note on the spread", "Why not lines, or which precision was not reached.", type="text"),
     _result("notes", "Notes", "Notes as submitted.", type="text"),
     _result("findings", "Findings", "Codes and cells of the errors and warnings of this row.", type="text"),
 )
+
+CROSS_CHECK = (
+    *_plain_draws("mean", "Mean"),
+    *_plain_draws("sd", "Standard deviation"),
+    *_plain_draws("p2_5", "P2.5"),
+    *_plain_draws("p50", "P50"),
+    *_plain_draws("p97_5", "P97.5"),
+    *_plain_draws("p99_865", "P99.865"),
+    _result("random_probability_over_limit", "Over limit by plain draws", "Share of plain draws over the limit."),
+    _result("random_points", "Plain draws", "Number of plain Monte Carlo draws."),
+    _result(
+        "cross_check_deviation",
+        "Greatest difference",
+        "Greatest difference between the spread and plain draws, in combined standard errors.",
+    ),
+    _result(
+        "cross_check",
+        "Cross-check",
+        "agrees: all within 4 combined standard errors. differs: not so.",
+        type="choice",
+        choices=("agrees", "differs"),
+    ),
+)
+"""Further columns of a run with --cross-check."""
+
+
+def result_columns(*, cross_check: bool = False) -> tuple[Column, ...]:
+    """Return the columns of the Results of a run."""
+    return (*RESULTS, *CROSS_CHECK) if cross_check else RESULTS
+
 
 FINDINGS = tuple(
     Column(sheet="Findings", key=key, label=label, help=text, type="text")

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import polars as pl
 
-from flexlash.result_columns import RESULTS
+from flexlash.result_columns import result_columns
 from flexlash.tolerance.variation import Variation
 from flexlash.units import ARCMIN
 from flexlash.variant import Variant
 
 __all__ = ["result_record", "results_frame"]
 
-_STEMS = {column.key: (column.dimension, column.si_unit.si) for column in RESULTS if column.quantity} | {
+_COLUMNS = result_columns(cross_check=True)
+_STEMS = {column.key: (column.dimension, column.si_unit.si) for column in _COLUMNS if column.quantity} | {
     "stiffness_Nm_per_rad": ("stiffness", 1.0),
     "stiffness_Nm_per_arcmin": ("stiffness", 1 / ARCMIN),
     "ppm_over_limit": ("probability_over_limit", 1e-6),
+    "ppm_over_limit_low": ("probability_over_limit_low", 1e-6),
+    "ppm_over_limit_high": ("probability_over_limit_high", 1e-6),
 }
 """Result key → its SI number's name and the size of the printed unit."""
 
@@ -26,20 +30,22 @@ def result_record(variant: Variant, nominal: Mapping[str, float | None], variati
     """Return the Results of a computed variant in printed units."""
     numbers: dict[str, Any] = dict(nominal)
     if variation is not None:
-        numbers |= variation.statistics
+        numbers |= variation.statistics | variation.words
         if variation.shares:
             main = max(variation.shares, key=lambda name: variation.shares[name])
             numbers |= {"main_contributor": main, "main_contributor_share": variation.shares[main]}
+            numbers["interaction_share"] = max(1.0 - math.fsum(variation.shares.values()), 0.0)
     numbers["backlash_limit"] = variant.backlash_limit
     record = {}
-    for column in RESULTS:
+    for column in _COLUMNS:
         stem, size = _STEMS.get(column.key, (column.key, 1.0))
         value = numbers.get(stem)
         record[column.key] = value / size if isinstance(value, float) else value
     return record
 
 
-def results_frame(records: Sequence[Mapping[str, Any]]) -> pl.DataFrame:
+def results_frame(records: Sequence[Mapping[str, Any]], *, cross_check: bool = False) -> pl.DataFrame:
     """Return the Results of all submitted rows; a row with errors keeps its place with empty numbers."""
-    types = {column.key: pl.Float64 if column.is_number else pl.String for column in RESULTS}
-    return pl.DataFrame(list(records), schema=types, orient="row")
+    columns = result_columns(cross_check=cross_check)
+    types = {column.key: pl.Float64 if column.is_number else pl.String for column in columns}
+    return pl.DataFrame([{key: record.get(key) for key in types} for record in records], schema=types, orient="row")

@@ -15,13 +15,17 @@ __all__ = [
     "cell_ranges",
     "dimension_words",
     "finding_lines",
+    "points_words",
     "rounded",
     "share_words",
+    "spread_notes",
     "summary_lines",
     "worst_first",
 ]
 
 _SHOWN_MESSAGES = 3
+_NAME = 30
+"""Most characters of a name in a sentence."""
 _LEVELS = ("error", "warning", "info")
 
 
@@ -92,6 +96,7 @@ def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
     yield f"{name}: {ready}{fixes}{warned}."
     if ran:
         yield from over_limit_lines(outcome)
+        yield from spread_notes(outcome)
         for path in outcome.outputs:
             yield f"Written: {shown(path, longest=4096)}"
         if not outcome.outputs:
@@ -113,6 +118,34 @@ def over_limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
     yield f"P97.5 is over the backlash limit for {len(over)} of {len(rows)} variants with a limit."
     for row in over[:most]:
         yield f"  {row['variant']}: {share_words(row)} of units are over {row['backlash_limit_arcmin']:g}′."
+
+
+def points_words(outcome: Outcome) -> str:
+    """Return how many lines or points stand behind the spread of a variant."""
+    counts = [int(count) for count in outcome.results["spread_points"].drop_nulls().to_list()]
+    if not counts:
+        return "no points"
+    what = "lines" if outcome.settings.method == "line" else "points"
+    least, most = min(counts), max(counts)
+    return f"{least:,} {what}" if least == most else f"{least:,} to {most:,} {what}"
+
+
+def spread_notes(outcome: Outcome) -> Iterator[str]:
+    """Yield what a reader must know of how the spread was found: other methods, precision missed, cross-check."""
+    results = outcome.results
+    noted = results.filter(results["spread_note"].is_not_null())
+    if noted.height:
+        first = noted.row(0, named=True)
+        more = f" and {noted.height - 1} more, see Results" if noted.height > 1 else ""
+        yield f"Spread of {shown(first['variant'], longest=_NAME)}: {first['spread_note']}{more}."
+    if "cross_check" in results.columns:
+        checked = results.filter(results["cross_check"].is_not_null())
+        agreeing = (checked["cross_check"] == "agrees").sum()
+        if checked.height:
+            yield (
+                f"Plain Monte Carlo agrees for {agreeing} of {checked.height} variants; the greatest difference is "
+                f"{max(checked['cross_check_deviation'].to_list()):.1f} combined standard errors."
+            )
 
 
 def worst_first(outcome: Outcome) -> list[dict[str, Any]]:
@@ -143,19 +176,40 @@ def share_words(row: dict[str, Any]) -> str:
     if value == 0:
         return f"at most {_share(high)}"
     if value == 1:
-        return f"at least {_share(low)}"
-    unit = " ppm" if high < 1e-3 else " %"  # noqa: PLR2004
-    factor = 1e6 if high < 1e-3 else 100  # noqa: PLR2004
+        return f"all but at most {_share(1 - low)}"
+    if 1 - value < _RARE:
+        return f"all but {_interval(1 - value, 1 - high, 1 - low)}"
+    return _interval(value, low, high)
+
+
+_UNITS = ((1.0, 100.0, " %"), (1e-3, 1e6, " ppm"), (1e-7, 1e9, " ppb"))
+"""Shares below the first number are told in the unit, which is the factor times the share."""
+
+_RARE = 1e-3
+_LEAST = 1e-12
+
+
+def _unit(share: float) -> tuple[float, str]:
+    """Return factor and name of the unit in which a share is told."""
+    return [(factor, name) for most, factor, name in _UNITS if share < most or most == 1][-1]
+
+
+def _interval(value: float, low: float, high: float) -> str:
+    """Return a share with its interval, in the unit of its upper end."""
+    if high < _LEAST:
+        return "fewer than 0.001 ppb"
+    factor, unit = _unit(high)
     half = (high - low) / 2 * factor
     words = [rounded(end * factor, half) for end in (value, low, high)]
     return f"{words[0]}{unit} ({words[1]} to {words[2]}{unit})"
 
 
-def _share(value: float) -> str:
-    """Return one bound in ppm or per cent."""
-    if value < 1e-3:  # noqa: PLR2004
-        return f"{value * 1e6:.3g} ppm"
-    return f"{100 * value:.4g} %"
+def _share(share: float) -> str:
+    """Return one bound in per cent, ppm or ppb."""
+    if share < _LEAST:
+        return "0.001 ppb"
+    factor, unit = _unit(share)
+    return f"{share * factor:.3g}{unit}"
 
 
 def rounded(value: float, error: float) -> str:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from flexlash.column import Column
 from flexlash.columns import DIMENSIONS, SETTINGS
 from flexlash.outcome import Outcome
 from flexlash.report.styles import Book
-from flexlash.result_columns import RESULTS
-from flexlash.tolerance.propagate import LINE_NOTE
+from flexlash.result_columns import result_columns
+from flexlash.tolerance.line_nets import LINE_REPLICATES
+from flexlash.tolerance.line_spread import MOST_LINES, OF_PROBABILITY, OF_SD
 from flexlash.tolerance.sampling import REPLICATES
 
 __all__ = ["ERRATA", "LEFT_OUT", "MODEL", "write_about"]
@@ -40,27 +42,64 @@ ERRATA = (
 )
 
 
+_SAMPLING = {
+    "line": (
+        "Line sampling: lines run through the tolerances in the direction in which the backlash rises fastest. Where a "
+        "line passes a backlash, the part of it beyond is a normal tail; the mean over lines is the share of units.",
+        f"Lines are placed by {LINE_REPLICATES} independent scrambled Sobol' nets, whose scatter gives the standard "
+        "errors (widened as Student's t asks for so few).",
+        "Unless Settings name a number, lines are added until P0.135, P2.5, P50, P97.5 and P99.865 have standard "
+        f"errors of {OF_SD:g} sd and the probability over the limit of {100 * OF_PROBABILITY:g} % of itself, or there "
+        f"are {MOST_LINES:,}: then the note on the spread says what was reached.",
+        "A row whose backlash does not rise along its lines is answered by Sobol' points; its note says so.",
+    ),
+    "sobol": (
+        f"Scrambled Sobol' points in {REPLICATES} independent replicates, whose scatter gives the standard errors "
+        "(widened as Student's t asks).",
+        "All variants meet the same points, so that they differ by their dimensions and not by chance.",
+        "Percentiles are quantiles of type 7 (Excel's PERCENTILE.INC). The interval of the probability over the limit "
+        "is Clopper and Pearson's for a plain count, wider than needed.",
+    ),
+    "random": (
+        "Plain Monte Carlo: independent draws, standard errors by theory.",
+        "All variants meet the same draws, so that they differ by their dimensions and not by chance.",
+        "Percentiles are quantiles of type 7 (Excel's PERCENTILE.INC). The interval of the probability over the limit "
+        "is Clopper and Pearson's.",
+    ),
+}
+
+
 def _statistics(outcome: Outcome) -> Iterator[str]:
     """Yield how the spread was made and how good it is."""
     yield "Each tolerance gives limits; parts scatter around the middle of the limits, not around the entry."
     yield "normal: σ = (upper − lower)/(2k), unbounded; truncated normal: cut at the limits; others: between them."
-    yield "All variants meet the same points, so that they differ by their dimensions and not by chance."
-    yield (
-        f"{outcome.points:,} points per variant in {REPLICATES} independent replicates; standard errors come from the "
-        f"replicates ({REPLICATES - 1} degrees of freedom)."
-    )
-    if outcome.settings.method == "line":
-        yield LINE_NOTE
-    yield "Percentiles are quantiles of type 7 (Excel's PERCENTILE.INC). P99.865 of a normal is mean + 3 sd."
-    yield (
-        "Probability over limit: share of points over it, with the 95 % Clopper–Pearson interval of a plain count, "
-        "which is wider than needed for Sobol' points."
-    )
+    yield from _SAMPLING[outcome.settings.method]
+    yield "P99.865 of a normal is mean + 3 sd. A number ± 1.96 of its standard errors is its 95 % interval."
+    if "cross_check" in outcome.results.columns:
+        yield (
+            "Cross-check: plain Monte Carlo beside the spread. They agree when mean, sd, all percentiles and the "
+            "probability over the limit differ by at most 4 combined standard errors."
+        )
     yield "Worst case: every dimension at the tolerance limit that hurts, whatever k; normal units can lie beyond it."
     yield "First-order sd: root of the sum of squared (slope × sd) at mid-limits, as in the GUM."
-    yield "Shares: first-order Sobol' indices, each dimension's own part of the variance."
-    yield "Ppk upper = (limit − P50)/(P99.865 − P50), ISO 22514-2."
+    yield (
+        "First order enough: whether mean ± k·(first-order sd) meets the coverage interval within half a unit of its "
+        "second digit, JCGM 101 clause 8."
+    )
+    yield (
+        "Shares: first-order Sobol' indices, each dimension's own part of the variance; total indices add every "
+        "interaction it takes part in. Both are good to about 0.002."
+    )
+    yield (
+        "Ppk upper = (limit − P50)/(P99.865 − P50), ISO 22514-2; by normal theory (limit − mean)/(3 sd), which holds "
+        "for a normal backlash alone."
+    )
+    yield "Cells show no more digits than the standard error of their number justifies; they hold all."
     yield "Exact to rounding: nominal columns, worst case, first-order sd. All other statistics are estimates."
+
+
+def _result_columns(outcome: Outcome) -> tuple[Column, ...]:
+    return result_columns(cross_check="cross_check" in outcome.results.columns)
 
 
 def write_about(book: Book, outcome: Outcome) -> None:
@@ -82,7 +121,6 @@ def write_about(book: Book, outcome: Outcome) -> None:
         "sha256": outcome.submission.sha256,
         "Kind": outcome.submission.kind,
         "flexlash version": __version__,
-        "Method used": outcome.method,
         **{column.key: _text(settings[column.key]) for column in SETTINGS},
     }
     sections: tuple[tuple[str, list[tuple[str, str]]], ...] = (
@@ -91,7 +129,7 @@ def write_about(book: Book, outcome: Outcome) -> None:
         ("Spread", [("", text) for text in _statistics(outcome)]),
         ("Not covered", [("", text) for text in LEFT_OUT]),
         ("Errata of the published study", [("", text) for text in ERRATA]),
-        ("Columns of Results", [(column.label, column.help) for column in RESULTS]),
+        ("Columns of Results", [(column.label, column.help) for column in _result_columns(outcome)]),
         ("Dimensions", [(name, f"{column.sheet}: {column.label}") for name, column in DIMENSIONS.items()]),
     )
     for title, entries in sections:

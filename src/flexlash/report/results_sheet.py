@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flexlash.columns import Column
-from flexlash.report.styles import PALETTE, Book
-from flexlash.result_columns import RESULTS
+from flexlash.report.styles import PALETTE, Book, decimals_of
+from flexlash.result_columns import RESULTS, result_columns
 
 if TYPE_CHECKING:
     import polars as pl
@@ -34,23 +34,26 @@ def _number_format(column: Column) -> str:
 def write_results(book: Book, results: pl.DataFrame) -> None:
     """Write the Results sheet."""
     sheet = book.sheet("Results")
+    columns = result_columns(cross_check="cross_check" in results.columns)
     last = FIRST_ROW + results.height - 1
-    for place, column in enumerate(RESULTS):
+    for place, column in enumerate(columns):
         number = _number_format(column) if column.is_number else ""
         sheet.set_column(place, place, _width(column), book.format("text", number))
         sheet.write_string(0, place, column.label, book.format("header"))
         sheet.write_comment(0, place, column.help)
         sheet.write_string(1, place, column.key, book.format("key"))
         style = book.format("text", number)
-        for row, value in enumerate(results[column.key].to_list(), start=FIRST_ROW):
+        values = results[column.key].to_list()
+        styles = _styles_by_error(book, results, column) or [style] * len(values)
+        for row, value in enumerate(values, start=FIRST_ROW):
             if isinstance(value, str):
                 sheet.write_string(row, place, value, style)
             elif value is not None:
-                sheet.write_number(row, place, value, style)
+                sheet.write_number(row, place, value, styles[row - FIRST_ROW])
     sheet.set_row(0, 48)
     sheet.set_row(1, 32)
     sheet.freeze_panes(FIRST_ROW, 1)
-    sheet.autofilter(1, 0, last, len(RESULTS) - 1)
+    sheet.autofilter(1, 0, last, len(columns) - 1)
     sheet.repeat_rows(0, 1)
     sheet.repeat_columns(0)
     sheet.fit_to_pages(4, 0)
@@ -61,6 +64,23 @@ def write_results(book: Book, results: pl.DataFrame) -> None:
     place = column_place("probability_over_limit")
     bar = {"type": "data_bar", "bar_color": PALETTE["orange"], "min_type": "num", "max_type": "num"}
     sheet.conditional_format(FIRST_ROW, place, last, place, bar | {"min_value": 0, "max_value": 1})
+
+
+def _styles_by_error(book: Book, results: pl.DataFrame, column: Column) -> list[Any]:
+    """Return a format for each number of a column whose digits its standard error limits; none for other columns."""
+    stem, _, unit = column.key.rpartition("_")
+    error = _ERRORS.get(column.key, f"{stem}_standard_error_{unit}")
+    if error not in results.columns and f"{column.key}_standard_error" in results.columns:
+        error = f"{column.key}_standard_error"
+    if error not in results.columns:
+        return []
+    return [book.format("text", decimals_of(one, "arcmin" if unit else "plain")) for one in results[error].to_list()]
+
+
+_ERRORS = {
+    "coverage_low_arcmin": "p2_5_standard_error_arcmin",
+    "coverage_high_arcmin": "p97_5_standard_error_arcmin",
+}
 
 
 def _width(column: Column) -> float:

@@ -24,7 +24,7 @@ def write_sensitivity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> N
     sheet.write_string(0, 0, "What causes the spread", book.format("title"))
     sheet.set_row(0, 28)
     sheet.set_column(0, 0, 26)
-    sheet.set_column(1, len(DIMENSIONS) + 1, 12)
+    sheet.set_column(1, 2 * len(DIMENSIONS) + 2, 12)
     if drawn:
         _write_tornado(book, sheet, drawn[0])
     _write_shares(book, sheet, outcome)
@@ -38,7 +38,8 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn) -> None:
     name = worst.row["variant"]
     text = f"Worst variant, {name}: backlash [arcmin] with one dimension at its limits, by its share of variance."
     sheet.write_string(1, 0, text, book.format("quiet"))
-    for place, heading in enumerate(("Dimension", "At lower limit", "At upper limit", "Share of variance")):
+    headings = ("Dimension", "At lower limit", "At upper limit", "Share of variance", "Share with interactions")
+    for place, heading in enumerate(headings):
         sheet.write_string(3, place, heading, book.format("header"))
     sheet.set_row(3, 32)
     swings = sorted(variation.swings.items(), key=lambda item: -variation.shares[item[0]])
@@ -47,6 +48,7 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn) -> None:
         sheet.write_number(row, 1, low / ARCMIN, book.format("text", "arcmin"))
         sheet.write_number(row, 2, high / ARCMIN, book.format("text", "arcmin"))
         sheet.write_number(row, 3, variation.shares[dimension], book.format("text", "share"))
+        sheet.write_number(row, 4, variation.totals[dimension], book.format("text", "share"))
     last = 3 + len(swings)
     middle = sum(swings[0][1]) / 2 / ARCMIN
     chart = book.chart("bar", f"Tornado of {name} [arcmin]")
@@ -64,28 +66,32 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn) -> None:
         })  # fmt: skip
     chart.set_x_axis({"crossing": middle, "num_format": "0.000", "major_gridlines": GRID})
     chart.set_y_axis({"reverse": True, "crossing": "min", "label_position": "low"})
-    book.insert(sheet, 3, 5, chart, size=(760, 400), text="Tornado chart of the worst variant")
+    book.insert(sheet, 3, 6, chart, size=(700, 400), text="Tornado chart of the worst variant")
 
 
 def _write_shares(book: Book, sheet: Any, outcome: Outcome) -> None:
     """Write the first-order shares of variance of every variant, one column per dimension that varies."""
     rows = [one for one in outcome.computed.values() if one.variation is not None]
     names = [name for name in DIMENSIONS if any(name in one.variation.shares for one in rows if one.variation)]
+    right = len(names) + 1
     text = (
         "Share of each dimension in the variance of the backlash (first-order Sobol' index); what is missing to "
-        "100 % is interaction and sampling error."
+        "100 % is interaction. Total indices, interactions included, follow to the right."
     )
     sheet.write_string(_HEADER - 1, 0, text, book.format("quiet"))
     sheet.write_string(_HEADER, 0, "Variant", book.format("header"))
     for place, name in enumerate(names, start=1):
         sheet.write_string(_HEADER, place, dimension_words(name), book.format("header"))
-    sheet.set_row(_HEADER, 32)
+        sheet.write_string(_HEADER, place + right, f"{dimension_words(name)}, total", book.format("header"))
+    sheet.set_row(_HEADER, 48)
     for row, one in enumerate(rows, start=_HEADER + 1):
         sheet.write_string(row, 0, one.variant.name, book.format("text"))
         shares = one.variation.shares if one.variation else {}
+        totals = one.variation.totals if one.variation else {}
         for place, name in enumerate(names, start=1):
             if name in shares:
                 sheet.write_number(row, place, shares[name], book.format("text", "share"))
+                sheet.write_number(row, place + right, totals[name], book.format("text", "share"))
     if rows and names:
         scale = {
             "type": "2_color_scale",
@@ -97,3 +103,4 @@ def _write_shares(book: Book, sheet: Any, outcome: Outcome) -> None:
             "max_value": 1,
         }
         sheet.conditional_format(_HEADER + 1, 1, _HEADER + len(rows), len(names), scale)
+        sheet.conditional_format(_HEADER + 1, right + 1, _HEADER + len(rows), right + len(names), scale)

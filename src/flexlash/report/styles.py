@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import xlsxwriter
 
-__all__ = ["GRID", "PALETTE", "Book"]
+__all__ = ["GRID", "PALETTE", "Book", "decimals_of"]
 
 PALETTE = {
     "ink": "#1F3A5F",
@@ -90,6 +91,21 @@ _FORMATS: dict[str, dict[str, Any]] = {
 }
 
 
+_MOST_DECIMALS = 8
+
+
+def decimals_of(error: float | None, otherwise: str) -> str:
+    """Return the number format that shows a number down to the first digit of its standard error.
+
+    >>> decimals_of(0.0021, "plain"), decimals_of(None, "plain")
+    ('0.000', 'plain')
+    """
+    if error is None or not error > 0:
+        return otherwise
+    places = max(0, min(_MOST_DECIMALS, -math.floor(math.log10(error))))
+    return "0." + "0" * places if places else "0"
+
+
 class Book:
     """An XlsxWriter workbook with the report's formats and sheets."""
 
@@ -98,12 +114,12 @@ class Book:
         self._formats: dict[str, Any] = {}
 
     def format(self, name: str, number: str = "") -> Any:
-        """Return a format by name, optionally with a number format."""
+        """Return a format by name, optionally with a number format by name or in Excel's letters."""
         key = f"{name} {number}"
         if key not in self._formats:
             properties = {**_BASE, **_FORMATS[name]}
             if number:
-                properties["num_format"] = _NUMBERS[number]
+                properties["num_format"] = _NUMBERS.get(number, number)
             self._formats[key] = self.workbook.add_format(properties)
         return self._formats[key]
 

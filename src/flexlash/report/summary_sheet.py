@@ -11,7 +11,7 @@ from flexlash.outcome import Outcome
 from flexlash.report.selection import Drawn
 from flexlash.report.spread_sheet import curve_place
 from flexlash.report.styles import GRID, PALETTE, Book
-from flexlash.summary import dimension_words, rounded, share_words
+from flexlash.summary import dimension_words, points_words, rounded, share_words, spread_notes
 
 __all__ = ["light", "sentences", "write_summary"]
 
@@ -81,6 +81,7 @@ def sentences(outcome: Outcome, drawn: Sequence[Drawn]) -> Iterator[str]:
             "The classical cylinder-only formula would miss "
             f"{_missed(100 * min(missed), 100 * max(missed))} of the backlash of cups and hats."
         )
+    yield from spread_notes(outcome)
     exact = sum(
         "shear_modulus" in one.variant.dimensions and "shear_modulus" not in one.limits
         for one in outcome.computed.values()
@@ -178,8 +179,8 @@ def _write_provenance(book: Book, sheet: Any, outcome: Outcome, row: int) -> int
 
     facts = (
         f"sha256 of the submission: {outcome.submission.sha256}",
-        f"flexlash {__version__}, method {outcome.method}, seed {outcome.settings.seed}, "
-        f"{outcome.points:,} points per variant. Method and limits of the model: sheet About.",
+        f"flexlash {__version__}, method {outcome.settings.method}, seed {outcome.settings.seed}, "
+        f"{points_words(outcome)} per variant. Method and limits of the model: sheet About.",
     )
     for fact in facts:
         sheet.write_string(row, 0, fact, book.format("quiet"))

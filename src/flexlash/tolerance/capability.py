@@ -6,7 +6,7 @@ import math
 
 from scipy.special import betaincinv
 
-__all__ = ["clopper_pearson", "ppk_upper"]
+__all__ = ["clopper_pearson", "ppk_normal", "ppk_upper"]
 
 
 def clopper_pearson(count: int, total: int, confidence: float = 0.95) -> tuple[float, float]:
@@ -31,3 +31,14 @@ def ppk_upper(limit: float, median: float, upper: float) -> float | None:
     """
     width = upper - median
     return (limit - median) / width if width > 0 and math.isfinite(width) else None
+
+
+def ppk_normal(limit: float, mean: float, sd: float) -> float | None:
+    """Return the performance index against an upper limit as if the output were normal: (limit − mean)/(3 sd).
+
+    None when nothing scatters.
+
+    >>> ppk_normal(3.0, 1.0, 0.5)
+    1.3333333333333333
+    """
+    return (limit - mean) / (3 * sd) if sd > 0 and math.isfinite(sd) else None

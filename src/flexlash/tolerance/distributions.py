@@ -34,6 +34,10 @@ class Distribution(Protocol):
         """What the standard value is multiplied by."""
 
     @property
+    def breaks(self) -> tuple[float, ...]:
+        """The standard normal scores at which the standard value has a kink."""
+
+    @property
     def expectation(self) -> float:
         """Mean of the distribution."""
 
@@ -43,6 +47,9 @@ class Distribution(Protocol):
 
     def standard(self, probability: Array) -> Array:
         """Return the standard values at these probabilities."""
+
+    def standard_at(self, score: Array) -> Array:
+        """Return the standard values at the probabilities of standard normal scores, exact in both tails."""
 
 
 def _require_order(low: float, high: float) -> None:
@@ -91,6 +98,7 @@ class Normal:
         _require_normal(self.mean, self.sd)
 
     shape = ("normal",)
+    breaks = ()
 
     @property
     def location(self) -> float:
@@ -116,6 +124,10 @@ class Normal:
         """Return standard normal quantiles."""
         return np.asarray(ndtri(probability))
 
+    def standard_at(self, score: Array) -> Array:
+        """Return the scores themselves."""
+        return score
+
 
 @dataclass(frozen=True)
 class TruncatedNormal:
@@ -125,6 +137,7 @@ class TruncatedNormal:
     sd: float
     low: float
     high: float
+    breaks = ()
 
     def __post_init__(self) -> None:
         _require_normal(self.mean, self.sd)
@@ -186,6 +199,14 @@ class TruncatedNormal:
             inside = ndtri(ndtr(first) + probability * self._mass)
         return np.clip(inside, first, last)
 
+    def standard_at(self, score: Array) -> Array:
+        """Return quantiles of the cut standard normal, counted from the nearer end."""
+        first, last = self._cuts
+        mass = self._mass
+        from_below = ndtri(ndtr(first) + ndtr(score) * mass)
+        from_above = -ndtri(ndtr(-last) + ndtr(-score) * mass)
+        return np.clip(np.where(from_below < 0, from_below, from_above), first, last)
+
 
 class _Interval:
     """What distributions between two finite ends share."""
@@ -216,6 +237,7 @@ class Uniform(_Interval):
         _require_finite(self.low, self.high)
 
     shape = ("uniform",)
+    breaks = ()
 
     @property
     def expectation(self) -> float:
@@ -230,6 +252,10 @@ class Uniform(_Interval):
     def standard(self, probability: Array) -> Array:
         """Return the probabilities themselves."""
         return probability
+
+    def standard_at(self, score: Array) -> Array:
+        """Return the probabilities of the scores."""
+        return np.asarray(ndtr(score))
 
 
 @dataclass(frozen=True)
@@ -260,6 +286,11 @@ class Triangular(_Interval):
         return ("triangular", self._fraction)
 
     @property
+    def breaks(self) -> tuple[float, ...]:
+        """The score of the peak, unless it is at an end."""
+        return (float(ndtri(self._fraction)),) if 0 < self._fraction < 1 else ()
+
+    @property
     def expectation(self) -> float:
         """The mean of the three corners."""
         return (self.low + self.high + self._peak) / 3
@@ -276,3 +307,11 @@ class Triangular(_Interval):
         rising = np.sqrt(probability * fraction)
         falling = 1 - np.sqrt((1 - probability) * (1 - fraction))
         return np.where(probability < fraction, rising, falling)
+
+    def standard_at(self, score: Array) -> Array:
+        """Return quantiles of the triangle on [0, 1], counted from the nearer end."""
+        fraction = self._fraction
+        below = ndtr(score)
+        rising = np.sqrt(below * fraction)
+        falling = 1 - np.sqrt(ndtr(-score) * (1 - fraction))
+        return np.where(below < fraction, rising, falling)

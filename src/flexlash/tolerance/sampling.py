@@ -7,14 +7,17 @@ meet the same wall thickness in the same draw.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Literal
 
 import numpy as np
+from scipy.special import ndtri, stdtrit
 
 from flexlash.arrays import Array
 from flexlash.tolerance.distributions import Distribution
+from flexlash.tolerance.nets import scrambled_net
 
-__all__ = ["DEFAULT_SAMPLES", "REPLICATES", "UnitPoints"]
+__all__ = ["DEFAULT_SAMPLES", "REPLICATES", "UnitPoints", "standard_error"]
 
 REPLICATES = 16
 """Independent replicates behind every standard error: 15 degrees of freedom."""
@@ -26,6 +29,23 @@ PointSet = Literal["all", "leading", "second"]
 
 _SHARE_POINTS = 512
 _CACHED_SHAPES = 256
+
+
+def standard_error(replicates: Array) -> Array:
+    """Return the standard errors of means over independent replicates, the last axis.
+
+    They are widened for the small number of replicates, so that ± 1.96 of them is Student's 95 % interval.
+    """
+    count = replicates.shape[-1]
+    deviation = replicates - np.add.reduce(replicates, axis=-1, keepdims=True) / count
+    squares = np.add.reduce(deviation * deviation, axis=-1)
+    return np.asarray(np.sqrt(squares / ((count - 1) * count)) * _widening(count))
+
+
+@cache
+def _widening(count: int) -> float:
+    """Return how much wider Student's 95 % interval is than the normal one."""
+    return float(stdtrit(count - 1, 0.975) / ndtri(0.975))
 
 
 class UnitPoints:
@@ -44,18 +64,16 @@ class UnitPoints:
         self.method = method
         self.count = 1 << max(0, -(-wanted // REPLICATES) - 1).bit_length()
         self.share_count = min(self.count, _SHARE_POINTS)
-        streams = np.random.SeedSequence(seed).spawn(REPLICATES)
         draw = _sobol if method == "sobol" else _random
         width = len(names)
+        points = draw(2 * width, self.count, np.random.default_rng(seed))
         self._sets: dict[PointSet, dict[str, Array]] = {
-            "all": {name: np.empty((REPLICATES, self.count)) for name in names},
-            "second": {name: np.empty((REPLICATES, self.share_count)) for name in names},
+            "all": {name: points[place] for place, name in enumerate(names)},
+            "second": {
+                name: np.ascontiguousarray(points[width + place, :, : self.share_count])
+                for place, name in enumerate(names)
+            },
         }
-        for replicate, stream in enumerate(streams):
-            points = draw(2 * width, self.count, np.random.default_rng(stream))
-            for place, name in enumerate(names):
-                self._sets["all"][name][replicate] = points[:, place]
-                self._sets["second"][name][replicate] = points[: self.share_count, width + place]
         self._sets["leading"] = {
             name: np.ascontiguousarray(values[:, : self.share_count]) for name, values in self._sets["all"].items()
         }
@@ -78,13 +96,10 @@ class UnitPoints:
 
 
 def _sobol(width: int, count: int, generator: np.random.Generator) -> Array:
-    """Return scrambled Sobol' points (count, width), none of them on a face of the cube."""
-    from scipy.stats import qmc
-
-    points = qmc.Sobol(width, scramble=True, rng=generator).random(count)
-    return np.clip(points, 2.0**-53, 1 - 2.0**-53)
+    """Return scrambled Sobol' points (width, replicates, count)."""
+    return scrambled_net(width, REPLICATES, count, generator)
 
 
 def _random(width: int, count: int, generator: np.random.Generator) -> Array:
-    """Return independent uniform points (count, width), none of them on a face of the cube."""
-    return np.clip(generator.random((count, width)), 2.0**-53, 1 - 2.0**-53)
+    """Return independent uniform points (width, replicates, count), none of them on a face of the cube."""
+    return np.clip(generator.random((width, REPLICATES, count)), 2.0**-53, 1 - 2.0**-53)

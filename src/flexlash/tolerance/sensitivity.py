@@ -1,27 +1,32 @@
-"""What the limits and the first derivatives say, without sampling: worst case and first-order spread."""
+"""What the limits and the first derivatives say, without sampling: worst case and first-order spread.
+
+Inputs are scalars or arrays (rows,); the model then meets arrays with one more axis in front.
+"""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from scipy.special import ndtri
 
 from flexlash.arrays import Array
-from flexlash.tolerance.distributions import Distribution
 
-__all__ = ["WorstCase", "first_order_sd", "gradient", "worst_case"]
+__all__ = ["WorstCase", "first_order_sd", "first_order_valid", "gradient", "worst_case"]
 
 Model = Callable[..., Array]
+Number = Any
+"""A float, or an array (rows,)."""
 
 
-def _table(centre: Mapping[str, float], rows: int) -> dict[str, Array]:
+def _table(centre: Mapping[str, Number], rows: int) -> dict[str, Array]:
     """Return every input at its centre, `rows` times."""
-    return {name: np.full(rows, value) for name, value in centre.items()}
+    return {name: np.repeat(np.asarray(value, dtype=float)[None], rows, axis=0) for name, value in centre.items()}
 
 
-def gradient(model: Model, centre: Mapping[str, float], steps: Mapping[str, float]) -> dict[str, float]:
+def gradient(model: Model, centre: Mapping[str, Number], steps: Mapping[str, Number]) -> dict[str, Number]:
     """Return the partial derivatives of a model at a point by central differences over ± its steps."""
     arguments = _table(centre, 2 * len(steps))
     for place, (name, step) in enumerate(steps.items()):
@@ -29,53 +34,79 @@ def gradient(model: Model, centre: Mapping[str, float], steps: Mapping[str, floa
         arguments[name][2 * place + 1] -= step
     output = model(**arguments)
     return {
-        name: float(output[2 * place] - output[2 * place + 1])
-        / float(arguments[name][2 * place] - arguments[name][2 * place + 1])
+        name: (output[2 * place] - output[2 * place + 1])
+        / (arguments[name][2 * place] - arguments[name][2 * place + 1])
         for place, name in enumerate(steps)
     }
 
 
-def first_order_sd(model: Model, middle: Mapping[str, float], scatter: Mapping[str, Distribution]) -> float:
-    """Return the first-order (GUM) standard uncertainty at mid-limits, with each input's true sd.
+def first_order_sd(model: Model, middle: Mapping[str, Number], sds: Mapping[str, Number]) -> Number:
+    """Return the first-order (GUM) standard uncertainty at mid-limits, from each input's true sd.
 
-    >>> from flexlash.tolerance import Normal
     >>> model = lambda a, b: a + b * b
-    >>> round(first_order_sd(model, {"a": 0.0, "b": 2.0}, {"a": Normal(0, 3), "b": Normal(2, 1)}), 9)
+    >>> round(float(first_order_sd(model, {"a": 0.0, "b": 2.0}, {"a": 3.0, "b": 1.0})), 9)
     5.0
     """
-    sds = {name: distribution.standard_deviation for name, distribution in scatter.items()}
-    steps = {name: max(1e-3 * sd, 1e-6 * abs(middle[name])) for name, sd in sds.items()}
+    steps = {name: np.maximum(1e-3 * sd, 1e-6 * np.abs(middle[name])) for name, sd in sds.items()}
     slopes = gradient(model, middle, steps)
-    return math.sqrt(sum((slopes[name] * sds[name]) ** 2 for name in sds))
+    total = 0.0
+    for name, sd in sds.items():
+        total = total + (slopes[name] * sd) * (slopes[name] * sd)
+    return np.sqrt(total)
+
+
+def first_order_valid(
+    estimate: Number, first_order: Number, interval: tuple[Number, Number], coverage: float, digits: int = 2
+) -> Number:
+    """Return whether the first-order interval does as well as another to the digits of its uncertainty.
+
+    JCGM 101 clause 8: the ends must agree within half a unit in the last of `digits` significant digits of the
+    first-order standard uncertainty.
+
+    >>> [bool(first_order_valid(0.0, 2.0, (-end, end), 0.95)) for end in (3.92, 3.88)]
+    [True, True]
+    >>> bool(first_order_valid(0.0, 10.1, (-17.0, 17.0), 0.95))
+    False
+    """
+    reach = float(ndtri((1 + coverage) / 2)) * first_order
+    positive = np.where(first_order > 0, first_order, 1.0)
+    # The uncertainty rounded to its digits may carry over to the next power of ten, as 0.0996 to 0.10.
+    power = np.floor(np.log10(positive)) - (digits - 1)
+    carried = np.round(positive / 10.0**power) >= 10.0**digits
+    unit = 10.0 ** (power + carried)
+    low, high = interval
+    off = np.maximum(np.abs(estimate - reach - low), np.abs(estimate + reach - high))
+    return off <= unit / 2
 
 
 @dataclass(frozen=True, kw_only=True)
 class WorstCase:
     """Least and greatest output with every input at a limit; `swings` the outputs at one input's limits."""
 
-    low: float
-    high: float
-    swings: dict[str, tuple[float, float]]
+    low: Number
+    high: Number
+    swings: dict[str, tuple[Number, Number]]
 
 
-def worst_case(model: Model, ends: Mapping[str, tuple[float, float]]) -> WorstCase:
+def worst_case(model: Model, ends: Mapping[str, tuple[Number, Number]]) -> WorstCase:
     """Return the least and greatest output of a monotone model with every input at one of its limits.
 
     Which limit hurts is found with the other inputs at the middle of theirs.
 
     >>> found = worst_case(lambda a, b: a - b, {"a": (1.0, 2.0), "b": (5.0, 7.0)})
-    >>> found.low, found.high, found.swings["b"]
-    (-6.0, -3.0, (-3.5, -5.5))
+    >>> float(found.low), float(found.high), [float(end) for end in found.swings["b"]]
+    (-6.0, -3.0, [-3.5, -5.5])
     """
     middle = {name: (low + high) / 2 for name, (low, high) in ends.items()}
     arguments = _table(middle, 2 * len(ends))
     for place, (name, limits) in enumerate(ends.items()):
-        arguments[name][2 * place : 2 * place + 2] = limits
+        arguments[name][2 * place], arguments[name][2 * place + 1] = limits
     output = model(**arguments)
-    swings = {name: (float(output[2 * place]), float(output[2 * place + 1])) for place, name in enumerate(ends)}
+    swings = {name: (output[2 * place], output[2 * place + 1]) for place, name in enumerate(ends)}
     corners = _table(middle, 2)
-    for name, limits in ends.items():
+    for name, (low, high) in ends.items():
         at_low, at_high = swings[name]
-        corners[name][:] = limits if at_high >= at_low else limits[::-1]
+        rising = at_high >= at_low
+        corners[name][0], corners[name][1] = np.where(rising, low, high), np.where(rising, high, low)
     least, greatest = model(**corners)
-    return WorstCase(low=float(least), high=float(greatest), swings=swings)
+    return WorstCase(low=least, high=greatest, swings=swings)

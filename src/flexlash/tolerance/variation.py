@@ -1,20 +1,19 @@
-"""One variant's tolerance spread: every statistic that the report prints, from one model and its limits."""
+"""The tolerance spread of one variant as a record, and how it is to be sampled."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-
-import numpy as np
+from functools import cached_property
+from typing import Literal, TypeAlias
 
 from flexlash.arrays import Array
-from flexlash.tolerance.capability import ppk_upper
-from flexlash.tolerance.limits import Limits, distributions
-from flexlash.tolerance.propagate import Spread, propagate
+from flexlash.columns import DIMENSIONS
+from flexlash.tolerance.limits import Limits
 from flexlash.tolerance.sampling import UnitPoints
-from flexlash.tolerance.sensitivity import first_order_sd, worst_case
+from flexlash.tolerance.spread import Method
 
-__all__ = ["CURVE_PROBABILITIES", "Variation", "variation_of"]
+__all__ = ["CURVE_PROBABILITIES", "HISTOGRAM_BINS", "PERCENTILES", "Draws", "Task", "Variation"]
 
 PERCENTILES = {
     "p0_135": 0.00135,
@@ -33,95 +32,56 @@ CURVE_PROBABILITIES = (
 
 HISTOGRAM_BINS = 40
 
+Task: TypeAlias = tuple[
+    Callable[[Mapping[str, Array | float]], Array], Mapping[str, float], Mapping[str, Limits], float | None
+]
+"""A row to spread: its backlash model, entered dimensions, limits of dimensions, and greatest backlash allowed."""
+
+
+@dataclass(frozen=True)
+class Draws:
+    """How the spread is sampled; each process draws its points for itself, the same ones.
+
+    `cross_check` puts plain Monte Carlo beside the method. `coverage` is the share of units inside the coverage
+    interval.
+    """
+
+    method: Method
+    samples: int | None
+    seed: int
+    coverage: float = 0.95
+    cross_check: bool = False
+
+    @cached_property
+    def sobol(self) -> UnitPoints:
+        """Sobol' points, one coordinate per dimension that may have a tolerance."""
+        return self._points("sobol")
+
+    @cached_property
+    def random(self) -> UnitPoints:
+        """Points of plain Monte Carlo."""
+        return self._points("random")
+
+    def _points(self, method: Literal["sobol", "random"]) -> UnitPoints:
+        samples = self.samples if method == self.method else None
+        return UnitPoints(list(DIMENSIONS), method=method, samples=samples, seed=self.seed)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Variation:
     """Spread of one variant [SI]: statistics by result key without unit, shares by dimension, two curves.
 
-    `curve` are the values at `CURVE_PROBABILITIES`; `edges` (bins + 1,) and `heights` (bins,) a histogram
-    whose heights are shares of all units; the three are None when nothing scatters. `swings` is the
+    `words` are what is said in words: by which method, with which note. `totals` are the total indices beside the
+    first-order `shares`. `curve` are the values at `CURVE_PROBABILITIES`; `edges` (bins + 1,) and `heights` (bins,) a
+    histogram whose heights are shares of all units; the three are None when nothing scatters. `swings` is the
     backlash with one dimension at its lower and upper limit and the others in the middle of theirs.
     """
 
     statistics: dict[str, float | None]
-    shares: dict[str, float]
+    words: dict[str, str | None] = field(default_factory=dict)
+    shares: dict[str, float] = field(default_factory=dict)
+    totals: dict[str, float] = field(default_factory=dict)
     swings: dict[str, tuple[float, float]] = field(default_factory=dict)
     curve: Array | None = None
     edges: Array | None = None
     heights: Array | None = None
-
-
-def variation_of(
-    backlash: Callable[[Mapping[str, Array | float]], Array],
-    nominal: Mapping[str, float],
-    limits: Mapping[str, Limits],
-    points: UnitPoints,
-    *,
-    limit: float | None,
-    coverage: float,
-) -> Variation:
-    """Return the spread of a variant's backlash over its limits.
-
-    `backlash` maps dimensions in SI to the backlash; `nominal` are the entered values; `limit` is the
-    greatest backlash allowed; `coverage` the share of units inside the coverage interval.
-    """
-    centre = {**nominal, **{name: one.middle for name, one in limits.items()}}
-    scatter = distributions(limits)
-    if not scatter:
-        return _exact(float(backlash(centre)), limit)
-
-    def model(**varying: Array) -> Array:
-        return backlash({**centre, **varying})
-
-    spread = propagate(model, scatter, points=points)
-    ends = {name: (limits[name].low, limits[name].high) for name in scatter}
-    worst = worst_case(model, ends)
-    statistics: dict[str, float | None] = {
-        "mean": spread.mean,
-        "sd": spread.sd,
-        **{key: spread.quantile(share) for key, share in PERCENTILES.items()},
-        "p97_5_standard_error": spread.standard_error(0.975),
-        "p99_865_standard_error": spread.standard_error(0.99865),
-        "mean_standard_error": spread.mean_standard_error,
-        "sd_standard_error": spread.sd_standard_error,
-        "coverage_low": spread.quantile((1 - coverage) / 2),
-        "coverage_high": spread.quantile((1 + coverage) / 2),
-        "worst_case_low": worst.low,
-        "worst_case_high": worst.high,
-        "first_order_sd": first_order_sd(model, {name: centre[name] for name in scatter}, scatter),
-    }
-    edges, heights = spread.histogram(HISTOGRAM_BINS)
-    return Variation(
-        statistics=statistics | _against(spread, limit),
-        shares=spread.shares,
-        swings=worst.swings,
-        curve=spread.quantile(np.array(CURVE_PROBABILITIES)),
-        edges=edges,
-        heights=heights,
-    )
-
-
-def _against(spread: Spread, limit: float | None) -> dict[str, float | None]:
-    """Statistics against the limit; none without one."""
-    if limit is None:
-        return {}
-    low, high = spread.probability_interval(limit)
-    return {
-        "probability_over_limit": spread.probability_above(limit),
-        "probability_over_limit_low": low,
-        "probability_over_limit_high": high,
-        "ppk": ppk_upper(limit, spread.quantile(0.5), spread.quantile(0.99865)),
-    }
-
-
-def _exact(value: float, limit: float | None) -> Variation:
-    """Spread of a variant none of whose dimensions scatters."""
-    same = (*PERCENTILES, "mean", "coverage_low", "coverage_high", "worst_case_low", "worst_case_high")
-    none = ("sd", "first_order_sd", "p97_5_standard_error", "p99_865_standard_error")
-    statistics: dict[str, float | None] = dict.fromkeys(same, value)
-    statistics |= dict.fromkeys((*none, "mean_standard_error", "sd_standard_error"), 0.0)
-    if limit is not None:
-        over = float(value > limit)
-        sides = ("", "_low", "_high")
-        statistics |= dict.fromkeys((f"probability_over_limit{side}" for side in sides), over)
-    return Variation(statistics=statistics, shares={})

@@ -1,0 +1,49 @@
+"""Plain Monte Carlo beside another method: the same statistics twice, and whether they agree."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from flexlash.tolerance.sampled import SampledSpread
+from flexlash.tolerance.variation import PERCENTILES, Variation
+
+__all__ = ["AGREES", "cross_checked"]
+
+AGREES = 4.0
+"""Combined standard errors within which two methods agree: passed by chance once in 16,000 comparisons."""
+
+
+def cross_checked(variation: Variation, plain: SampledSpread, limit: float | None) -> Variation:
+    """Return a spread with the numbers of plain Monte Carlo beside its own.
+
+    `cross_check_deviation` is the greatest difference of mean, sd, percentiles and probability over the limit in
+    combined standard errors.
+    """
+    shares = np.array(list(PERCENTILES.values()))
+    values = dict(zip(PERCENTILES, plain.quantile(shares).tolist(), strict=True))
+    errors = dict(zip(PERCENTILES, plain.standard_error(shares).tolist(), strict=True))
+    values |= {"mean": plain.mean, "sd": plain.sd}
+    errors |= {"mean": plain.mean_standard_error, "sd": plain.sd_standard_error}
+    own = {name: value for name, value in variation.statistics.items() if value is not None}
+    deviations = [
+        abs(values[name] - own[name]) / math.hypot(errors[name], own[f"{name}_standard_error"]) for name in values
+    ]
+    if limit is not None:
+        share = own["probability_over_limit"]
+        values["probability_over_limit"] = plain.probability_above(limit)
+        # A rare share is counted in whole draws: half a draw is the least that can be told.
+        error = max(math.sqrt(share * (1 - share) / plain.size), 0.5 / plain.size)
+        deviations.append(abs(values["probability_over_limit"] - share) / error)
+    greatest = max(deviations)
+    beside: dict[str, float | None] = {f"random_{name}": value for name, value in values.items()}
+    beside |= {f"random_{name}_standard_error": error for name, error in errors.items()}
+    beside |= {"cross_check_deviation": greatest, "random_points": float(plain.size)}
+    agrees = "agrees" if greatest <= AGREES else "differs"
+    return replace(
+        variation,
+        statistics=variation.statistics | beside,
+        words=variation.words | {"cross_check": agrees},
+    )

@@ -1,0 +1,231 @@
+"""What lines say about the output: quantiles, shares above a limit, moments, each with its standard error.
+
+Arrays are (levels, rows): a level is one wanted probability or one limit. Crossings found in the table are
+corrected on the model itself until nothing is left to correct, so the table's spacing leaves no bias.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from flexlash.arrays import Array
+from flexlash.tolerance.lines import FAR, NODES, REACH, STEP, WEIGHTS, Lines
+from flexlash.tolerance.sampling import standard_error
+
+__all__ = ["Crossing", "Moments", "crossing_at", "moments_of", "quantiles_of"]
+
+LEAST = 1e-15
+"""Shares below are not told from none."""
+
+_FINE_NODES, _FINE_WEIGHTS = np.polynomial.legendre.leggauss(96)
+
+_ROUNDING = 1e-9
+"""Part of the scale of an output below which its numbers are rounding."""
+
+_EXACT = 1e-4
+"""Part of the scale by which a crossing may still move; the correction then leaves a small part of that."""
+
+_SLOPE_ERROR = 0.1
+"""How well the slope of a line is known; a correction leaves at most this part of itself."""
+
+_NEAR = 5e-3
+"""Part of the scale from which the model itself takes over from the table."""
+
+_APART = 1e-6
+_SEARCHES = 40
+_ROUNDS = 12
+
+
+def _density(score: Array) -> Array:
+    """Return the standard normal density."""
+    return np.asarray(np.exp(score * score * -0.5) * (1 / np.sqrt(2 * np.pi)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crossing:
+    """Outputs (levels, rows), the share `above` each, its standard error, and the density there.
+
+    `residual` is the part of the outputs' error that more lines would not remove.
+    """
+
+    output: Array
+    above: Array
+    above_error: Array
+    density: Array
+    residual: Array
+
+    @property
+    def output_error(self) -> Array:
+        """Standard errors of the outputs as quantiles: that of the share over the density."""
+        return self.above_error / _positive(self.density) + self.residual
+
+    def take(self, levels: int) -> Crossing:
+        """Return the first levels."""
+        return Crossing(**{name: values[:levels] for name, values in vars(self).items()})
+
+    def widened(self, margin: Array) -> Crossing:
+        """Return the same with standard errors times a margin (rows,)."""
+        return replace(self, above_error=self.above_error * margin)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Moments:
+    """Mean, standard deviation and skewness of each row with their standard errors, (rows,) each."""
+
+    mean: Array
+    sd: Array
+    skewness: Array
+    mean_error: Array
+    sd_error: Array
+    skewness_error: Array
+
+    def widened(self, margin: Array) -> Moments:
+        """Return the same with standard errors times a margin (rows,)."""
+        errors = {name: values * margin for name, values in vars(self).items() if name.endswith("_error")}
+        return replace(self, **errors)
+
+
+def moments_of(lines: Lines) -> Moments:
+    """Return the moments: along the lines by quadrature, over the lines by their mean."""
+    values, weight = lines.table, WEIGHTS[:, None]
+    if len(lines.inputs.names) == 1:
+        nodes, weight = _fine_rule(lines.inputs.shapes[0].breaks)
+        values = lines.outputs(nodes)
+    origin = lines.each(values[len(values) // 2].reshape(lines.rows, -1)[:, :1].T)
+    deviation = values - origin
+    first = (weight * deviation).sum(axis=0)[None]
+    shift = lines.mean_over_lines(first)
+    deviation -= lines.each(shift)
+    power = weight * deviation * deviation
+    second = power.sum(axis=0)[None]
+    power *= deviation
+    third = power.sum(axis=0)[None]
+    variance = lines.mean_over_lines(second)
+    sd = np.sqrt(variance)
+    scale = np.where(sd > 0, sd, 1.0)
+    return Moments(
+        mean=(lines.mean_over_lines(origin) + shift)[0],
+        sd=sd[0],
+        skewness=(lines.mean_over_lines(third) / scale**3)[0],
+        mean_error=_error(lines, first)[0] + _ROUNDING * sd[0],
+        sd_error=(_error(lines, second) / (2 * scale))[0] + _ROUNDING * sd[0],
+        skewness_error=(_error(lines, third) / scale**3)[0] + _ROUNDING,
+    )
+
+
+def _error(lines: Lines, values: Array) -> Array:
+    """Return the standard errors (k, rows) of means over lines."""
+    return standard_error(lines.replicate_means(values)) + lines.left_out(values)
+
+
+def _fine_rule(breaks: tuple[float, ...]) -> tuple[Array, Array]:
+    """Return nodes and weights (k, 1) that integrate under the normal density between breaks to rounding."""
+    ends = np.array([-REACH, *breaks, REACH])
+    half = np.diff(ends)[:, None] / 2
+    nodes = (half * _FINE_NODES + ends[:-1, None] + half).reshape(-1, 1)
+    weights = (half * _FINE_WEIGHTS).reshape(-1, 1) * _density(nodes)
+    return nodes, weights / weights.sum()
+
+
+def quantiles_of(lines: Lines, probability: Array) -> Crossing:
+    """Return the outputs that these shares (levels,) of each row stay below."""
+    level = ndtri(np.clip(probability, LEAST, 1 - LEAST))[:, None]
+    scaled = (level - NODES[0]) / STEP
+    node = np.clip(scaled.astype(int), 0, len(NODES) - 2)
+    start = lines.table[node[:, 0]] * (1 - (scaled - node)) + lines.table[node[:, 0] + 1] * (scaled - node)
+    return _settle(lines, *_in_table(lines, lines.mean_over_lines(start), level), level)
+
+
+def _in_table(lines: Lines, output: Array, level: Array) -> tuple[Array, Array, Array]:
+    """Return outputs near the wanted level of Φ, the places and the slopes there, by the table alone."""
+    low = np.minimum.reduce(lines.table[0].reshape(lines.rows, -1), axis=1)
+    high = np.maximum.reduce(lines.table[-1].reshape(lines.rows, -1), axis=1)
+    near = np.zeros(output.shape, dtype=bool)
+    for _ in range(_SEARCHES):
+        place, slope = lines.places(lines.each(output))
+        moved, corrected = _moved(lines, output, place, slope, level)
+        near = near | (np.abs(moved - output) <= _NEAR * lines.scale)
+        if near.all():
+            break
+        low = np.where(moved > output, output, low)
+        high = np.where(moved < output, output, high)
+        moved = np.where((moved <= low) | (moved >= high), (low + high) / 2, moved)
+        output = np.where(near, output, moved)
+    return moved, corrected, slope
+
+
+def crossing_at(lines: Lines, output: Array) -> Crossing:
+    """Return the shares above outputs (levels, rows)."""
+    place, slope = lines.places(lines.each(output))
+    return _settle(lines, output, place, slope, None)
+
+
+def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Array | None) -> Crossing:
+    """Return the crossings of outputs, which move to the wanted level of Φ if there is one.
+
+    Each pair of level and row stops by itself, so that its numbers do not depend on its neighbours.
+    """
+    settled = np.zeros(output.shape, dtype=bool)
+    live = lines.each(~settled)
+    residual = np.zeros(output.shape)
+    before: tuple[Array, Array] | None = None
+    exact = _ROUNDING if len(lines.inputs.names) == 1 else _EXACT
+    for _ in range(_ROUNDS):
+        reached = lines.outputs(place)
+        if before is not None:
+            slope = np.where(live, _secant(before, (place, reached), slope), slope)
+        gap = _within((lines.each(output) - reached) / slope, STEP)
+        weight = _density(place)
+        left = lines.mean_over_lines(weight * np.abs(gap)) / _positive(lines.mean_over_lines(weight / slope))
+        target, corrected = output, _within(place + gap, FAR)
+        if level is not None:
+            target, corrected = _moved(lines, output, corrected, slope, level)
+            left = np.maximum(left, np.abs(target - output))
+        else:
+            share = lines.mean_over_lines(ndtr(-corrected))
+            left = np.where((share <= LEAST) | (share >= 1 - LEAST), 0.0, left)
+        live = lines.each(~settled)
+        before = place, reached
+        output = np.where(settled, output, target)
+        place = np.where(live, corrected, place)
+        residual = np.where(settled, residual, left)
+        settled = settled | (left <= exact * lines.scale)
+        if settled.all():
+            break
+    above = ndtr(-place)
+    return Crossing(
+        output=output,
+        above=lines.mean_over_lines(above),
+        above_error=_error(lines, above),
+        density=lines.mean_over_lines(_density(place) / slope),
+        residual=np.maximum(_SLOPE_ERROR * residual, _ROUNDING * lines.scale),
+    )
+
+
+def _secant(before: tuple[Array, Array], now: tuple[Array, Array], slope: Array) -> Array:
+    """Return the slopes between two places of each line where they are far enough apart, within a factor of 5."""
+    moved = now[0] - before[0]
+    apart = np.abs(moved) > _APART
+    found = (now[1] - before[1]) / np.where(apart, moved, 1.0)
+    return np.where(apart, np.clip(found, 0.2 * slope, 5 * slope), slope)
+
+
+def _within(values: Array, most: float) -> Array:
+    """Return values cut at ± most."""
+    return np.minimum(np.maximum(values, -most), most)
+
+
+def _positive(density: Array) -> Array:
+    """Return densities that one can divide by."""
+    return np.maximum(density, np.finfo(float).tiny)
+
+
+def _moved(lines: Lines, output: Array, place: Array, slope: Array, level: Array) -> tuple[Array, Array]:
+    """Return outputs nearer to the wanted level of Φ, by Newton's rule on the normal scale, and the places there."""
+    above = np.clip(lines.mean_over_lines(ndtr(-place)), LEAST / 10, 1 - LEAST / 10)
+    density = _positive(lines.mean_over_lines(_density(place) / slope))
+    step = np.clip((level + ndtri(above)) * _density(level) / density, -lines.scale, lines.scale)
+    return output + step, _within(place + lines.each(step) / slope, FAR)

@@ -1,0 +1,329 @@
+"""Lines through the space of the inputs along which the output only rises.
+
+Every input is a function of a standard normal score. Lines run parallel to the direction in which the output
+rises fastest at the median; a scrambled net places them in the directions across. Where a line passes an
+output y at the place t, the share Φ(−t) of the line lies above y: the mean over lines is P(Y > y).
+
+Koutsourelakis, Pradlwarter and Schuëller 2004 (line sampling); L'Ecuyer and others (conditional Monte Carlo
+with randomized quasi-Monte Carlo).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from flexlash.arrays import Array
+from flexlash.tolerance.distributions import Distribution, Normal
+from flexlash.tolerance.line_nets import LINE_REPLICATES, Net
+
+__all__ = [
+    "FAR",
+    "FAULTS",
+    "NODES",
+    "REACH",
+    "STEP",
+    "WEIGHTS",
+    "Course",
+    "Inputs",
+    "Lines",
+    "RowModel",
+    "across",
+    "course_of",
+]
+
+REACH = 8.3
+"""Scores beyond ±8.3 have no weight in double precision and are not visited."""
+
+STEP = 0.5
+NODES = np.arange(-8.0, 8.0 + STEP / 2, STEP)
+WEIGHTS = np.exp(-NODES * NODES / 2) / np.exp(-NODES * NODES / 2).sum()
+"""The trapezoidal rule, which for smooth functions under a normal density errs by less than rounding."""
+
+FAR = 8.5
+"""The place of a crossing that a line does not have: Φ(−FAR) is nothing beside 1."""
+
+FAULTS = (
+    "",
+    "the output has no gradient at the median",
+    "the model is not finite within 8 standard deviations",
+    "the output does not rise everywhere along its gradient at the median",
+    "the output has steps or dips between the points looked at",
+)
+"""Why lines do not serve a row."""
+
+_SECANT = np.array([-1.5, -0.75, 0.75, 1.5])
+_SLANT = 0.1
+
+_PROBES = np.array([-1.75, -0.25, 1.25])
+_BEFORE_PROBES = np.searchsorted(NODES, _PROBES) - 1
+_UP, _DOWN = np.searchsorted(NODES, [1.0, -1.0])
+
+_LAST = 2
+"""The last of the three intervals between four nodes."""
+
+_DIP = 1e-9
+"""A fall along a line smaller than this part of its range is rounding."""
+
+_ROUGH = 0.05
+"""A model that lies this part of a step off the cubic through its neighbours has steps of its own."""
+
+_BEYOND = 2.0
+"""How much further from the mean lines beyond an evenly spaced row may be than its last."""
+
+_BLOCK = 1 << 15
+
+
+Rows = npt.NDArray[np.intp]
+RowModel = Callable[[Mapping[str, Array], Rows], Array]
+"""The outputs (k, L) at inputs (k, L) by name; L columns belong to the rows given."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Inputs:
+    """What varies in rows alike: distributions of the same shapes, each with a location and a scale per row.
+
+    `location` and `scale` are (inputs, rows).
+    """
+
+    names: tuple[str, ...]
+    shapes: tuple[Distribution, ...]
+    location: Array
+    scale: Array
+
+    @classmethod
+    def of(cls, rows: Sequence[Mapping[str, Distribution]]) -> Inputs:
+        """Return the inputs of rows whose distributions have the same names and shapes."""
+        names = tuple(rows[0])
+        return cls(
+            names=names,
+            shapes=tuple(rows[0].values()),
+            location=np.array([[row[name].location for row in rows] for name in names]),
+            scale=np.array([[row[name].scale for row in rows] for name in names]),
+        )
+
+    @property
+    def count(self) -> int:
+        """Rows."""
+        return int(self.location.shape[1])
+
+    @property
+    def one_bent(self) -> bool:
+        """Whether all distributions but one are normal, so that the output bends with one score alone."""
+        return [shape.shape != Normal.shape for shape in self.shapes].count(True) == 1
+
+    def take(self, rows: Rows) -> Inputs:
+        """Return some of the rows."""
+        return replace(self, location=self.location[:, rows], scale=self.scale[:, rows])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Course:
+    """The direction of the lines of each row, a unit vector (inputs, rows), and the order in which inputs meet the net.
+
+    `direction` is 0 where the output does not change; `order` (inputs, rows) ends with the input that closes the plane
+    across the direction.
+    """
+
+    direction: Array
+    order: Rows
+
+    def take(self, rows: Rows) -> Course:
+        """Return some of the rows."""
+        return Course(direction=self.direction[:, rows], order=self.order[:, rows])
+
+
+def course_of(model: RowModel, inputs: Inputs) -> Course:
+    """Return the course of lines along which the output rises fastest, by secants over the middle of each input.
+
+    What lines do not even out is the curvature of the output in the single inputs: the more curved, the earlier an
+    input comes in the order, so that the best coordinates of the net serve it.
+    """
+    count = len(inputs.names)
+    probes = len(_SECANT)
+    arguments = {}
+    for place, name in enumerate(inputs.names):
+        score = np.zeros((probes * count, 1))
+        score[probes * place : probes * (place + 1), 0] = _SECANT
+        standard = inputs.shapes[place].standard_at(score)
+        arguments[name] = inputs.location[place] + inputs.scale[place] * standard
+    output = model(arguments, np.arange(inputs.count)).reshape(count, probes, inputs.count)
+    low, inner_low, inner_high, high = (output[:, probe] for probe in range(probes))
+    rise = (high - low) / 2
+    curvature = np.abs(high - low - 2 * (inner_high - inner_low)) + np.abs(high + low - inner_high - inner_low)
+    length = np.sqrt((rise * rise).sum(axis=0))
+    noise = 64 * np.finfo(float).eps * np.abs(output).max(axis=(0, 1))
+    steady = np.isfinite(length) & (length > noise)
+    direction = np.where(steady, rise / np.where(steady, length, 1.0), 0.0)
+    slant = direction * direction
+    last = np.argmin(np.where(slant >= _SLANT * slant.max(axis=0), curvature, np.inf), axis=0)
+    curvature[last, np.arange(inputs.count)] = -1.0
+    return Course(direction=direction, order=np.argsort(-curvature, axis=0, kind="stable"))
+
+
+def across(course: Course, net: Array) -> Array:
+    """Return scores (inputs, rows, lines) of points in the planes across the directions.
+
+    `net` are standard normal scores (inputs − 1, lines). The scores across α have the covariance 1 − ααᵀ; its Cholesky
+    factor gives each input a coordinate of its own and what keeps it in the plane.
+    """
+    direction = np.take_along_axis(course.direction, course.order, axis=0)
+    squares = direction * direction
+    left = np.concatenate([np.cumsum(squares[::-1], axis=0)[::-1], np.zeros((1, direction.shape[1]))])
+    left = np.where(left > 0, left, 1.0)
+    scores = np.empty((*direction.shape, net.shape[1]))
+    gathered = np.zeros(scores.shape[1:])
+    for place, coordinate in enumerate(net):
+        before, after = left[place], left[place + 1]
+        scores[place] = np.sqrt(after / before)[:, None] * coordinate - direction[place][:, None] * gathered
+        gathered += (direction[place] / np.sqrt(before * after))[:, None] * coordinate
+    scores[-1] = -direction[-1][:, None] * gathered
+    placed = np.empty_like(scores)
+    np.put_along_axis(placed, course.order[:, :, None], scores, axis=0)
+    return placed
+
+
+class Lines:
+    """Lines through rows alike, tabulated at nodes: `table` (nodes, rows × lines) of outputs that only rise.
+
+    `lines` is the number per row, LINE_REPLICATES times a power of two. `faults` (rows,) holds 0, or the place in
+    `FAULTS` of what keeps line sampling from a row; what else is read of the lines holds for the other rows.
+    """
+
+    def __init__(self, model: RowModel, inputs: Inputs, course: Course, net: Net) -> None:
+        self._model = model
+        self.inputs = inputs
+        self.rows = inputs.count
+        self.lines = net.lines
+        self._net = net
+        self._row_of = np.repeat(np.arange(self.rows), self.lines)
+        self._origin = across(course, net.scores).reshape(len(inputs.names), -1)
+        self._direction = course.direction[:, self._row_of]
+        self._location = inputs.location[:, self._row_of]
+        self._scale = inputs.scale[:, self._row_of]
+        self._far = np.abs(self._origin).max(axis=1) + FAR * np.abs(self._direction).max(axis=1) > REACH
+        for place, shape in enumerate(inputs.shapes):
+            if shape.shape == Normal.shape:
+                self._origin[place] = self._location[place] + self._scale[place] * self._origin[place]
+                self._direction[place] *= self._scale[place]
+        found = self.outputs(np.concatenate([NODES, _PROBES])[:, None])
+        table, probes = found[: len(NODES)], found[len(NODES) :]
+        self.faults = self._faults(course.direction, table, probes)
+        self.table = np.maximum.accumulate(table, axis=0)
+        self.scale = self.mean_over_lines(self.table[_UP : _UP + 1] - self.table[_DOWN : _DOWN + 1])[0] / 2
+
+    def _faults(self, direction: Array, table: Array, probes: Array) -> Rows:
+        """Return what keeps line sampling from each row, by its place in `FAULTS`."""
+        step = np.diff(table, axis=0)
+        faults = np.where((direction != 0).any(axis=0), 0, 1)
+        if not (step.min() >= 0 and np.isfinite(probes).all()):
+            # The usual table rises outright; only others are looked at more closely.
+            finite = np.isfinite(table).all(axis=0) & np.isfinite(probes).all(axis=0)
+            faults = np.where(self._all_lines(finite) | (faults > 0), faults, 2)
+            size = np.abs(table).max(axis=0)
+            slack = _DIP * (table.max(axis=0) - table.min(axis=0)) + 64 * np.finfo(float).eps * size
+            faults = np.where(self._all_lines((step >= -slack).all(axis=0)) | (faults > 0), faults, 3)
+        before = table[np.add.outer(np.arange(-1, 3), _BEFORE_PROBES)]
+        between = (9 * (before[1] + before[2]) - (before[0] + before[3])) / 16
+        off = self.mean_over_lines(np.abs(probes - between)).sum(axis=0)
+        rough = off > _ROUGH * self.mean_over_lines(before[2] - before[1]).sum(axis=0)
+        return np.where(rough & (faults == 0), 4, faults)
+
+    def _all_lines(self, sound: npt.NDArray[np.bool_] | np.bool_) -> npt.NDArray[np.bool_]:
+        """Return whether every line (rows × lines,) of a row is sound."""
+        return np.asarray(sound.reshape(self.rows, -1).all(axis=1))
+
+    def outputs(self, places: Array) -> Array:
+        """Return the outputs (k, rows × lines) at places (k, 1) or (k, rows × lines) along the lines."""
+        width = self._origin.shape[1]
+        output = np.empty((len(places), width))
+        step = max(_BLOCK // len(places), 1)
+        for start in range(0, width, step):
+            block = slice(start, min(start + step, width))
+            here = places if places.shape[1] == 1 else places[:, block]
+            arguments = {}
+            for place, name in enumerate(self.inputs.names):
+                arguments[name] = self._values(place, here, block)
+            output[:, block] = self._model(arguments, self._row_of[block])
+        return output
+
+    def _values(self, place: int, here: Array, block: slice) -> Array:
+        """Return an input at places along some lines; that of a normal is a straight line itself."""
+        found = self._direction[place, block] * here
+        found += self._origin[place, block]
+        location, scale = self._location[place, block], self._scale[place, block]
+        if self.inputs.shapes[place].shape == Normal.shape:
+            if self._far[place]:
+                np.minimum(np.maximum(found, location - REACH * scale, out=found), location + REACH * scale, out=found)
+            return found
+        if self._far[place]:
+            np.minimum(np.maximum(found, -REACH, out=found), REACH, out=found)
+        found = self.inputs.shapes[place].standard_at(found) * scale
+        found += location
+        return found
+
+    def each(self, values: Array) -> Array:
+        """Return values (k, rows) once for every line, (k, rows × lines)."""
+        return np.repeat(values, self.lines, axis=1)
+
+    def mean_over_lines(self, values: Array) -> Array:
+        """Return the means (k, rows) of values (k, rows × lines)."""
+        weighted = values.reshape(-1, self.rows, self.lines) * self._net.weights
+        return np.asarray(np.add.reduce(weighted, axis=2) / LINE_REPLICATES)
+
+    def replicate_means(self, values: Array) -> Array:
+        """Return the means (k, rows, replicates) of values (k, rows × lines)."""
+        weighted = values.reshape(-1, self.rows, self.lines) * self._net.weights
+        return np.asarray(np.add.reduce(weighted.reshape(len(weighted), self.rows, LINE_REPLICATES, -1), axis=3))
+
+    def left_out(self, values: Array) -> Array:
+        """Return how far means (k, rows) of values may be off for want of lines beyond an evenly spaced row."""
+        if not self._net.row:
+            return np.zeros((len(values), self.rows))
+        mean = self.mean_over_lines(values)
+        by_place = values.reshape(
+            -1,
+            self.rows,
+            LINE_REPLICATES,
+            self._net.row,
+            values.shape[1] // (self.rows * LINE_REPLICATES * self._net.row),
+        )
+        first, last = (by_place[:, :, :, end].mean(axis=(2, 3)) for end in (0, -1))
+        return np.asarray(_BEYOND * self._net.beyond * (np.abs(first - mean) + np.abs(last - mean)))
+
+    def places(self, outputs: Array) -> tuple[Array, Array]:
+        """Return where lines pass outputs (k, rows × lines), and their slopes there, by cubics through the table."""
+        table, width = self.table, self.table.shape[1]
+        passed = np.zeros(outputs.shape, dtype=np.int8)
+        for node in table:
+            passed += (node <= outputs).view(np.int8)
+        base = np.minimum(np.maximum(passed - np.int8(2), np.int8(0)), np.int8(len(NODES) - 4))
+        index = base * np.int64(width) + np.arange(width)
+        first, second, third, fourth = (table.reshape(-1).take(index + shift * width) for shift in range(4))
+        interval = np.minimum(np.maximum(passed - np.int8(1) - base, 0), _LAST)
+        low, starts, ends = interval.astype(float), interval == 0, interval == _LAST
+        below = np.where(starts, first, np.where(ends, third, second))
+        above = np.where(starts, second, np.where(ends, fourth, third))
+        secant = above - below
+        inside = (passed > 0) & (passed < len(NODES))
+        secant = np.where(secant > 0, secant, 1.0)
+        bend, twist = third - 2 * second + first, (fourth - 3 * third + 3 * second - first) / 3
+        rise = second - first
+        place = low + (outputs - below) / secant
+        for _ in range(2):
+            value = first + place * (rise + (place - 1) / 2 * (bend + (place - 2) * twist))
+            place = place + (outputs - value) / _slope(place, rise, bend, twist, secant)
+            place = np.minimum(np.maximum(place, low), low + 1)
+        slope = _slope(place, rise, bend, twist, secant) / STEP
+        found = NODES[0] + STEP * (base + place)
+        outside = np.where(passed == 0, -FAR, FAR)
+        return np.where(inside, found, outside), slope
+
+
+def _slope(place: Array, rise: Array, bend: Array, twist: Array, secant: Array) -> Array:
+    """Return the slopes of cubics through four values a unit apart, no less than a tenth of the secant's."""
+    slope = rise + (place - 0.5) * bend + (1.5 * place * place - 3 * place + 1) * twist
+    return np.maximum(slope, 0.1 * secant)

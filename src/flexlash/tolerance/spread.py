@@ -1,0 +1,126 @@
+"""The spread of an output: what every statistic is read from, however it was found."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any, Literal, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from flexlash.arrays import Array
+
+__all__ = ["Method", "Spread"]
+
+Method = Literal["line", "sobol", "random"]
+
+
+class Spread(ABC):
+    """The spread of a model's output.
+
+    `method` is the one that answered, `notes` say why another was not taken, `size` counts the lines or points.
+    A number ± 1.96 of its standard errors is its 95 % interval: errors that come from independent replicates are
+    widened for their small number, as Student's t asks.
+    """
+
+    method: Method
+    notes: tuple[str, ...]
+    size: int
+
+    @property
+    @abstractmethod
+    def mean(self) -> float:
+        """Mean of the output."""
+
+    @property
+    @abstractmethod
+    def mean_standard_error(self) -> float:
+        """Standard error of the mean."""
+
+    @property
+    @abstractmethod
+    def sd(self) -> float:
+        """Standard deviation of the output."""
+
+    @property
+    @abstractmethod
+    def sd_standard_error(self) -> float:
+        """Standard error of the standard deviation."""
+
+    @property
+    @abstractmethod
+    def skewness(self) -> float:
+        """Third central moment over the cube of the standard deviation."""
+
+    @property
+    @abstractmethod
+    def skewness_standard_error(self) -> float:
+        """Standard error of the skewness."""
+
+    @property
+    @abstractmethod
+    def shares(self) -> dict[str, float]:
+        """First-order Sobol' index of each input: the share of variance it causes by itself."""
+
+    @property
+    @abstractmethod
+    def total_shares(self) -> dict[str, float]:
+        """Total Sobol' index of each input: the share of variance it has any part in."""
+
+    @overload
+    def quantile(self, probability: float) -> float: ...
+    @overload
+    def quantile(self, probability: npt.ArrayLike) -> Any: ...
+    def quantile(self, probability: npt.ArrayLike) -> Any:
+        """Return the values that this share of the output stays below; scalar in, scalar out."""
+        wanted = _probabilities(probability)
+        return _shaped(self._quantiles(wanted.ravel()), wanted)
+
+    @overload
+    def standard_error(self, probability: float) -> float: ...
+    @overload
+    def standard_error(self, probability: npt.ArrayLike) -> Any: ...
+    def standard_error(self, probability: npt.ArrayLike) -> Any:
+        """Return the standard errors of quantiles."""
+        wanted = _probabilities(probability)
+        return _shaped(self._quantile_errors(wanted.ravel()), wanted)
+
+    @overload
+    def probability_above(self, value: float) -> float: ...
+    @overload
+    def probability_above(self, value: npt.ArrayLike) -> Any: ...
+    def probability_above(self, value: npt.ArrayLike) -> Any:
+        """Return the share of the output greater than a value; scalar in, scalar out."""
+        wanted = np.asarray(value, dtype=float)
+        return _shaped(self._shares_above(wanted.ravel()), wanted)
+
+    @abstractmethod
+    def probability_interval(self, value: float, confidence: float = 0.95) -> tuple[float, float]:
+        """Return an interval of the share above a value."""
+
+    def histogram(self, bins: int = 40, cut: float = 0.0005) -> tuple[Array, Array]:
+        """Return the edges (bins + 1,) between two tail quantiles and the share of the output in each bin."""
+        edges = np.linspace(self.quantile(cut), self.quantile(1 - cut), bins + 1)
+        return edges, -np.diff(self._shares_above(edges))
+
+    @abstractmethod
+    def _quantiles(self, probability: Array) -> Array: ...
+
+    @abstractmethod
+    def _quantile_errors(self, probability: Array) -> Array: ...
+
+    @abstractmethod
+    def _shares_above(self, value: Array) -> Array: ...
+
+
+def _probabilities(probability: npt.ArrayLike) -> Array:
+    """Return probabilities as an array; raise ValueError outside [0, 1]."""
+    wanted = np.asarray(probability, dtype=float)
+    if not np.all((wanted >= 0) & (wanted <= 1)):
+        raise ValueError("a probability must lie between 0 and 1")
+    return wanted
+
+
+def _shaped(found: Array, like: Array) -> Any:
+    """Return numbers found for a raveled array in its shape, a float for a scalar."""
+    return float(found[0]) if like.ndim == 0 else found.reshape(like.shape)
