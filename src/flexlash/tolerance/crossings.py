@@ -136,7 +136,14 @@ def quantiles_of(lines: Lines, probability: Array) -> Crossing:
     scaled = (level - NODES[0]) / STEP
     node = np.clip(scaled.astype(int), 0, len(NODES) - 2)
     start = lines.table[node[:, 0]] * (1 - (scaled - node)) + lines.table[node[:, 0] + 1] * (scaled - node)
-    return _settle(lines, *_in_table(lines, lines.mean_over_lines(start), level), level)
+    return _settle(lines, *_in_table(lines, lines.mean_over_lines(start) + level * _wider(lines), level), level)
+
+
+def _wider(lines: Lines) -> Array:
+    """Return by how much more than along a line the output scatters, (rows,): the lines are not quite alike."""
+    middle = lines.table[len(NODES) // 2][None]
+    apart = middle - lines.each(lines.mean_over_lines(middle))
+    return np.asarray(np.sqrt(lines.scale**2 + lines.mean_over_lines(apart * apart)[0]) - lines.scale)
 
 
 def _in_table(lines: Lines, output: Array, level: Array) -> tuple[Array, Array, Array]:
@@ -169,11 +176,11 @@ def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Arra
     Each pair of level and row stops by itself, so that its numbers do not depend on its neighbours.
     """
     settled = np.zeros(output.shape, dtype=bool)
-    live = lines.each(~settled)
     residual = np.zeros(output.shape)
     before: tuple[Array, Array] | None = None
     exact = _ROUNDING if len(lines.inputs.names) == 1 else _EXACT
     for _ in range(_ROUNDS):
+        live = lines.each(~settled)
         reached = lines.outputs(place)
         if before is not None:
             slope = np.where(live, _secant(before, (place, reached), slope), slope)
@@ -187,7 +194,6 @@ def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Arra
         else:
             share = lines.mean_over_lines(ndtr(-corrected))
             left = np.where((share <= LEAST) | (share >= 1 - LEAST), 0.0, left)
-        live = lines.each(~settled)
         before = place, reached
         output = np.where(settled, output, target)
         place = np.where(live, corrected, place)
@@ -227,5 +233,6 @@ def _moved(lines: Lines, output: Array, place: Array, slope: Array, level: Array
     """Return outputs nearer to the wanted level of Φ, by Newton's rule on the normal scale, and the places there."""
     above = np.clip(lines.mean_over_lines(ndtr(-place)), LEAST / 10, 1 - LEAST / 10)
     density = _positive(lines.mean_over_lines(_density(place) / slope))
-    step = np.clip((level + ndtri(above)) * _density(level) / density, -lines.scale, lines.scale)
+    now = -ndtri(above)
+    step = np.clip((level - now) * _density(now) / density, -lines.scale, lines.scale)
     return output + step, _within(place + lines.each(step) / slope, FAR)

@@ -10,10 +10,11 @@ import numpy.typing as npt
 from scipy.special import ndtr, ndtri
 
 from flexlash.arrays import Array
+from flexlash.tolerance.course import Course, Inputs, RowModel, Rows, course_of
 from flexlash.tolerance.crossings import LEAST, Crossing, Moments, crossing_at, moments_of, quantiles_of
 from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.line_nets import LINE_REPLICATES, line_net, mirrored_net
-from flexlash.tolerance.lines import FAULTS, Course, Inputs, Lines, RowModel, Rows, course_of
+from flexlash.tolerance.lines import FAULTS, Lines
 from flexlash.tolerance.shares import variance_shares
 from flexlash.tolerance.spread import Spread
 
@@ -145,6 +146,7 @@ class LineSpread(Spread):
         return lines
 
     @cached_property
+    @np.errstate(all="ignore")
     def _moments(self) -> Moments:
         return moments_of(self._lines).widened(self._margin)
 
@@ -184,12 +186,15 @@ class LineSpread(Spread):
     def _quantile_errors(self, probability: Array) -> Array:
         return self._crossed(probability).output_error[:, 0]
 
+    @np.errstate(all="ignore")
     def _crossed(self, probability: Array) -> Crossing:
         return quantiles_of(self._lines, probability).widened(self._margin)
 
+    @np.errstate(all="ignore")
     def _shares_above(self, value: Array) -> Array:
         return crossing_at(self._lines, value[:, None]).above[:, 0]
 
+    @np.errstate(all="ignore")
     def probability_interval(self, value: float, confidence: float = 0.95) -> tuple[float, float]:
         """Return an interval of the share above a value, even on the normal scale."""
         crossing = crossing_at(self._lines, np.array([[value]])).widened(self._margin)
@@ -197,6 +202,7 @@ class LineSpread(Spread):
         return float(low[0, 0]), float(high[0, 0])
 
     @cached_property
+    @np.errstate(all="ignore")
     def _both_shares(self) -> tuple[dict[str, float], dict[str, float]]:
         names = self._inputs.names
         net = mirrored_net(self._seed, len(names))

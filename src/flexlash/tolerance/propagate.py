@@ -8,9 +8,9 @@ from typing import get_args
 import numpy as np
 
 from flexlash.arrays import Array
+from flexlash.tolerance.course import RowModel, Rows
 from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.line_spread import LineSpread, NoLines
-from flexlash.tolerance.lines import RowModel, Rows
 from flexlash.tolerance.sampled import Model, SampledSpread
 from flexlash.tolerance.sampling import UnitPoints
 from flexlash.tolerance.spread import Method, Spread

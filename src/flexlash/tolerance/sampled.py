@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import ndtri
 
 from flexlash.arrays import Array
 from flexlash.tolerance.capability import clopper_pearson
@@ -47,8 +48,9 @@ class SampledSpread(Spread):
         self.size = self.values.size
 
     @cached_property
-    def _ordered(self) -> Array:
-        return np.sort(self.values, axis=None)
+    def _selected(self) -> Array:
+        """The values in one row, put in order only as far as quantiles were asked for."""
+        return self.values.flatten()
 
     @property
     def _independent(self) -> bool:
@@ -99,45 +101,54 @@ class SampledSpread(Spread):
         """Standard error of the skewness."""
         if self.sd == 0:
             return 0.0
-        cubes = ((self.values - self.mean) / self.sd) ** 3
-        return float(standard_error(cubes.mean(axis=1)))
+        deviation = (self.values - self.mean) / self.sd
+        return float(standard_error((deviation * deviation * deviation).mean(axis=1)))
 
     def _moment(self, power: int) -> float:
         """Return a central moment in standard deviations; 0 where nothing varies."""
         if self.sd == 0:
             return 0.0
         deviation = (self.values - self.mean) / self.sd
-        return float((deviation**power).mean())
+        product = deviation * deviation
+        for _ in range(power - 2):
+            product *= deviation
+        return float(product.mean())
 
     def _quantiles(self, probability: Array) -> Array:
         place = probability * (self.size - 1)
         below = np.floor(place).astype(int)
         above = np.minimum(below + 1, self.size - 1)
-        low, high = self._ordered[below], self._ordered[above]
+        self._selected.partition(np.unique(np.concatenate([below, above])))
+        low, high = self._selected[below], self._selected[above]
         return np.asarray(low + (high - low) * (place - below))
 
     def _quantile_errors(self, probability: Array) -> Array:
-        return np.array([self._quantile_error(float(one)) for one in probability])
-
-    def _quantile_error(self, probability: float) -> float:
-        """Return the standard error of a quantile: the error of the share below, over the slope (Woodruff)."""
+        """Return the standard errors of quantiles: the error of the share below, over the slope (Woodruff)."""
         if self._independent:
-            of_share = math.sqrt(probability * (1 - probability) / self.size)
+            of_share = np.sqrt(probability * (1 - probability) / self.size)
         else:
-            of_share = float(standard_error((self.values <= self.quantile(probability)).mean(axis=1)))
-        of_share = max(of_share, 0.5 / self.size)
-        reach = max(0.5 * min(probability, 1 - probability), of_share)
-        low, high = max(probability - reach, 0.0), min(probability + reach, 1.0)
-        slope = (self.quantile(high) - self.quantile(low)) / (high - low)
-        return of_share * slope
+            quantiles = self._quantiles(probability)
+            below = np.array([(self.values <= quantile).mean(axis=1) for quantile in quantiles])
+            of_share = standard_error(below)
+        of_share = np.maximum(of_share, 0.5 / self.size)
+        reach = np.maximum(0.5 * np.minimum(probability, 1 - probability), of_share)
+        low, high = np.maximum(probability - reach, 0.0), np.minimum(probability + reach, 1.0)
+        ends = self._quantiles(np.concatenate([low, high]))
+        inside = of_share * (ends[len(low) :] - ends[: len(low)]) / (high - low)
+        # A quantile rarer than one point in all lies beyond the points, by a normal tail as far as this.
+        rarer = np.clip(np.minimum(probability, 1 - probability), np.finfo(float).tiny, 0.5)
+        beyond = np.maximum(ndtri(min(1 / self.size, 0.5)) - ndtri(rarer), 0.0)
+        return np.asarray(inside + beyond * self.sd)
 
     def _shares_above(self, value: Array) -> Array:
-        return np.asarray(1 - np.searchsorted(self._ordered, value, side="right") / self.size)
+        return np.array([self._count_above(one) for one in value]) / self.size
+
+    def _count_above(self, value: float) -> int:
+        return int(np.count_nonzero(self._selected > value))
 
     def probability_interval(self, value: float, confidence: float = 0.95) -> tuple[float, float]:
         """Return the Clopper–Pearson interval of the share above a value; wide for Sobol' points."""
-        count = self.size - int(np.searchsorted(self._ordered, value, side="right"))
-        return clopper_pearson(count, self.size, confidence)
+        return clopper_pearson(self._count_above(value), self.size, confidence)
 
     @cached_property
     def _both_shares(self) -> tuple[dict[str, float], dict[str, float]]:

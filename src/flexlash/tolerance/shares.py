@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from flexlash.arrays import Array
+from flexlash.tolerance.course import Inputs, RowModel
 from flexlash.tolerance.distributions import Distribution
-from flexlash.tolerance.lines import REACH, Inputs, RowModel
+from flexlash.tolerance.lines import REACH
 
 __all__ = ["gauss_rule", "variance_shares"]
 

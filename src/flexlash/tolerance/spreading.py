@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from flexlash.arrays import Array
+from flexlash.tolerance.course import Inputs, Rows
 from flexlash.tolerance.cross_check import cross_checked
 from flexlash.tolerance.limits import distributions
-from flexlash.tolerance.lines import Inputs, Rows
 from flexlash.tolerance.propagate import NOT_LINES
 from flexlash.tolerance.sampled import SampledSpread
 from flexlash.tolerance.sampling import UnitPoints

@@ -13,6 +13,7 @@ from scipy.special import ndtr, ndtri
 
 from flexlash.arrays import Array
 from flexlash.tolerance.capability import ppk_normal, ppk_upper
+from flexlash.tolerance.course import Inputs, RowModel, Rows, course_of
 from flexlash.tolerance.crossings import crossing_at, moments_of, quantiles_of
 from flexlash.tolerance.line_nets import line_net, mirrored_net
 from flexlash.tolerance.line_spread import (
@@ -23,7 +24,7 @@ from flexlash.tolerance.line_spread import (
     share_interval,
     unsettled,
 )
-from flexlash.tolerance.lines import FAULTS, NODES, Inputs, Lines, RowModel, Rows, course_of
+from flexlash.tolerance.lines import FAULTS, NODES, Lines
 from flexlash.tolerance.quantile_curve import QuantileCurve
 from flexlash.tolerance.shares import variance_shares
 from flexlash.tolerance.spread import Spread
@@ -36,7 +37,7 @@ _FURTHER = (0.0005, 0.2119, 0.7881, 0.9995)
 
 _HISTOGRAM_CUT = 0.0005
 
-_BLOCK = 1 << 15
+_BLOCK = 1 << 16
 """Numbers of an array that leave room in the cache for a few others."""
 
 
