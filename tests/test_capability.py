@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from flexlash.tolerance.capability import clopper_pearson, ppk_upper
+from flexlash.tolerance.capability import clopper_pearson, ppk_normal, ppk_upper
 
 thorough = settings(deadline=None, max_examples=80, derandomize=True)
 
@@ -66,3 +66,33 @@ def test_ppk_of_a_normal_is_the_classical_index(mean, sd, limit):
 def test_ppk_needs_scatter(upper):
     """Nothing that scatters, or a percentile that is no number, has no index."""
     assert ppk_upper(3.0, 1.0, upper) is None
+
+
+@pytest.mark.parametrize(
+    ("limit", "mean", "sd", "expected"),
+    [(4.0, 1.0, 0.5, 2.0), (2.5, 1.0, 0.5, 1.0), (1.0, 1.0, 0.5, 0.0), (0.25, 1.0, 0.25, -1.0)],
+)
+def test_ppk_by_normal_theory_counts_three_sd(limit, mean, sd, expected):
+    """By normal theory Ppk is the limit's distance from the mean over 3 sd, negative for a limit below the mean."""
+    assert ppk_normal(limit, mean, sd) == expected
+
+
+@thorough
+@given(mean=st.floats(-10, 10), sd=st.floats(0.01, 10), limit=st.floats(-50, 50))
+def test_both_indices_of_a_normal_agree(mean, sd, limit):
+    """For a normal output the index by percentiles is the index by normal theory."""
+    upper = mean + float(stats.norm.ppf(0.99865)) * sd
+    assert ppk_normal(limit, mean, sd) == pytest.approx(ppk_upper(limit, mean, upper), rel=1e-4, abs=1e-9)
+
+
+def test_normal_theory_flatters_a_skewed_output():
+    """For an exponential output, whose upper tail is long, normal theory gives 2 instead of 1.07."""
+    median, upper = math.log(2), -math.log(0.00135)
+    assert ppk_normal(7.0, 1.0, 1.0) == 2.0
+    assert ppk_upper(7.0, median, upper) == pytest.approx(1.0663, abs=5e-5)
+
+
+@pytest.mark.parametrize("sd", [0.0, -1.0, math.inf, math.nan])
+def test_ppk_by_normal_theory_needs_scatter(sd):
+    """Nothing that scatters, or an sd that is no number, has no index."""
+    assert ppk_normal(3.0, 1.0, sd) is None

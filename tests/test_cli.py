@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import re
@@ -112,7 +113,60 @@ def test_run_names_the_worst_variants(table, sound, capsys, main_in):
     assert main_in("run", table(rows)) == 0
     out = capsys.readouterr().out
     assert "P97.5 is over the backlash limit for 2 of 4 variants with a limit." in out
-    assert "  v0: at least 99.99 % of units are over 3′." in out
+    assert "  v0: all but at most 0.001 ppb of units are over 3′." in out
+    assert re.search(
+        r"^  v1: all but 0\.0\d+ ppb \(0\.0\d+ to 0\.0\d+ ppb\) of units are over 3\.5′\.$", out, re.MULTILINE
+    )
+
+
+def test_run_with_one_scattering_dimension_tells_its_share(table, sound, tmp_path, capsys, main_in):
+    """Where but one dimension scatters, the share over the limit is told to its digits, not as all or none."""
+    tolerances = tmp_path / "tolerances.csv"
+    tolerances.write_text(
+        "tolerance_class,dimension,lower_deviation,upper_deviation,deviation_unit\nstandard,youngs_modulus,-3,3,%\n",
+        encoding="utf-8",
+    )
+    rows = [sound, {**sound, "variant": "tight", "backlash_limit_arcmin": 3.65}]
+    assert main_in("run", table(rows), "--tolerances", tolerances) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"^  tight: 84\.\d+ %.* of units are over 3\.65′\.$", out, re.MULTILINE)
+    assert re.search(r"^  B3-160: 4\.6\d* %.* of units are over 3\.75′\.$", out, re.MULTILINE)
+
+
+def test_cross_check_says_whether_both_agree(table, sound, tmp_path, capsys, main_in):
+    """--cross-check says for how many variants plain Monte Carlo agrees, and puts its columns into the output."""
+    rows = [{**sound, "variant": f"v{number}", "torque_Nm": 700.0 + number} for number in range(3)]
+    target = tmp_path / "out.csv"
+    assert main_in("run", table(rows), "--cross-check", "-o", target) == 0
+    said = (
+        r"^Plain Monte Carlo agrees for 3 of 3 variants; the greatest difference is [0-3]\.\d combined standard errors"
+    )
+    assert re.search(said, capsys.readouterr().out, re.MULTILINE)
+    with target.open(encoding="utf-8", newline="") as file:
+        assert [row["cross_check"] for row in csv.DictReader(file)] == ["agrees"] * 3
+    assert main_in("run", table(rows), "-o", target) == 0
+    assert "Plain Monte Carlo" not in capsys.readouterr().out
+    assert "cross_check" not in target.read_text(encoding="utf-8").splitlines()[0]
+
+
+def test_cross_check_of_plain_monte_carlo_says_nothing(table, sound, capsys, main_in):
+    """Plain Monte Carlo is not checked against itself, and nothing is said of agreement."""
+    assert main_in("run", table([sound]), "--cross-check", "--method", "random", "--samples", 256) == 0
+    assert "agrees" not in capsys.readouterr().out
+
+
+def test_json_names_the_method_that_was_set(table, sound, capsys, main_in):
+    """--json names the method of the settings, line unless told otherwise."""
+    for options, method in (([], "line"), (["--method", "sobol"], "sobol")):
+        assert main_in("run", table([sound]), "--json", "--samples", 256, *options) == 0
+        assert json.loads(capsys.readouterr().out)["method"] == method
+
+
+@pytest.mark.parametrize("jobs", [0, -1])
+def test_jobs_must_be_at_least_one(table, sound, main_in, capsys, jobs):
+    """A number of jobs below 1 is a usage error."""
+    assert main_in("run", table([sound]), "--jobs", jobs) == 2
+    assert "--jobs" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from flexlash.columns import (
     Column,
     columns_of,
 )
-from flexlash.result_columns import FINDINGS, RESULTS
+from flexlash.result_columns import CROSS_CHECK, FINDINGS, RESULTS, result_columns
 from flexlash.units import find_unit
 
 VARIANT_LABELS = {
@@ -128,6 +128,38 @@ RESULT_KEYS = [
     "main_contributor_share",
     "backlash_limit_arcmin",
 ]
+ERROR_KEYS = ["mean", "sd", "p0_135", "p2_5", "p5", "p50", "p95", "p97_5", "p99_865", "coverage_low", "coverage_high"]
+FURTHER_KEYS = [
+    "rim_windup_rad",
+    "wall_windup_rad",
+    "junction_fillet_windup_rad",
+    "disk_body_windup_rad",
+    "hub_fillet_windup_rad",
+    "von_mises_MPa",
+    "skewness",
+    "skewness_standard_error",
+    "ppm_over_limit_low",
+    "ppm_over_limit_high",
+    "ppk_normal",
+    "first_order_valid",
+    "interaction_share",
+    "spread_method",
+    "spread_points",
+    "spread_note",
+    "notes",
+    "findings",
+]
+CROSS_CHECK_KEYS = [
+    *(
+        f"random_{name}{end}_arcmin"
+        for name in ("mean", "sd", "p2_5", "p50", "p97_5", "p99_865")
+        for end in ("", "_standard_error")
+    ),
+    "random_probability_over_limit",
+    "random_points",
+    "cross_check_deviation",
+    "cross_check",
+]
 FINDING_KEYS = ["level", "code", "sheet", "cell", "variant", "column", "value", "message", "fix", "suggestion"]
 POSITIVE_LENGTH = "a number in mm greater than 0"
 REQUIREMENTS = {
@@ -147,7 +179,7 @@ REQUIREMENTS = {
     ("Tolerances", "distribution"): "one of normal, truncated normal, uniform, triangular",
     ("Tolerances", "limits_sigma"): "a number greater than 0 and at most 100",
 }
-EVERY = [column for columns in (*ENTRY_SHEETS.values(), SETTINGS, RESULTS, FINDINGS) for column in columns]
+EVERY = [column for columns in (*ENTRY_SHEETS.values(), SETTINGS, RESULTS, CROSS_CHECK, FINDINGS) for column in columns]
 
 
 def _key(column):
@@ -193,6 +225,36 @@ def test_settings():
 def test_results_keep_their_order():
     """Results begins with the contract's columns in its order; more may follow."""
     assert [column.key for column in RESULTS][: len(RESULT_KEYS)] == RESULT_KEYS
+
+
+def test_results_hold_what_scripts_read_of_them():
+    """Behind the contract's columns stand the further ones, a standard error for mean, sd and every percentile."""
+    keys = [column.key for column in RESULTS]
+    assert len(keys) == len(set(keys))
+    errors = {f"{name}_standard_error_arcmin" for name in ERROR_KEYS}
+    assert set(keys) == {*RESULT_KEYS, *errors, *FURTHER_KEYS}
+
+
+def test_a_cross_check_adds_columns_behind_the_others():
+    """A run with --cross-check has the same columns and then those of plain Monte Carlo; one without has none."""
+    assert [column.key for column in CROSS_CHECK] == CROSS_CHECK_KEYS
+    assert result_columns() == result_columns(cross_check=False) == RESULTS
+    assert result_columns(cross_check=True) == (*RESULTS, *CROSS_CHECK)
+
+
+@pytest.mark.parametrize(
+    ("key", "choices"),
+    [
+        ("status", ("error", "warning", "ok")),
+        ("first_order_valid", ("yes", "no")),
+        ("cross_check", ("agrees", "differs")),
+    ],
+)
+def test_result_choices(key, choices):
+    """A Results column of words names the words that it can hold, and its help tells each of them."""
+    (column,) = (column for column in result_columns(cross_check=True) if column.key == key)
+    assert (column.type, column.choices, column.is_number) == ("choice", choices, False)
+    assert choices[0] in column.help
 
 
 def test_findings_keep_their_order():

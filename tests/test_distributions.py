@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
+from scipy.special import ndtr, ndtri
 
 from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform
 
@@ -98,6 +99,92 @@ def test_shape_of_the_points_is_kept(own, reference):
     """Standard values have the shape of their probabilities."""
     del reference
     assert own.standard(np.full((3, 4), 0.3)).shape == (3, 4)
+
+
+@each_case
+def test_values_at_scores_are_those_at_their_probabilities(own, reference):
+    """The value at a standard normal score is the value at its probability, and scipy's quantile from both ends."""
+    scores = np.linspace(-5.5, 5.5, 221)
+    found, at_probability = own.standard_at(scores), own.standard(ndtr(scores))
+    assert found.shape == scores.shape
+    size = own.standard_deviation / own.scale
+    assert found == pytest.approx(at_probability, rel=0, abs=1e-6 * size)
+    inner = np.abs(scores) <= 3
+    assert found[inner] == pytest.approx(at_probability[inner], rel=0, abs=1e-9 * size)
+    exact = np.where(scores < 0, reference.ppf(ndtr(scores)), reference.isf(ndtr(-scores)))
+    values = own.location + own.scale * found
+    assert values == pytest.approx(exact, rel=0, abs=1e-7 * own.standard_deviation)
+
+
+@each_case
+def test_values_rise_with_the_score_into_both_tails(own, reference):
+    """Out to 8.3 scores on both sides values are finite, never fall, and never leave the support."""
+    values = own.location + own.scale * own.standard_at(np.linspace(-8.3, 8.3, 3321))
+    assert np.isfinite(values).all()
+    assert (np.diff(values) >= 0).all()
+    low, high = reference.support()
+    slack = 1e-12 * (values[-1] - values[0])
+    assert low - slack <= values[0]
+    assert values[-1] <= high + slack
+
+
+@each_case
+def test_values_at_scores_keep_their_shape(own, reference):
+    """Values at scores have the shape of the scores."""
+    del reference
+    assert own.standard_at(np.full((3, 4), 0.3)).shape == (3, 4)
+
+
+@pytest.mark.parametrize("score", [-8.2, -7.0, -6.0, 6.0, 7.0, 8.2])
+def test_scores_keep_their_digits_in_both_tails(score):
+    """Far out, where probabilities near 1 have run out of digits, the share beyond a value is still the score's."""
+    at, share = np.array([score]), ndtr(-abs(score))
+    assert Normal(0, 1).standard_at(at)[0] == score
+    below, above = TruncatedNormal(1, 2, 0, math.inf), TruncatedNormal(1, 2, -math.inf, 2)
+    uncut = above if score < 0 else below
+    beyond = ndtr(-abs(uncut.standard_at(at)[0])) / ndtr(0.5)
+    assert beyond == pytest.approx(share, rel=1e-9)
+    from_low, from_high = (Triangular(0, 1).standard_at(side)[0] for side in (at, -at))
+    assert from_low == pytest.approx(1 - from_high, abs=1e-15)
+    near = min(from_low, from_high)
+    assert near == pytest.approx(math.sqrt(share / 2), rel=1e-9)
+    assert Uniform(0, 1).standard_at(-np.abs(at))[0] == pytest.approx(share, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "mirrored",
+    [Normal(0, 1), Uniform(-1, 1), Triangular(-1, 1), TruncatedNormal(0, 1, -3, 3), TruncatedNormal(0, 1, -0.3, 0.3)],
+)
+def test_symmetric_distributions_have_symmetric_values(mirrored):
+    """The values of a symmetric distribution at opposite scores are opposite, out to both ends."""
+    scores = np.linspace(0, 8.3, 84)
+    low, high = (mirrored.location + mirrored.scale * mirrored.standard_at(side) for side in (-scores, scores))
+    assert low == pytest.approx(-high, rel=0, abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("distribution", "breaks"),
+    [
+        (Normal(0, 1), ()),
+        (Uniform(0, 1), ()),
+        (TruncatedNormal(0, 1, -1, 3), ()),
+        (Triangular(-1, 3), (0.0,)),
+        (Triangular(0, 4, 1), (float(ndtri(0.25)),)),
+        (Triangular(0, 4, 0), ()),
+        (Triangular(0, 4, 4), ()),
+    ],
+)
+def test_breaks_are_where_the_curve_has_a_kink(distribution, breaks):
+    """A triangle has one break, at the score of a peak inside it; the curvature jumps there and nowhere else."""
+    assert distribution.breaks == pytest.approx(breaks, abs=1e-12)
+    step = 1e-3
+    places = np.linspace(-2, 2, 1601)
+    ends = [distribution.standard_at(places + shift * step) for shift in (-2, -1, 0, 1, 2)]
+    # The second differences before and after a place are far apart where the curvature jumps.
+    jump = np.abs((ends[0] - 2 * ends[1] + ends[2]) - (ends[2] - 2 * ends[3] + ends[4])) / step**2
+    jumped = places[jump > 20 * np.median(jump) + 1e-6]
+    assert bool(len(jumped)) is bool(breaks)
+    assert all(np.abs(place - np.array(breaks)).min() <= 3 * step for place in jumped)
 
 
 @thorough

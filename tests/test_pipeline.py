@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import datetime
+import math
 
+import numpy as np
 import openpyxl
 import polars as pl
 import pytest
@@ -11,7 +13,8 @@ import pytest
 import flexlash
 import regenerate
 from flexlash.pipeline import Options, check, run
-from flexlash.result_columns import RESULTS
+from flexlash.result_columns import CROSS_CHECK, RESULTS
+from flexlash.tolerance import spreading
 
 SAMPLES = 512
 
@@ -31,21 +34,73 @@ def _rows(outcome):
     return {row["variant"]: row for row in outcome.results.iter_rows(named=True)}
 
 
-def test_a_variant_does_not_depend_on_its_neighbours(table, sound):
+HOW = {
+    "lines as needed": {},
+    "64 lines": {"samples": 64},
+    "sobol": {"method": "sobol", "samples": SAMPLES},
+    "random": {"method": "random", "samples": SAMPLES},
+    "cross-checked": {"samples": SAMPLES, "cross_check": True},
+}
+
+
+@pytest.mark.parametrize("how", HOW)
+def test_a_variant_does_not_depend_on_its_neighbours(table, sound, how):
     """Rows shuffled, removed or added change no bit of a variant's numbers."""
     rows = _variants(sound)
-    every = _rows(run(table(rows), samples=SAMPLES))
+    every = _rows(run(table(rows), **HOW[how]))
     for kept in (rows[::-1], rows[1:3], rows[2:3], [*rows[3:], {**sound, "variant": "new", "torque_Nm": 1.0}]):
-        for name, row in _rows(run(table(kept), samples=SAMPLES)).items():
+        for name, row in _rows(run(table(kept), **HOW[how])).items():
             if name != "new":
                 assert row == every[name]
 
 
+def _many(sound):
+    """Return sixty variants of all kinds and sizes, some without a limit, some with a tapered disk, one faulty."""
+    found = []
+    for number in range(12):
+        for row in _variants(sound):
+            wall = {"wall_thickness_mm": 1.2 + number / 10, "torque_Nm": 500.0 + 60 * number}
+            limit = {} if number % 3 else {"backlash_limit_arcmin": ""}
+            found.append({**row, "variant": f"{row['variant']} {number}", **wall, **limit})
+    found[7]["disk_hub_thickness_mm"] = 5.0
+    found[20]["torque_Nm"] = "much"
+    return found
+
+
+@pytest.mark.parametrize("how", HOW)
+def test_shuffling_many_rows_changes_no_bit(table, sound, how):
+    """Sixty rows of all kinds in another order, in batches of any size, keep every bit of their Results."""
+    rows = _many(sound)
+    every = _rows(run(table(rows), **HOW[how]))
+    for seed in (1, 2):
+        order = np.random.default_rng(seed).permutation(len(rows))
+        for name, row in _rows(run(table([rows[place] for place in order]), **HOW[how])).items():
+            # The findings name the cell, which has moved.
+            assert row | {"findings": None} == every[name] | {"findings": None}
+
+
+@pytest.mark.parametrize("how", HOW)
+def test_worker_processes_change_no_bit(table, sound, monkeypatch, how):
+    """Sixty rows of all kinds spread by two worker processes have, bit for bit, the Results that they have here."""
+    path = table(_many(sound))
+    here = run(path, **HOW[how]).results
+    asked = []
+    started = spreading._in_workers
+
+    def in_workers(*arguments):
+        asked.append(arguments[-1])
+        yield from started(*arguments)
+
+    monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
+    monkeypatch.setattr(spreading, "_in_workers", in_workers)
+    assert run(path, **HOW[how], jobs=2).results.equals(here)
+    assert asked == [2]
+
+
 def test_the_number_of_jobs_changes_nothing(table, sound, tmp_path, monkeypatch):
     """Computed here or by three worker processes, the report has the same bytes."""
-    monkeypatch.setattr("flexlash.tolerance.spreading.WORTH_A_WORKER", 1)
-    rows = [{**sound, "variant": f"v{number}", "wall_thickness_mm": 1.5 + number / 100} for number in range(30)]
-    path = table(rows)
+    monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
+    path = table(_many(sound))
     for jobs in (1, 3):
         run(path, tmp_path / f"{jobs}.xlsx", samples=SAMPLES, jobs=jobs)
     assert (tmp_path / "1.xlsx").read_bytes() == (tmp_path / "3.xlsx").read_bytes()
@@ -60,13 +115,15 @@ def test_the_report_does_not_name_its_place_or_time(workbook, sound, tmp_path):
     assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "elsewhere" / "b.xlsx").read_bytes()
 
 
-def test_another_seed_gives_other_numbers_within_their_error(table, sound):
+@pytest.mark.parametrize("method", ["line", "sobol", "random"])
+def test_another_seed_gives_other_numbers_within_their_error(table, sound, method):
     """A seed changes the estimates, by no more than their standard errors explain."""
     path = table([sound])
-    first, second = (run(path, seed=seed).results.row(0, named=True) for seed in (1, 2))
-    assert first["p97_5_arcmin"] != second["p97_5_arcmin"]
-    error = first["p97_5_standard_error_arcmin"] + second["p97_5_standard_error_arcmin"]
-    assert abs(first["p97_5_arcmin"] - second["p97_5_arcmin"]) < 4 * error
+    first, second = (run(path, method=method, seed=seed).results.row(0, named=True) for seed in (1, 2))
+    for name in ("p97_5", "p0_135", "mean", "sd"):
+        assert first[f"{name}_arcmin"] != second[f"{name}_arcmin"]
+        error = math.hypot(*(row[f"{name}_standard_error_arcmin"] for row in (first, second)))
+        assert abs(first[f"{name}_arcmin"] - second[f"{name}_arcmin"]) < 4 * error
     assert first["backlash_arcmin"] == second["backlash_arcmin"]
 
 
@@ -85,6 +142,49 @@ def test_results_hold_the_columns_in_order(table, sound):
     assert results.columns == [column.key for column in RESULTS]
     for column in RESULTS:
         assert results.schema[column.key] == (pl.Float64 if column.is_number else pl.String)
+
+
+def test_every_column_of_a_computed_row_is_filled(table, sound):
+    """A row with everything given has something in every column of Results but the notes that it does not need."""
+    detail = {"hub_fillet_radius_mm": 3.5, "junction_fillet_radius_mm": 2.0, "rim_length_mm": 20.0}
+    row = {**sound, **detail, "rim_thickness_mm": 3.2, "rated_torque_Nm": 1000.0, "notes": "drawing 7"}
+    results = run(table([row]), samples=SAMPLES, cross_check=True).results
+    assert results.columns == [column.key for column in (*RESULTS, *CROSS_CHECK)]
+    empty = [key for key, value in results.row(0, named=True).items() if value is None]
+    assert empty == ["spread_note", "findings"]
+
+
+def test_cross_check_adds_its_columns_and_changes_no_other(table, sound):
+    """With cross_check the Results gain the columns of plain Monte Carlo; the others keep every bit."""
+    path = table(_variants(sound))
+    plain, checked = run(path).results, run(path, cross_check=True).results
+    assert checked.columns == [column.key for column in (*RESULTS, *CROSS_CHECK)]
+    assert checked.select(plain.columns).equals(plain)
+    assert checked["cross_check"].to_list() == ["agrees"] * 5
+    assert checked["random_points"].to_list() == [2.0**17] * 5
+    drawn = run(path, method="random").results
+    for key in ("mean", "sd", "p2_5", "p50", "p97_5", "p99_865"):
+        assert checked[f"random_{key}_arcmin"].to_list() == drawn[f"{key}_arcmin"].to_list()
+        error = f"{key}_standard_error_arcmin"
+        assert checked[f"random_{error}"].to_list() == drawn[error].to_list()
+
+
+def test_a_tolerance_on_a_disk_that_is_not_there_is_harmless(table, sound, tmp_path):
+    """A class with a tolerance on the disk calibration serves cylinders, which have no disk, as if without it."""
+    rows = "standard,wall_thickness,-50,50,µm\n", "standard,disk_calibration,-0.05,0.05,-\n"
+    tube = {**sound, "variant": "tube", "flexspline_type": "cylinder", "disk_inner_radius_mm": ""}
+    found = []
+    for number, lines in enumerate((rows[:1], rows)):
+        tolerances = tmp_path / f"{number}.csv"
+        tolerances.write_text(
+            "tolerance_class,dimension,lower_deviation,upper_deviation,deviation_unit\n" + "".join(lines),
+            encoding="utf-8",
+        )
+        found.append(run(table([tube, sound]), tolerances=tolerances).results)
+    without, given = (results.row(0, named=True) for results in found)
+    for key in ("sd_arcmin", "p99_865_arcmin", "first_order_sd_arcmin", "worst_case_high_arcmin"):
+        assert given[key] == pytest.approx(without[key], rel=1e-6)
+    assert found[1]["sd_arcmin"][1] > found[0]["sd_arcmin"][1]
 
 
 def test_a_row_with_errors_keeps_its_place_with_empty_numbers(table, sound):
@@ -112,11 +212,22 @@ def test_settings_rule_unless_options_do(workbook, sound):
     """Seed, method and samples come from the Settings sheet; options on the call win."""
     path = workbook([sound], settings={"seed": 7, "method": "random", "samples": 256.0, "coverage_percent": 50})
     outcome = run(path)
-    assert (outcome.settings.seed, outcome.method, outcome.points) == (7, "random", 256)
     row = outcome.results.row(0, named=True)
+    assert (outcome.settings.seed, row["spread_method"], row["spread_points"]) == (7, "random", 256)
     assert row["p2_5_arcmin"] < row["coverage_low_arcmin"] < row["coverage_high_arcmin"] < row["p97_5_arcmin"]
     other = run(path, seed=8, method="sobol", samples=1024)
-    assert (other.settings.seed, other.method, other.points) == (8, "sobol", 1024)
+    row = other.results.row(0, named=True)
+    assert (other.settings.seed, row["spread_method"], row["spread_points"]) == (8, "sobol", 1024)
+
+
+def test_the_default_method_is_line(table, sound):
+    """Without settings lines make the spread, as many as the precision takes."""
+    outcome = run(table([sound]))
+    row = outcome.results.row(0, named=True)
+    assert outcome.settings.method == outcome.as_dictionary()["method"] == row["spread_method"] == "line"
+    assert row["spread_note"] is None
+    for key in ("p0_135", "p2_5", "p50", "p97_5", "p99_865"):
+        assert row[f"{key}_standard_error_arcmin"] <= 1.1e-3 * row["sd_arcmin"]
 
 
 def test_calibration_multiplies_its_part(workbook, sound):
@@ -182,12 +293,37 @@ def test_without_scatter_every_percentile_is_the_nominal(table, sound, tmp_path)
         assert row["ppk"] is None
 
 
-def test_probability_is_never_a_bare_zero(table, sound):
+@pytest.mark.parametrize("method", ["line", "sobol", "random"])
+def test_probability_is_never_a_bare_zero(table, sound, method):
     """With no unit over the limit the upper end of the interval says how sure that is."""
-    row = run(table([{**sound, "backlash_limit_arcmin": 30.0}])).results.row(0, named=True)
-    assert row["probability_over_limit"] == 0
-    assert row["ppm_over_limit"] == 0
-    assert 0 < row["probability_over_limit_high"] < 2e-4
+    row = run(table([{**sound, "backlash_limit_arcmin": 30.0}]), method=method).results.row(0, named=True)
+    assert row["probability_over_limit"] <= 1e-15
+    assert row["ppm_over_limit"] <= 1e-9
+    assert row["probability_over_limit_low"] == 0
+    assert 0 < row["probability_over_limit_high"] < (1e-13 if method == "line" else 2e-4)
+    assert row["ppm_over_limit_high"] == pytest.approx(1e6 * row["probability_over_limit_high"], rel=1e-15)
+
+
+def test_lines_tell_a_ppm_that_points_cannot_see(table, sound):
+    """A limit 5 sd above the mean is exceeded by under a ppm, which lines tell to 20 %, in ppm as in fractions."""
+    plain = run(table([sound])).results.row(0, named=True)
+    limit = plain["mean_arcmin"] + 5 * plain["sd_arcmin"]
+    row = run(table([{**sound, "backlash_limit_arcmin": limit}])).results.row(0, named=True)
+    assert 1e-8 < row["probability_over_limit"] < 2e-5
+    assert row["probability_over_limit_high"] < 1.2 * row["probability_over_limit"]
+    assert row["probability_over_limit_low"] > 0.8 * row["probability_over_limit"]
+    for end in ("", "_low", "_high"):
+        assert row[f"ppm_over_limit{end}"] == pytest.approx(1e6 * row[f"probability_over_limit{end}"], rel=1e-14)
+    assert row["ppk_normal"] == pytest.approx(5 / 3, rel=1e-3)
+
+
+def test_interaction_is_what_the_shares_leave(table, sound):
+    """Interaction is what the first-order shares leave to 1, never negative, and next to nothing for a flexspline."""
+    outcome = run(table(_variants(sound)))
+    for one, row in zip(outcome.computed.values(), outcome.results.iter_rows(named=True), strict=True):
+        left = 1 - math.fsum(one.variation.shares.values())
+        assert row["interaction_share"] == pytest.approx(max(left, 0.0), abs=1e-15)
+        assert 0 <= row["interaction_share"] < 0.01
 
 
 def test_a_report_is_skipped_by_name(workbook, sound, tmp_path):
@@ -223,6 +359,15 @@ def test_progress_counts_up_to_all_rows(table, sound):
     told = []
     rows = [{**sound, "variant": f"v{number}"} for number in range(5)]
     run(table(rows), samples=SAMPLES, progress=lambda done, total: told.append((done, total)))
+    assert told == [(number, 5) for number in range(1, 6)]
+
+
+def test_progress_of_workers_counts_up_too(table, sound, monkeypatch):
+    """With worker processes the progress callback is told of every row all the same."""
+    monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
+    told = []
+    rows = [{**sound, "variant": f"v{number}"} for number in range(5)]
+    run(table(rows), samples=SAMPLES, jobs=2, progress=lambda done, total: told.append((done, total)))
     assert told == [(number, 5) for number in range(1, 6)]
 
 

@@ -11,12 +11,14 @@ import openpyxl
 import pytest
 
 import regenerate
+from flexlash.columns import DIMENSIONS
 from flexlash.pipeline import run
 from flexlash.report import selection
 from flexlash.report.summary_sheet import light, sentences
 from flexlash.report.workbook import report_bytes
-from flexlash.result_columns import FINDINGS, RESULTS
-from flexlash.summary import share_words
+from flexlash.result_columns import CROSS_CHECK, FINDINGS, RESULTS, result_columns
+from flexlash.summary import dimension_words
+from flexlash.units import ARCMIN
 from libreoffice import convert, needs_libreoffice
 
 SHEETS = [
@@ -85,21 +87,127 @@ def test_verdict_follows_its_rule():
     assert light({**row, "backlash_limit_arcmin": None}) == "–"
 
 
-@pytest.mark.parametrize(
-    ("numbers", "words"),
-    [
-        ((0.0, 0.0, 0.0), "none"),
-        ((1.0, 1.0, 1.0), "all"),
-        ((0.0, 0.0, 1.1e-4), "at most 110 ppm"),
-        ((1.0, 0.9999, 1.0), "at least 99.99 %"),
-        ((2e-4, 1e-4, 4e-4), "200 ppm (100 to 400 ppm)"),
-        ((0.412, 0.407, 0.417), "41.2 % (40.7 to 41.7 %)"),
-    ],
-)
-def test_shares_are_never_a_bare_zero(numbers, words):
-    """A share is printed with its interval and with no more digits than that justifies."""
-    keys = ("probability_over_limit", "probability_over_limit_low", "probability_over_limit_high")
-    assert share_words(dict(zip(keys, numbers, strict=True))) == words
+def _digits(number_format):
+    """Return how many decimals a number format shows."""
+    return len(number_format.partition(".")[2])
+
+
+def _with_errors():
+    """Return the Results columns that have a standard error, and the key of that error."""
+    keys = {column.key for column in result_columns(cross_check=True)}
+    found = {"skewness": "skewness_standard_error"}
+    for key in keys:
+        error = f"{key.removesuffix('_arcmin')}_standard_error_arcmin"
+        if error in keys:
+            found[key] = error
+    return found | {"coverage_low_arcmin": "p2_5_standard_error_arcmin",
+                    "coverage_high_arcmin": "p97_5_standard_error_arcmin"}  # fmt: skip
+
+
+@pytest.mark.parametrize("how", [{}, {"method": "sobol"}, {"method": "random", "samples": 64}, {"samples": 8}], ids=str)
+def test_results_show_no_more_digits_than_their_error_justifies(table, sound, tmp_path, how):
+    """A cell of Results ends at the first digit of its standard error: one more would be noise, one fewer a loss."""
+    rows = [sound, {**sound, "variant": "small", "torque_Nm": 8.0}, {**sound, "variant": "large", "torque_Nm": 2e4}]
+    outcome = run(table(rows), tmp_path / "report.xlsx", cross_check=True, **how)
+    sheet = _open(tmp_path / "report.xlsx")["Results"]
+    keys = [cell.value for cell in sheet[2]]
+    seen = set()
+    for key, error in _with_errors().items():
+        for number, row in enumerate(outcome.results.iter_rows(named=True), start=3):
+            if row[key] is not None:
+                cell = sheet.cell(number, keys.index(key) + 1)
+                unit = 10.0 ** -_digits(cell.number_format)
+                assert set(cell.number_format) <= set("0.")
+                assert unit <= 10 * row[error]
+                assert row[error] < 10 * unit
+                assert cell.value == pytest.approx(row[key], rel=1e-15)
+                seen.add((key, unit))
+    assert {key for key, _ in seen} >= {"mean_arcmin", "sd_arcmin", "p99_865_arcmin", "skewness"}
+    assert len({unit for _, unit in seen}) >= 3
+
+
+def test_results_without_scatter_show_their_usual_digits(table, sound, tmp_path):
+    """A number without a standard error, since nothing scatters, is shown as the nominal numbers are."""
+    tolerances = tmp_path / "tolerances.csv"
+    tolerances.write_text(
+        "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n", encoding="utf-8"
+    )
+    run(table([sound]), tmp_path / "report.xlsx", tolerances=tolerances)
+    sheet = _open(tmp_path / "report.xlsx")["Results"]
+    formats = {sheet.cell(2, cell.column).value: cell.number_format for cell in sheet[3]}
+    assert formats["backlash_arcmin"] == formats["mean_arcmin"] == formats["p99_865_arcmin"] == "0.0000"
+
+
+def test_a_cross_check_stands_in_the_report(table, sound, tmp_path):
+    """With a cross-check Results has its columns, the Summary says who agrees and About what was compared."""
+    outcome = run(table([sound]), tmp_path / "report.xlsx", cross_check=True)
+    book = _open(tmp_path / "report.xlsx")
+    columns = [column.key for column in (*RESULTS, *CROSS_CHECK)]
+    assert [cell.value for cell in book["Results"][2]] == columns
+    assert book["Results"].auto_filter.ref.startswith("A2:")
+    assert book["Results"].cell(3, columns.index("cross_check") + 1).value == "agrees"
+    said = list(sentences(outcome, selection.drawn_variants(outcome)))
+    assert any(one.startswith("Plain Monte Carlo agrees for 1 of 1 variants; ") for one in said)
+    about = [cell.value for row in book["About"].iter_rows(max_col=1) for cell in row if cell.value]
+    assert any(str(one).startswith("•  Cross-check: plain Monte Carlo beside the spread.") for one in about)
+    assert "Cross-check" in about
+
+
+SAID = {
+    "line": ("Line sampling: ", "method line, seed 0, 256 lines per variant."),
+    "sobol": ("16 independent replicates", "method sobol, seed 0, 256 points per variant."),
+    "random": ("independent draws", "method random, seed 0, 256 points per variant."),
+}
+
+
+@pytest.mark.parametrize("method", SAID)
+def test_about_and_summary_name_the_method(table, sound, tmp_path, method):
+    """About tells the method that was used and no other; the Summary names it with its lines or points."""
+    run(table([sound]), tmp_path / "report.xlsx", samples=256, method=method)
+    told, points = SAID[method]
+    book = _open(tmp_path / "report.xlsx")
+    about = "\n".join(str(cell.value) for row in book["About"].iter_rows() for cell in row if cell.value)
+    others = {words for words, _ in SAID.values()} - {told}
+    assert told in about
+    assert not [other for other in others if other in about]
+    assert "Cross-check: plain" not in about
+    summary = "\n".join(str(cell.value) for row in book["Summary"].iter_rows() for cell in row if cell.value)
+    assert points in summary
+
+
+def test_sensitivity_has_first_order_and_total_indices(study):
+    """Sensitivity lists each variant's first-order indices and, to the right, its total ones."""
+    outcome, path = study
+    sheet = _open(path)["Sensitivity"]
+    (header,) = (row for row in sheet.iter_rows() if row[0].value == "Variant")
+    headings = [cell.value for cell in header if cell.value]
+    firsts = [heading for heading in headings[1:] if not heading.endswith(", total")]
+    assert headings[1:] == [*firsts, *(f"{heading}, total" for heading in firsts)]
+    columns = {cell.value: cell.column for cell in header if cell.value}
+    for row, one in enumerate(outcome.computed.values(), start=header[0].row + 1):
+        assert sheet.cell(row, 1).value == one.variant.name
+        for name in DIMENSIONS:
+            words = dimension_words(name)
+            if words in columns:
+                for heading, indices in ((words, one.variation.shares), (f"{words}, total", one.variation.totals)):
+                    value = sheet.cell(row, columns[heading]).value
+                    assert value == (pytest.approx(indices[name], rel=1e-15) if name in indices else None)
+    assert set(firsts) == {dimension_words(name) for one in outcome.computed.values() for name in one.variation.shares}
+
+
+def test_tornado_has_both_indices_of_the_worst_variant(study):
+    """The tornado's table has, by falling share, swings, first-order and total index of the worst variant."""
+    outcome, path = study
+    sheet = _open(path)["Sensitivity"]
+    worst = selection.drawn_variants(outcome)[0].computed.variation
+    assert [cell.value for cell in sheet[4]][:5] == [
+        "Dimension", "At lower limit", "At upper limit", "Share of variance", "Share with interactions",
+    ]  # fmt: skip
+    by_share = sorted(worst.shares, key=worst.shares.get, reverse=True)
+    for row, name in enumerate(by_share, start=5):
+        found = [cell.value for cell in sheet[row]][:5]
+        expected = [*(end / ARCMIN for end in worst.swings[name]), worst.shares[name], worst.totals[name]]
+        assert found == [dimension_words(name), *(pytest.approx(value, rel=1e-14) for value in expected)]
 
 
 def test_findings_link_to_their_cells(faulty):
@@ -301,7 +409,7 @@ def test_a_name_with_a_star_picks_itself(table, sound, tmp_path):
     sheet = _open(convert(tmp_path / "picked.xlsx", "xlsx", tmp_path), data_only=True)["Spread"]
     assert sheet["C3"].value == 2
     assert sheet["B5"].value == pytest.approx(outcome.results["mean_arcmin"][1], rel=1e-12)
-    assert sheet["B12"].value.startswith("at most")
+    assert sheet["B12"].value == "fewer than 0.001 ppb"
 
 
 @needs_libreoffice

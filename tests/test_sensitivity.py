@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from flexlash.mechanics.flexspline import backlash
 from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform
-from flexlash.tolerance.sensitivity import first_order_sd, gradient, worst_case
+from flexlash.tolerance.sensitivity import first_order_sd, first_order_valid, gradient, worst_case
 
 thorough = settings(deadline=None, max_examples=60, derandomize=True)
 
@@ -57,7 +57,7 @@ def test_first_order_sd_of_a_linear_model(slopes, sds, centre):
     """The first-order uncertainty of a linear model is the root of the summed squares."""
     names = ("a", "b", "c")
     middle = dict.fromkeys(names, centre)
-    scatter = {name: Normal(mean=centre, sd=sd) for name, sd in zip(names, sds, strict=True)}
+    scatter = dict(zip(names, sds, strict=True))
 
     def model(a, b, c):
         return slopes[0] * a + slopes[1] * b + slopes[2] * c
@@ -77,20 +77,20 @@ def test_first_order_sd_of_a_linear_model(slopes, sds, centre):
 )
 def test_first_order_sd_takes_the_true_standard_deviation(distribution, sd):
     """Each distribution enters with its own standard deviation, a cut normal with that after the cut."""
-    found = first_order_sd(lambda a: 2 * a, {"a": 0.0}, {"a": distribution})
+    found = first_order_sd(lambda a: 2 * a, {"a": 0.0}, {"a": distribution.standard_deviation})
     assert found == pytest.approx(2 * sd, rel=1e-4)
 
 
 def test_first_order_sd_is_blind_to_curvature():
     """At the bottom of a parabola the first-order uncertainty is 0 though the output scatters."""
-    assert first_order_sd(lambda a: a * a, {"a": 0.0}, {"a": Normal(mean=0, sd=1)}) == pytest.approx(0, abs=1e-12)
+    assert first_order_sd(lambda a: a * a, {"a": 0.0}, {"a": 1.0}) == pytest.approx(0, abs=1e-12)
 
 
 @pytest.mark.parametrize("relative", [1e-3, 1e-8, 1e-12, 1e-14])
 def test_first_order_sd_of_a_tolerance_next_to_nothing(relative):
     """A tolerance far below the size of its dimension still has its first-order uncertainty, to 1 %."""
     sd = 800.0 * relative
-    found = first_order_sd(lambda torque: 2 * torque, {"torque": 800.0}, {"torque": Normal(mean=800.0, sd=sd)})
+    found = first_order_sd(lambda torque: 2 * torque, {"torque": 800.0}, {"torque": sd})
     assert found == pytest.approx(2 * sd, rel=0.01)
 
 
@@ -151,3 +151,91 @@ def test_input_without_effect_has_a_level_swing():
     found = worst_case(lambda a, b: a + 0 * b, {"a": (1.0, 2.0), "b": (-5.0, 7.0)})
     assert found.swings["b"] == (1.5, 1.5)
     assert (found.low, found.high) == (1.0, 2.0)
+
+
+ROWS = 5
+SCALES = np.array([0.3, 0.7, 1.0, 1.9, 4.0])
+MANY_ENDS = {
+    name: (middle - half, middle + half)
+    for name, (low, high) in B3_160_ENDS.items()
+    for middle, half in [((low + high) / 2 * np.ones(ROWS), (high - low) / 2 * SCALES / 4)]
+}
+
+
+def _row(values, row):
+    """Return one row's scalars of arrays (rows,) by name."""
+    return {name: value[row] for name, value in values.items()}
+
+
+def test_rows_of_arrays_are_what_each_row_is_alone():
+    """Gradient, first-order uncertainty and worst case of many rows are, bit for bit, those of each row alone."""
+    middle = {name: (low + high) / 2 for name, (low, high) in MANY_ENDS.items()}
+    sds = {name: (high - low) / 6 for name, (low, high) in MANY_ENDS.items()}
+    slopes, first_order, worst = (
+        gradient(wind, middle, sds),
+        first_order_sd(wind, middle, sds),
+        worst_case(wind, MANY_ENDS),
+    )
+    assert first_order.shape == worst.low.shape == worst.high.shape == (ROWS,)
+    assert (np.diff(first_order) > 0).all()
+    for row in range(ROWS):
+        alone = {name: (low[row], high[row]) for name, (low, high) in MANY_ENDS.items()}
+        assert _row(slopes, row) == gradient(wind, _row(middle, row), _row(sds, row))
+        assert first_order[row] == first_order_sd(wind, _row(middle, row), _row(sds, row))
+        found = worst_case(wind, alone)
+        assert (worst.low[row], worst.high[row]) == (found.low, found.high)
+        for name, (at_low, at_high) in worst.swings.items():
+            assert (at_low[row], at_high[row]) == found.swings[name]
+
+
+def test_each_row_finds_the_limit_that_hurts_it():
+    """Rows in which the same input raises or lowers the output have their worst cases at opposite limits."""
+    signs = np.array([1.0, -1.0])
+    found = worst_case(lambda a: signs * a, {"a": (np.array([1.0, 2.0]), np.array([3.0, 5.0]))})
+    assert found.low.tolist() == [1.0, -5.0]
+    assert found.high.tolist() == [3.0, -2.0]
+
+
+# JCGM 101:2008 (three digits are ours): estimate, first-order uncertainty, 95 % interval, significant digits, and
+# whether the first-order interval is valid.
+JCGM_101 = {
+    "9.2.2 four normals": (0.0, 2.0, (-3.92, 3.92), 2, True),
+    "9.2.3 four rectangular": (0.0, 2.0, (-3.88, 3.88), 2, True),
+    "9.2.3 to three digits": (0.0, 2.0, (-3.88, 3.88), 3, False),
+    "9.2.4 one dominant": (0.0, 10.1, (-17.0, 17.0), 2, False),
+    "9.3 first order": (1.234, 0.0539, (1.0834, 1.3825), 2, False),
+    "9.3 higher order": (1.234, 0.0750, (1.0834, 1.3825), 2, False),
+}
+
+
+@pytest.mark.parametrize("clause", JCGM_101)
+def test_validity_by_the_examples_of_jcgm_101(clause):
+    """The first-order interval is valid in just those examples of JCGM 101 where clause 8 finds it valid."""
+    estimate, uncertainty, interval, digits, valid = JCGM_101[clause]
+    assert first_order_valid(estimate, uncertainty, interval, 0.95, digits) == valid
+
+
+@pytest.mark.parametrize(("uncertainty", "half_unit"), [(2.0, 0.05), (0.0754, 0.0005), (9.96, 0.5), (9.94, 0.05)])
+def test_tolerance_of_validity_is_half_a_unit_of_the_second_digit(uncertainty, half_unit):
+    """Either end may be off by half a unit in the uncertainty's second digit and no more; 9.96 rounds to 10."""
+    reach = 1.959963985 * uncertainty
+    for sign in (1, -1):
+        for part, valid in ((0.99, True), (1.01, False)):
+            off = sign * part * half_unit
+            assert first_order_valid(7.0, uncertainty, (7 - reach + off, 7 + reach), 0.95) == valid
+            assert first_order_valid(7.0, uncertainty, (7 - reach, 7 + reach + off), 0.95) == valid
+
+
+def test_validity_of_many_rows_and_of_other_coverage():
+    """Each row is judged by itself, and the interval's own coverage sets how far the first-order interval reaches."""
+    estimate, uncertainty = np.zeros(3), np.array([2.0, 2.0, 10.1])
+    ends = np.array([3.92, 3.80, 17.0])
+    assert first_order_valid(estimate, uncertainty, (-ends, ends), 0.95).tolist() == [True, False, False]
+    assert first_order_valid(0.0, 1.0, (-2.575829, 2.575829), 0.99)
+    assert not first_order_valid(0.0, 1.0, (-2.575829, 2.575829), 0.95)
+
+
+def test_validity_without_scatter():
+    """Where the first-order uncertainty is 0, only an interval that is a point next to the estimate is met."""
+    assert first_order_valid(1e-3, 0.0, (1e-3, 1e-3), 0.95)
+    assert not first_order_valid(1e-3, 0.0, (0.0, 1.0), 0.95)

@@ -95,6 +95,7 @@ RESULTS = (
     _error("sd", "Standard deviation"),
     *(_error(key, label) for key, label in (("p0_135", "P0.135"), ("p2_5", "P2.5"), ("p5", "P5"))),
     *(_error(key, label) for key, label in (("p50", "P50"), ("p95", "P95"))),
+    *(_error(key, label) for key, label in (("coverage_low", "Coverage low"), ("coverage_high", "Coverage high"))),
     _result("skewness", "Skewness", "Third central moment over the cube of the standard deviation; 0 for a normal."),
     _result("skewness_standard_error", "Skewness standard error", "Standard error of the skewness."),
     _result("ppm_over_limit_low", "Over limit low", "Lower end of its 95 % interval.", "ppm"),

@@ -171,7 +171,7 @@ def share_words(row: dict[str, Any]) -> str:
     '41.2 % (40.7 to 41.7 %)'
     """
     value, low, high = (row[f"probability_over_limit{end}"] for end in ("", "_low", "_high"))
-    if low == high:
+    if low == high and value in (0, 1):
         return "all" if value else "none"
     if value == 0:
         return f"at most {_share(high)}"
@@ -186,6 +186,9 @@ _UNITS = ((1.0, 100.0, " %"), (1e-3, 1e6, " ppm"), (1e-7, 1e9, " ppb"))
 """Shares below the first number are told in the unit, which is the factor times the share."""
 
 _RARE = 1e-3
+_FINEST = 1e-4
+"""Part of a share that is not told in words, however well it is known."""
+
 _LEAST = 1e-12
 
 
@@ -199,8 +202,12 @@ def _interval(value: float, low: float, high: float) -> str:
     if high < _LEAST:
         return "fewer than 0.001 ppb"
     factor, unit = _unit(high)
-    half = (high - low) / 2 * factor
+    if low == high:
+        return _share(value)
+    half = max(min((high - low) / 2, value, 1 - value), value * _FINEST) * factor
     words = [rounded(end * factor, half) for end in (value, low, high)]
+    if words[1] == words[2]:
+        return f"{words[0]}{unit}"
     return f"{words[0]}{unit} ({words[1]} to {words[2]}{unit})"
 
 

@@ -1,7 +1,8 @@
 """Examples of JCGM 101:2008, Supplement 1 to the GUM: propagation of distributions by Monte Carlo.
 
 Source: clauses 9.2.2 to 9.2.4 (sums of four quantities) and 9.3 (mass calibration). Printed values of sums
-are exact; for the mass calibration the standard uncertainty is also derived below without sampling.
+are exact; for the mass calibration the standard uncertainty is also derived below without sampling. Numbers agree
+within four combined standard errors and half a printed digit; lines come in 8 replicates, points in 16.
 """
 
 import math
@@ -9,7 +10,7 @@ import math
 import pytest
 
 from flexlash.tolerance import Normal, Uniform, propagate
-from flexlash.tolerance.sensitivity import first_order_sd
+from flexlash.tolerance.sensitivity import first_order_sd, first_order_valid
 
 each_method = pytest.mark.parametrize("method", ["random", "sobol", "line"])
 
@@ -84,8 +85,31 @@ def test_9_2_intervals_hold_95_per_cent(method):
         (WIDE, RECTANGULAR, 17.015814),
     ):
         spread = propagate(total, four(first, others), method=method)
-        binomial = math.sqrt(0.025 * 0.975 / spread.size)
-        assert agrees(spread.probability_above(end), binomial, 0.025, 1e-7)
+        low, high = spread.probability_interval(end)
+        # Half a printed digit of the end moves the share by less than 1e-7.
+        assert agrees(spread.probability_above(end), (high - low) / 3.92, 0.025, 1e-7)
+        assert (high - low) / 3.92 < (1e-3 if method == "random" else 2e-3 if method == "sobol" else 2e-4)
+
+
+@pytest.mark.parametrize(("first", "others"), [(Normal(mean=0, sd=1), Normal(mean=0, sd=1)), (RECTANGULAR, RECTANGULAR),
+                                               (WIDE, RECTANGULAR)])  # fmt: skip
+def test_9_2_by_lines_is_sharp(first, others):
+    """Clause 9.2: lines serve all three sums, and know mean, sd and both ends of the interval to 0.001 sd."""
+    spread = propagate(total, four(first, others))
+    assert (spread.method, spread.notes) == ("line", ())
+    assert spread.size % 8 == 0
+    for error in (spread.mean_standard_error, spread.sd_standard_error, *spread.standard_error([0.025, 0.975])):
+        assert error <= 1.1e-3 * spread.sd
+
+
+@each_method
+def test_9_2_sums_are_symmetric(method):
+    """Clause 9.2: the sums are symmetric about 0, in mean, median and skewness."""
+    for first, others in ((RECTANGULAR, RECTANGULAR), (WIDE, RECTANGULAR)):
+        spread = propagate(total, four(first, others), method=method)
+        assert agrees(spread.mean, spread.mean_standard_error, 0, 0)
+        assert agrees(spread.quantile(0.5), spread.standard_error(0.5), 0, 0)
+        assert agrees(spread.skewness, spread.skewness_standard_error, 0, 0)
 
 
 @each_method
@@ -129,7 +153,9 @@ def test_9_3_mass_calibration(method):
 def test_9_3_first_order_is_not_valid(method):
     """Clause 9.3: the first-order uncertainty 0.0538516 mg misses the buoyancy that Monte Carlo finds."""
     middle = {name: one.expectation for name, one in MASS_INPUTS.items()}
-    first_order = first_order_sd(calibrated_mass, middle, MASS_INPUTS)
+    first_order = first_order_sd(
+        calibrated_mass, middle, {name: one.standard_deviation for name, one in MASS_INPUTS.items()}
+    )
     assert first_order == pytest.approx(0.0538516, abs=2e-7)
     spread = propagate(calibrated_mass, MASS_INPUTS, method=method)
     assert spread.sd - first_order > 100 * spread.sd_standard_error
@@ -142,4 +168,28 @@ def test_9_3_buoyancy_is_interaction(method):
     by_itself = (0.05**2 + 0.02**2) / exact_mass_uncertainty() ** 2
     assert by_itself == pytest.approx(0.509, abs=5e-4)
     assert sum(shares.values()) == pytest.approx(by_itself, abs=0.05)
-    assert shares["reference"] == pytest.approx(by_itself * 25 / 29, abs=0.04)
+    assert shares["reference"] == pytest.approx(by_itself * 25 / 29, abs=0.002 if method == "line" else 0.04)
+
+
+# Clause 9.2 by Monte Carlo and clause 9.3: whether the first-order interval at two digits is valid.
+VALIDATED = {
+    "9.2.2": (total, four(Normal(mean=0, sd=1), Normal(mean=0, sd=1)), True),
+    "9.2.3": (total, four(RECTANGULAR, RECTANGULAR), True),
+    "9.2.4": (total, four(WIDE, RECTANGULAR), False),
+    "9.3": (calibrated_mass, MASS_INPUTS, False),
+}
+
+
+@pytest.mark.parametrize("method", ["line", "sobol"])
+@pytest.mark.parametrize("clause", VALIDATED)
+def test_clause_8_validates_the_first_order_interval(method, clause):
+    """Clause 8 applied to the examples finds the first-order interval valid in 9.2.2 and 9.2.3 alone.
+
+    Clause 8.2 wants the ends to a fifth of the numerical tolerance, 0.01 in 9.2, which plain draws do not give.
+    """
+    model, inputs, valid = VALIDATED[clause]
+    middle = {name: one.expectation for name, one in inputs.items()}
+    first_order = first_order_sd(model, middle, {name: one.standard_deviation for name, one in inputs.items()})
+    spread = propagate(model, inputs, method=method)
+    interval = spread.quantile(0.025), spread.quantile(0.975)
+    assert first_order_valid(model(**middle), first_order, interval, 0.95) == valid

@@ -88,13 +88,13 @@ def _statistics(outcome: Outcome) -> Iterator[str]:
     )
     yield (
         "Shares: first-order Sobol' indices, each dimension's own part of the variance; total indices add every "
-        "interaction it takes part in. Both are good to about 0.002."
+        "interaction it takes part in. Both are estimates, good to about 0.002 unless interactions are strong."
     )
     yield (
         "Ppk upper = (limit − P50)/(P99.865 − P50), ISO 22514-2; by normal theory (limit − mean)/(3 sd), which holds "
         "for a normal backlash alone."
     )
-    yield "Cells show no more digits than the standard error of their number justifies; they hold all."
+    yield "Cells of Results show no more digits than the standard error of their number justifies; they hold all."
     yield "Exact to rounding: nominal columns, worst case, first-order sd. All other statistics are estimates."
 
 

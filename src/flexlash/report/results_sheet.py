@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from flexlash.columns import Column
-from flexlash.report.styles import PALETTE, Book, decimals_of
+from flexlash.report.styles import PALETTE, Book, decimals_of, percent_of
 from flexlash.result_columns import RESULTS, result_columns
 
 if TYPE_CHECKING:
@@ -69,18 +69,19 @@ def write_results(book: Book, results: pl.DataFrame) -> None:
 def _styles_by_error(book: Book, results: pl.DataFrame, column: Column) -> list[Any]:
     """Return a format for each number of a column whose digits its standard error limits; none for other columns."""
     stem, _, unit = column.key.rpartition("_")
-    error = _ERRORS.get(column.key, f"{stem}_standard_error_{unit}")
-    if error not in results.columns and f"{column.key}_standard_error" in results.columns:
-        error = f"{column.key}_standard_error"
-    if error not in results.columns:
+    if column.key.startswith(("probability", "ppm")):
+        stem = column.key.removesuffix("_low").removesuffix("_high")
+        ends = zip(results[f"{stem}_low"].to_list(), results[f"{stem}_high"].to_list(), strict=True)
+        halves = [None if low is None else (high - low) / 2 for low, high in ends]
+        if column.key.startswith("ppm"):
+            return [book.format("text", decimals_of(half, "count")) for half in halves]
+        return [book.format("text", percent_of(half)) for half in halves]
+    error = next(
+        (key for key in (f"{stem}_standard_error_{unit}", f"{column.key}_standard_error") if key in results), ""
+    )
+    if not error:
         return []
     return [book.format("text", decimals_of(one, "arcmin" if unit else "plain")) for one in results[error].to_list()]
-
-
-_ERRORS = {
-    "coverage_low_arcmin": "p2_5_standard_error_arcmin",
-    "coverage_high_arcmin": "p97_5_standard_error_arcmin",
-}
 
 
 def _width(column: Column) -> float:

@@ -7,7 +7,7 @@ from typing import Any
 
 import xlsxwriter
 
-__all__ = ["GRID", "PALETTE", "Book", "decimals_of"]
+__all__ = ["GRID", "PALETTE", "Book", "decimals_of", "percent_of"]
 
 PALETTE = {
     "ink": "#1F3A5F",
@@ -104,6 +104,16 @@ def decimals_of(error: float | None, otherwise: str) -> str:
         return otherwise
     places = max(0, min(_MOST_DECIMALS, -math.floor(math.log10(error))))
     return "0." + "0" * places if places else "0"
+
+
+def percent_of(error: float | None) -> str:
+    """Return the number format of a share in per cent down to the first digit of its error.
+
+    >>> percent_of(0.0021), percent_of(None)
+    ('0.0%', 'share')
+    """
+    places = decimals_of(None if error is None else 100 * error, "share")
+    return places if places == "share" else f"{places}%"
 
 
 class Book:

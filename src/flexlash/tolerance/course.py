@@ -96,7 +96,7 @@ def course_of(model: RowModel, inputs: Inputs) -> Course:
     low, inner_low, inner_high, high = (output[:, probe] for probe in range(probes))
     rise = (high - low) / 2
     curvature = np.abs(high - low - 2 * (inner_high - inner_low)) + np.abs(high + low - inner_high - inner_low)
-    length = np.sqrt((rise * rise).sum(axis=0))
+    length = np.sqrt(np.cumsum(rise * rise, axis=0)[-1])
     noise = 64 * np.finfo(float).eps * np.abs(output).max(axis=(0, 1))
     steady = np.isfinite(length) & (length > noise)
     direction = np.where(steady, rise / np.where(steady, length, 1.0), 0.0)

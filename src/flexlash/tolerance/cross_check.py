@@ -29,7 +29,7 @@ def cross_checked(variation: Variation, plain: SampledSpread, limit: float | Non
     errors |= {"mean": plain.mean_standard_error, "sd": plain.sd_standard_error}
     own = {name: value for name, value in variation.statistics.items() if value is not None}
     deviations = [
-        abs(values[name] - own[name]) / math.hypot(errors[name], own[f"{name}_standard_error"]) for name in values
+        _deviation(values[name] - own[name], math.hypot(errors[name], own[f"{name}_standard_error"])) for name in values
     ]
     if limit is not None:
         share = own["probability_over_limit"]
@@ -47,3 +47,8 @@ def cross_checked(variation: Variation, plain: SampledSpread, limit: float | Non
         statistics=variation.statistics | beside,
         words=variation.words | {"cross_check": agrees},
     )
+
+
+def _deviation(difference: float, error: float) -> float:
+    """Return a difference in standard errors; where nothing scatters, 0 or infinitely many."""
+    return abs(difference) / error if error > 0 else math.inf if difference else 0.0

@@ -7,6 +7,7 @@ corrected on the model itself until nothing is left to correct, so the table's s
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 from scipy.special import ndtr, ndtri
@@ -20,7 +21,7 @@ __all__ = ["Crossing", "Moments", "crossing_at", "moments_of", "quantiles_of"]
 LEAST = 1e-15
 """Shares below are not told from none."""
 
-_FINE_NODES, _FINE_WEIGHTS = np.polynomial.legendre.leggauss(96)
+_FINE = 192, 128
 
 _ROUNDING = 1e-9
 """Part of the scale of an output below which its numbers are rounding."""
@@ -32,7 +33,8 @@ _SLOPE_ERROR = 0.1
 """How well the slope of a line is known; a correction leaves at most this part of itself."""
 
 _NEAR = 5e-3
-"""Part of the scale from which the model itself takes over from the table."""
+"""Part of the scale, and of the normal scale, from which the model itself takes over from the table."""
+
 
 _APART = 1e-6
 _SEARCHES = 40
@@ -90,30 +92,54 @@ class Moments:
 
 def moments_of(lines: Lines) -> Moments:
     """Return the moments: along the lines by quadrature, over the lines by their mean."""
-    values, weight = lines.table, WEIGHTS[:, None]
-    if len(lines.inputs.names) == 1:
-        nodes, weight = _fine_rule(lines.inputs.shapes[0].breaks)
-        values = lines.outputs(nodes)
-    origin = lines.each(values[len(values) // 2].reshape(lines.rows, -1)[:, :1].T)
-    deviation = values - origin
-    first = (weight * deviation).sum(axis=0)[None]
-    shift = lines.mean_over_lines(first)
-    deviation -= lines.each(shift)
-    power = weight * deviation * deviation
-    second = power.sum(axis=0)[None]
-    power *= deviation
-    third = power.sum(axis=0)[None]
-    variance = lines.mean_over_lines(second)
-    sd = np.sqrt(variance)
+    rules = _rules(lines)
+    origin = lines.each(rules[0][0][len(rules[0][0]) // 2].reshape(lines.rows, -1)[:, :1].T)
+    shift = lines.mean_over_lines(_integrals(rules[0], origin)[0])
+    centre = origin + lines.each(shift)
+    (first, second, third), coarse = (_integrals(rule, centre) for rule in rules)
+    # A third of what twice the spacing changes is the error of a kink, and more than that of a smooth output.
+    steps = [
+        np.abs(lines.mean_over_lines(fine - wide)) / 3
+        for fine, wide in zip((first, second, third), coarse, strict=True)
+    ]
+    sd = np.sqrt(lines.mean_over_lines(second))
     scale = np.where(sd > 0, sd, 1.0)
+    skewness = lines.mean_over_lines(third) / scale**3
+    # The skewness moves with mean and sd as well as with the third moment.
+    skewing = third / lines.each(scale**3) - 3 * first / lines.each(scale)
+    skewing -= 1.5 * lines.each(skewness) * second / lines.each(scale**2)
     return Moments(
         mean=(lines.mean_over_lines(origin) + shift)[0],
         sd=sd[0],
-        skewness=(lines.mean_over_lines(third) / scale**3)[0],
-        mean_error=_error(lines, first)[0] + _ROUNDING * sd[0],
-        sd_error=(_error(lines, second) / (2 * scale))[0] + _ROUNDING * sd[0],
-        skewness_error=(_error(lines, third) / scale**3)[0] + _ROUNDING,
+        skewness=skewness[0],
+        mean_error=(_error(lines, first) + steps[0])[0] + _ROUNDING * sd[0],
+        sd_error=((_error(lines, second) + steps[1]) / (2 * scale))[0] + _ROUNDING * sd[0],
+        skewness_error=(_error(lines, skewing) + steps[2] / scale**3)[0] + _ROUNDING,
     )
+
+
+Rule: TypeAlias = tuple[Array, Array]
+"""Outputs (nodes, rows × lines) along lines, and the weights (nodes, 1) that integrate them."""
+
+
+def _rules(lines: Lines) -> tuple[Rule, Rule]:
+    """Return a rule and one of half as many nodes: the table, or for a single input one that knows its kinks."""
+    if len(lines.inputs.names) > 1:
+        return (lines.table, WEIGHTS[:, None]), (lines.table[::2], 2 * WEIGHTS[::2, None])
+    rules = [_fine_rule(lines.inputs.shapes[0].breaks, count) for count in _FINE]
+    return (lines.outputs(rules[0][0]), rules[0][1]), (lines.outputs(rules[1][0]), rules[1][1])
+
+
+def _integrals(rule: Rule, centre: Array) -> tuple[Array, Array, Array]:
+    """Return the first three moments about a centre (1, rows × lines) along each line."""
+    values, weight = rule
+    deviation = values - centre
+    power = weight * deviation
+    moments = [np.add.reduce(power, axis=0, keepdims=True)]
+    for _ in range(2):
+        power *= deviation
+        moments.append(np.add.reduce(power, axis=0, keepdims=True))
+    return moments[0], moments[1], moments[2]
 
 
 def _error(lines: Lines, values: Array) -> Array:
@@ -121,13 +147,15 @@ def _error(lines: Lines, values: Array) -> Array:
     return standard_error(lines.replicate_means(values)) + lines.left_out(values)
 
 
-def _fine_rule(breaks: tuple[float, ...]) -> tuple[Array, Array]:
-    """Return nodes and weights (k, 1) that integrate under the normal density between breaks to rounding."""
-    ends = np.array([-REACH, *breaks, REACH])
+def _fine_rule(breaks: tuple[float, ...], count: int) -> tuple[Array, Array]:
+    """Return nodes and weights (k, 1) that integrate under the normal density between breaks."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    # A line may run either way through its one input.
+    ends = np.unique([-REACH, *breaks, *(-one for one in breaks), REACH])
     half = np.diff(ends)[:, None] / 2
-    nodes = (half * _FINE_NODES + ends[:-1, None] + half).reshape(-1, 1)
-    weights = (half * _FINE_WEIGHTS).reshape(-1, 1) * _density(nodes)
-    return nodes, weights / weights.sum()
+    places = (half * nodes + ends[:-1, None] + half).reshape(-1, 1)
+    shares = (half * weights).reshape(-1, 1) * _density(places)
+    return places, shares / shares.sum()
 
 
 def quantiles_of(lines: Lines, probability: Array) -> Crossing:
@@ -148,24 +176,26 @@ def _wider(lines: Lines) -> Array:
 
 def _in_table(lines: Lines, output: Array, level: Array) -> tuple[Array, Array, Array]:
     """Return outputs near the wanted level of Φ, the places and the slopes there, by the table alone."""
-    low = np.minimum.reduce(lines.table[0].reshape(lines.rows, -1), axis=1)
-    high = np.maximum.reduce(lines.table[-1].reshape(lines.rows, -1), axis=1)
+    low, high = lines.bounds
     near = np.zeros(output.shape, dtype=bool)
     for _ in range(_SEARCHES):
         place, slope = lines.places(lines.each(output))
-        moved, corrected = _moved(lines, output, place, slope, level)
-        near = near | (np.abs(moved - output) <= _NEAR * lines.scale)
+        moved, corrected, missing = _moved(lines, output, place, slope, level)
+        near = near | ((np.abs(moved - output) <= _NEAR * lines.scale) & (missing <= _NEAR))
         if near.all():
             break
         low = np.where(moved > output, output, low)
         high = np.where(moved < output, output, high)
         moved = np.where((moved <= low) | (moved >= high), (low + high) / 2, moved)
         output = np.where(near, output, moved)
-    return moved, corrected, slope
+    return np.clip(moved, *lines.bounds), corrected, slope
 
 
 def crossing_at(lines: Lines, output: Array) -> Crossing:
     """Return the shares above outputs (levels, rows)."""
+    low, high = lines.bounds
+    # An output out of reach is crossed as one just beyond it.
+    output = np.clip(output, low - lines.scale, high + lines.scale)
     place, slope = lines.places(lines.each(output))
     return _settle(lines, output, place, slope, None)
 
@@ -177,6 +207,8 @@ def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Arra
     """
     settled = np.zeros(output.shape, dtype=bool)
     residual = np.zeros(output.shape)
+    low, high = lines.bounds
+    start = output
     before: tuple[Array, Array] | None = None
     exact = _ROUNDING if len(lines.inputs.names) == 1 else _EXACT
     for _ in range(_ROUNDS):
@@ -189,8 +221,9 @@ def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Arra
         left = lines.mean_over_lines(weight * np.abs(gap)) / _positive(lines.mean_over_lines(weight / slope))
         target, corrected = output, _within(place + gap, FAR)
         if level is not None:
-            target, corrected = _moved(lines, output, corrected, slope, level)
-            left = np.maximum(left, np.abs(target - output))
+            target, corrected, missing = _moved(lines, output, corrected, slope, level)
+            target = np.clip(target, low, high)
+            left = np.maximum(left, np.maximum(np.abs(target - output), missing * exact * lines.scale / _EXACT))
         else:
             share = lines.mean_over_lines(ndtr(-corrected))
             left = np.where((share <= LEAST) | (share >= 1 - LEAST), 0.0, left)
@@ -202,12 +235,17 @@ def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Arra
         if settled.all():
             break
     above = ndtr(-place)
+    lost = ~settled
+    if level is not None:
+        # What cannot be followed on the model stays what the table says.
+        residual = np.where(lost, np.maximum(residual, np.abs(output - start)), residual)
+        output = np.where(lost, start, output)
     return Crossing(
         output=output,
         above=lines.mean_over_lines(above),
         above_error=_error(lines, above),
         density=lines.mean_over_lines(_density(place) / slope),
-        residual=np.maximum(_SLOPE_ERROR * residual, _ROUNDING * lines.scale),
+        residual=np.maximum(np.where(lost, residual, _SLOPE_ERROR * residual), _ROUNDING * lines.scale),
     )
 
 
@@ -229,10 +267,10 @@ def _positive(density: Array) -> Array:
     return np.maximum(density, np.finfo(float).tiny)
 
 
-def _moved(lines: Lines, output: Array, place: Array, slope: Array, level: Array) -> tuple[Array, Array]:
-    """Return outputs nearer to the wanted level of Φ, by Newton's rule on the normal scale, and the places there."""
+def _moved(lines: Lines, output: Array, place: Array, slope: Array, level: Array) -> tuple[Array, Array, Array]:
+    """Return outputs nearer to the wanted level of Φ by Newton's rule, the places there, and what was missing."""
     above = np.clip(lines.mean_over_lines(ndtr(-place)), LEAST / 10, 1 - LEAST / 10)
     density = _positive(lines.mean_over_lines(_density(place) / slope))
     now = -ndtri(above)
     step = np.clip((level - now) * _density(now) / density, -lines.scale, lines.scale)
-    return output + step, _within(place + lines.each(step) / slope, FAR)
+    return output + step, _within(place + lines.each(step) / slope, FAR), np.abs(level - now)

@@ -16,8 +16,8 @@ __all__ = ["LINE_REPLICATES", "Net", "line_net", "mirrored_net"]
 LINE_REPLICATES = 8
 """Independent replicates behind every standard error: 7 degrees of freedom."""
 
-SHARE_POINTS = 64
-"""Points over the other inputs behind each share of variance."""
+_SHARE_POINTS = 64, 2048
+"""Fewest and most points over the other inputs behind each share of variance."""
 
 _ROW = {8: 4.0, 16: 5.0}
 """Points in an even row of scores, and how far it reaches to both sides."""
@@ -70,8 +70,12 @@ def line_net(seed: int, width: int, lines: int, *, one_bent: bool) -> Net:
 
 
 @lru_cache(maxsize=64)
-def mirrored_net(seed: int, width: int) -> Array:
-    """Return scores (width, SHARE_POINTS), half of them mirrored so that linear effects cancel."""
-    generator = np.random.default_rng([seed, SHARE_POINTS, width])
-    half = ndtri(scrambled_net(width, LINE_REPLICATES, SHARE_POINTS // (2 * LINE_REPLICATES), generator))
-    return np.concatenate([half, -half], axis=2).reshape(width, SHARE_POINTS)
+def mirrored_net(seed: int, width: int, lines: int) -> Array:
+    """Return scores (width, points), half of them mirrored so that linear effects cancel; about as many as lines.
+
+    A row that takes many lines has inputs that act together, so its shares take many points too.
+    """
+    points = min(max(lines, _SHARE_POINTS[0]), _SHARE_POINTS[1])
+    generator = np.random.default_rng([seed, points, width])
+    half = ndtri(scrambled_net(width, LINE_REPLICATES, points // (2 * LINE_REPLICATES), generator))
+    return np.concatenate([half, -half], axis=2).reshape(width, points)

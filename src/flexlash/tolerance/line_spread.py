@@ -29,6 +29,7 @@ __all__ = [
     "NoLines",
     "first_lines",
     "lines_wanted",
+    "missed",
     "share_interval",
     "unsettled",
 ]
@@ -96,6 +97,15 @@ def unsettled(lines: Lines, settled: Crossing) -> Bools:
     return np.asarray((settled.residual > OF_SD * lines.scale).any(axis=0))
 
 
+def missed(settled: Crossing, sd: Array) -> list[str]:
+    """Return for each row the note that its precision was not reached, empty where it was."""
+    reached = (settled.output_error / np.where(sd > 0, sd, 1.0)).max(axis=0).tolist()
+    return [
+        "" if one <= OF_SD else f"standard errors reach {one:.2g} standard deviations, {OF_SD:g} was wanted"
+        for one in reached
+    ]
+
+
 def share_interval(share: Array, error: Array, factor: float = 1.96) -> tuple[Array, Array]:
     """Return the ends of intervals of shares, ± factor standard errors on the normal scale, never below 0."""
     inside = np.clip(share, LEAST, 1 - LEAST)
@@ -112,7 +122,6 @@ class LineSpread(Spread):
     """
 
     method = "line"
-    notes = ()
 
     def __init__(self, model: RowModel, inputs: Mapping[str, Distribution], *, samples: int | None, seed: int) -> None:
         self._model = model
@@ -120,6 +129,7 @@ class LineSpread(Spread):
         self._seed = seed
         with np.errstate(all="ignore"):
             course = course_of(model, self._inputs)
+            self.notes = ()
             self.size = first_lines(len(inputs), samples)
             self._lines = self._drawn(course)
             self._margin = np.ones(1)
@@ -129,6 +139,7 @@ class LineSpread(Spread):
                 if wanted == self.size:
                     if unsettled(self._lines, settled)[0]:
                         raise NoLines(FAULTS[-1])
+                    self.notes = tuple(note for note in missed(settled, self._moments.sd) if note)
                     break
                 self.size = int(wanted)
                 self._lines = self._drawn(course)
@@ -205,7 +216,7 @@ class LineSpread(Spread):
     @np.errstate(all="ignore")
     def _both_shares(self) -> tuple[dict[str, float], dict[str, float]]:
         names = self._inputs.names
-        net = mirrored_net(self._seed, len(names))
+        net = mirrored_net(self._seed, len(names), self.size)
         first, total = variance_shares(self._model, self._inputs, net, self._moments.sd**2)
         return dict(zip(names, first[:, 0].tolist(), strict=True)), dict(zip(names, total[:, 0].tolist(), strict=True))
 

@@ -139,6 +139,12 @@ class Lines:
         found += location
         return found
 
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """Least and greatest output in the table of each row, (rows,) each."""
+        low = np.minimum.reduce(self.table[0].reshape(self.rows, -1), axis=1)
+        return low, np.maximum.reduce(self.table[-1].reshape(self.rows, -1), axis=1)
+
     def each(self, values: Array) -> Array:
         """Return values (k, rows) once for every line, (k, rows × lines)."""
         return np.repeat(values, self.lines, axis=1)

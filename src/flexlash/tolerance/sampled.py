@@ -102,7 +102,12 @@ class SampledSpread(Spread):
         if self.sd == 0:
             return 0.0
         deviation = (self.values - self.mean) / self.sd
-        return float(standard_error((deviation * deviation * deviation).mean(axis=1)))
+        # The skewness moves with mean and sd as well as with the third moment.
+        squares = deviation * deviation
+        moves = squares * deviation - 3 * deviation - 1.5 * self.skewness * squares
+        if self._independent:
+            return float(moves.std()) / math.sqrt(self.size)
+        return float(standard_error(moves.mean(axis=1)))
 
     def _moment(self, power: int) -> float:
         """Return a central moment in standard deviations; 0 where nothing varies."""
@@ -128,8 +133,8 @@ class SampledSpread(Spread):
             of_share = np.sqrt(probability * (1 - probability) / self.size)
         else:
             quantiles = self._quantiles(probability)
-            below = np.array([(self.values <= quantile).mean(axis=1) for quantile in quantiles])
-            of_share = standard_error(below)
+            below = [(self.values <= quantile).mean(axis=1) for quantile in quantiles]
+            of_share = standard_error(np.reshape(below, (len(quantiles), len(self.values))))
         of_share = np.maximum(of_share, 0.5 / self.size)
         reach = np.maximum(0.5 * np.minimum(probability, 1 - probability), of_share)
         low, high = np.maximum(probability - reach, 0.0), np.minimum(probability + reach, 1.0)

@@ -60,6 +60,9 @@ def variance_shares(model: RowModel, inputs: Inputs, net: Array, variance: Array
 
     `net` are standard normal scores (inputs, points); `variance` (rows,) is that of the output.
     """
+    if len(inputs.names) == 1:
+        alone = (variance > 0).astype(float)[None]
+        return alone, alone
     points = net.shape[1]
     rows = np.repeat(np.arange(inputs.count), points)
     location, scale = inputs.location[:, rows], inputs.scale[:, rows]
@@ -82,4 +85,4 @@ def variance_shares(model: RowModel, inputs: Inputs, net: Array, variance: Array
         centre = (weight * by_node).sum(axis=0)
         first[place] = (weight * (by_node - centre) ** 2).sum(axis=0) / size
         total[place] = inner.mean(axis=1) / size
-    return np.clip(first, 0, 1), total
+    return np.clip(first, 0, 1), np.clip(total, 0, 1)

@@ -106,7 +106,7 @@ class _Alike:
     """Rows alike, by dimension: `centre` (rows,) at mid-limits, `limits` of the dimensions that scatter."""
 
     def __init__(self, tasks: Sequence[Task]) -> None:
-        self.backlash = tasks[0][0]
+        self._model = tasks[0][0]
         self.over = [task[3] for task in tasks]
         self.scatter = [distributions(task[2]) for task in tasks]
         limits = {name: [task[2][name] for task in tasks] for name in tasks[0][2]}
@@ -114,6 +114,11 @@ class _Alike:
         self.centre |= {name: np.array([one.middle for one in column]) for name, column in limits.items()}
         self.limits = {name: limits[name] for name in self.scatter[0]}
         self._fixed = {name: values for name, values in self.centre.items() if name not in self.limits}
+
+    def backlash(self, dimensions: Mapping[str, Array]) -> Array:
+        """Return the backlash in the shape of all dimensions, also of those that have no part in it."""
+        shape = np.broadcast_shapes(*(np.shape(values) for values in dimensions.values()))
+        return np.broadcast_to(self._model(dimensions), shape)
 
     def of_some(self, arguments: Mapping[str, Array], rows: Rows) -> Array:
         """Return the backlash of some rows, one per column, with these dimensions varied."""
@@ -163,7 +168,7 @@ _BESIDE = ("worst_case_low", "worst_case_high", "first_order_sd")
 def _exact(value: float, limit: float | None) -> Variation:
     """Return the spread of a variant none of whose dimensions scatters."""
     same = (*PERCENTILES, "mean", "coverage_low", "coverage_high", "worst_case_low", "worst_case_high")
-    none = ("sd", "skewness", *(f"{name}_standard_error" for name in (*PERCENTILES, "mean", "sd", "skewness")))
+    none = ("sd", "skewness", *(f"{name}_standard_error" for name in (*same[:10], "sd", "skewness")))
     statistics: dict[str, float | None] = dict.fromkeys(same, value)
     statistics |= dict.fromkeys((*none, "first_order_sd"), 0.0)
     if limit is not None:

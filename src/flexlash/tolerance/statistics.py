@@ -17,10 +17,10 @@ from flexlash.tolerance.course import Inputs, RowModel, Rows, course_of
 from flexlash.tolerance.crossings import crossing_at, moments_of, quantiles_of
 from flexlash.tolerance.line_nets import line_net, mirrored_net
 from flexlash.tolerance.line_spread import (
-    OF_SD,
     SETTLED,
     first_lines,
     lines_wanted,
+    missed,
     share_interval,
     unsettled,
 )
@@ -142,7 +142,7 @@ class _Reading:
         """Return the spreads of some of the rows, whose model this is."""
         inputs = self._lines.inputs.take(rows)
         moments = moments_of(self._lines).widened(self._margin)
-        net = mirrored_net(draws.seed, len(inputs.names))
+        net = mirrored_net(draws.seed, len(inputs.names), self._lines.lines)
         first, total = variance_shares(model, inputs, net, moments.sd[rows] ** 2)
         curve, edges, heights = self._curves(rows)
         numbers = self._quantile_numbers() | self._over_numbers()
@@ -154,12 +154,12 @@ class _Reading:
             "skewness": moments.skewness,
             "skewness_standard_error": moments.skewness_error,
         }
-        precision = (self.settled.output_error / moments.sd).max(axis=0)[rows].tolist()
+        notes = missed(self.settled, moments.sd) if draws.samples is None else [""] * self._lines.rows
         columns = {name: values[rows].tolist() for name, values in numbers.items()}
         return [
             Variation(
                 statistics=_finished(dict(zip(columns, values, strict=True)), self._lines.lines),
-                words=_words("line", _missed(precision[place]) if draws.samples is None else ""),
+                words=_words("line", notes[rows[place]]),
                 shares=dict(zip(inputs.names, first[:, place].tolist(), strict=True)),
                 totals=dict(zip(inputs.names, total[:, place].tolist(), strict=True)),
                 curve=curve[:, place].copy(),
@@ -174,7 +174,7 @@ class _Reading:
         output, error = self._quantiles.output, self._quantiles.output_error
         places = self._levels.places
         numbers = {name: output[place] for name, place in places.items()}
-        return numbers | {f"{name}_standard_error": error[places[name]] for name in PERCENTILES}
+        return numbers | {f"{name}_standard_error": error[place] for name, place in places.items()}
 
     def _over_numbers(self) -> dict[str, Array]:
         """Return the limit and the probability over it with its interval; NaN without a limit."""
@@ -211,9 +211,7 @@ def point_variation(spread: Spread, limit: float | None, draws: Draws, note: str
     names, shares = list(levels.named), np.array(list(levels.named.values()))
     numbers: dict[str, float] = dict(zip(names, spread.quantile(shares).tolist(), strict=True))
     errors = spread.standard_error(shares).tolist()
-    numbers |= {
-        f"{name}_standard_error": error for name, error in zip(names, errors, strict=True) if name in PERCENTILES
-    }
+    numbers |= {f"{name}_standard_error": error for name, error in zip(names, errors, strict=True)}
     for name in ("mean", "sd", "skewness"):
         numbers |= {name: getattr(spread, name), f"{name}_standard_error": getattr(spread, f"{name}_standard_error")}
     if limit is not None:
@@ -237,8 +235,8 @@ def point_variation(spread: Spread, limit: float | None, draws: Draws, note: str
 
 
 def _finished(numbers: dict[str, float], points: int) -> dict[str, float | None]:
-    """Return a row's statistics with those that follow from them; None in the place of NaN."""
-    told: dict[str, float | None] = {name: None if math.isnan(value) else value for name, value in numbers.items()}
+    """Return a row's statistics with those that follow from them, without those it has not."""
+    told: dict[str, float | None] = {name: value for name, value in numbers.items() if not math.isnan(value)}
     limit = told.pop("limit", None)
     if limit is not None:
         told["ppk"] = ppk_upper(limit, numbers["p50"], numbers["p99_865"])
@@ -248,10 +246,3 @@ def _finished(numbers: dict[str, float], points: int) -> dict[str, float | None]
 
 def _words(method: str, note: str) -> dict[str, str | None]:
     return {"spread_method": method, "spread_note": note or None}
-
-
-def _missed(precision: float) -> str:
-    """Return the note on a precision (in sd) that the greatest number of lines did not reach."""
-    if precision <= OF_SD:
-        return ""
-    return f"standard errors reach {precision:.2g} standard deviations, {OF_SD:g} was wanted"
