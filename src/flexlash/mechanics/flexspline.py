@@ -75,7 +75,7 @@ def _disk_integrals(dimensions: Dimensions, mean_radius: Array) -> dict[str, Arr
     start, start_thickness = inner, hub_thickness
     if "hub_fillet_radius" in dimensions:
         fillet = dimensions["hub_fillet_radius"]
-        slope = (thickness - hub_thickness) / (outer - inner)
+        slope = (thickness - hub_thickness) / (outer - inner) if "disk_hub_thickness" in dimensions else 0.0
         integrals["hub_fillet"] = windup.hub_fillet_integral(inner, fillet, hub_thickness, slope)
         start, start_thickness = inner + fillet, hub_thickness + slope * fillet
     if "disk_hub_thickness" in dimensions:

@@ -183,11 +183,10 @@ def hub_fillet_integral(
     """
     total = np.zeros(np.shape(inner_radius * fillet_radius * inner_thickness * slope))
     for angle, step in zip(_ARC_ANGLES, _ARC_STEPS, strict=True):
-        advance = fillet_radius * (1 - np.cos(angle))
-        radius = inner_radius + advance
-        thickness = inner_thickness + slope * advance + fillet_radius * (1 - np.sin(angle))
-        total += step * np.sin(angle) * fillet_radius / (radius * radius * radius * thickness)
-    return np.asarray(total)
+        radius = inner_radius + fillet_radius * (1 - np.cos(angle))
+        thickness = inner_thickness + fillet_radius * (slope * (1 - np.cos(angle)) + (1 - np.sin(angle)))
+        total += step * np.sin(angle) / (radius * radius * radius * thickness)
+    return np.asarray(total * fillet_radius)
 
 
 def junction_fillet_integral(
@@ -205,10 +204,10 @@ def junction_fillet_integral(
     """
     total = np.zeros(np.shape(mean_radius * thickness * fillet_radius))
     for angle, step in zip(_ARC_ANGLES, _ARC_STEPS, strict=True):
-        added = fillet_radius * (1 - np.sin(angle))
-        radius = mean_radius - added * 0.5
-        total += step * np.sin(angle) * fillet_radius / (radius * radius * radius * (thickness + added))
-    return np.asarray(total)
+        radius = mean_radius - fillet_radius * ((1 - np.sin(angle)) / 2)
+        thickened = thickness + fillet_radius * (1 - np.sin(angle))
+        total += step * np.sin(angle) / (radius * radius * radius * thickened)
+    return np.asarray(total * fillet_radius)
 
 
 def rim_integral(

@@ -14,7 +14,7 @@ from flexlash.tolerance.course import Course, Inputs, RowModel, Rows, course_of
 from flexlash.tolerance.crossings import LEAST, Crossing, Moments, crossing_at, moments_of, quantiles_of
 from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.line_nets import LINE_REPLICATES, line_net, mirrored_net
-from flexlash.tolerance.lines import FAULTS, Lines
+from flexlash.tolerance.lines import FAULTS, STEPS, Lines
 from flexlash.tolerance.shares import variance_shares
 from flexlash.tolerance.spread import Spread
 
@@ -138,20 +138,18 @@ class LineSpread(Spread):
                 (wanted,), self._margin = lines_wanted(self._lines, settled)
                 if wanted == self.size:
                     if unsettled(self._lines, settled)[0]:
-                        raise NoLines(FAULTS[-1])
+                        raise NoLines(FAULTS[STEPS])
                     self.notes = tuple(note for note in missed(settled, self._moments.sd) if note)
                     break
                 self.size = int(wanted)
                 self._lines = self._drawn(course)
 
     def _drawn(self, course: Course) -> Lines:
-        """Return the lines, or raise NoLines."""
-        lines = Lines(
-            self._model,
-            self._inputs,
-            course,
-            line_net(self._seed, len(self._inputs.names) - 1, self.size, one_bent=self._inputs.one_bent),
-        )
+        """Return the lines, with a finer table where the model bends much, or raise NoLines."""
+        net = line_net(self._seed, len(self._inputs.names) - 1, self.size, one_bent=self._inputs.one_bent)
+        lines = Lines(self._model, self._inputs, course, net)
+        if lines.faults[0] == STEPS:
+            lines = Lines(self._model, self._inputs, course, net, fine=True)
         if lines.faults[0]:
             raise NoLines(FAULTS[lines.faults[0]])
         return lines

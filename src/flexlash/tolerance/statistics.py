@@ -24,7 +24,7 @@ from flexlash.tolerance.line_spread import (
     share_interval,
     unsettled,
 )
-from flexlash.tolerance.lines import FAULTS, NODES, Lines
+from flexlash.tolerance.lines import FAULTS, FINE_NODES, STEPS, Lines
 from flexlash.tolerance.quantile_curve import QuantileCurve
 from flexlash.tolerance.shares import variance_shares
 from flexlash.tolerance.spread import Spread
@@ -68,7 +68,7 @@ class _Drawing:
     def lines(self, rows: Rows, number: int) -> Lines:
         """Return this number of lines through each of some rows."""
         net = line_net(self._seed, len(self._inputs.names) - 1, number, one_bent=self._inputs.one_bent)
-        return Lines(self.model(rows), self._inputs.take(rows), self._course.take(rows), net)
+        return Lines(self.model(rows), self._inputs.take(rows), self._course.take(rows), net, fine=True)
 
 
 def line_variations(
@@ -86,7 +86,7 @@ def line_variations(
         while pending:
             number, rows = pending.pop()
             wanted = np.full(len(rows), number)
-            for block in _blocks(len(rows), number * len(NODES)):
+            for block in _blocks(len(rows), number * len(FINE_NODES)):
                 lines = drawing.lines(rows[block], number)
                 if lines.faults.any():
                     faulty = np.flatnonzero(lines.faults)
@@ -100,7 +100,7 @@ def line_variations(
                     wanted[block] = reading.settle()
                 settled = wanted[block] == number
                 lost = unsettled(lines, reading.settled) & settled
-                yield from ((int(row), FAULTS[-1]) for row in rows[block[lost]])
+                yield from ((int(row), FAULTS[STEPS]) for row in rows[block[lost]])
                 done = np.flatnonzero(settled & ~lost)
                 if len(done):
                     found = rows[block[done]]
