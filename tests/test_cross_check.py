@@ -8,6 +8,7 @@ from functools import partial
 
 import pytest
 
+from b3_160 import CUP, NOMINAL
 from flexlash.mechanics import flexspline
 from flexlash.tolerance.cross_check import AGREES, cross_checked
 from flexlash.tolerance.distributions import Normal
@@ -17,16 +18,6 @@ from flexlash.tolerance.sampling import UnitPoints
 from flexlash.tolerance.spreading import variations_of
 from flexlash.tolerance.variation import PERCENTILES, Draws
 
-cup = partial(flexspline.backlash, "cup")
-NOMINAL = {
-    "torque": 800.0,
-    "cylinder_length": 0.160,
-    "mean_radius": 0.080,
-    "wall_thickness": 0.0016,
-    "disk_inner_radius": 0.040,
-    "youngs_modulus": 211e9,
-    "poisson_ratio": 0.3,
-}
 LIMITS = {
     "wall_thickness": Limits(low=0.00155, high=0.00165, distribution="uniform"),
     "youngs_modulus": Limits(low=207e9, high=215e9),
@@ -37,7 +28,7 @@ COMPARED = (*PERCENTILES, "mean", "sd")
 def spread(limit=None, *, limits=LIMITS, method="line", samples=None, seed=0, cross_check=True):
     """Return the cross-checked variation of the cup."""
     draws = Draws(method, samples, seed, cross_check=cross_check)
-    return variations_of([(cup, NOMINAL, limits, limit)], draws)[0]
+    return variations_of([(CUP, NOMINAL, limits, limit)], draws)[0]
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -64,7 +55,7 @@ def plain(size=2**17):
     """Return the plain Monte Carlo that cross-checks the cup, drawn for the two dimensions alone."""
     points = UnitPoints(list(LIMITS), method="random", samples=size, seed=9)
     inputs = {name: one.as_distribution() for name, one in LIMITS.items()}
-    return SampledSpread(model=lambda **varied: cup(NOMINAL | varied), inputs=inputs, points=points)
+    return SampledSpread(model=lambda **varied: CUP(NOMINAL | varied), inputs=inputs, points=points)
 
 
 @pytest.mark.parametrize("factor", [0.5, 2.0])

@@ -15,6 +15,7 @@ from flexlash.tolerance.line_nets import LINE_REPLICATES
 from flexlash.tolerance.sampled import SampledSpread
 from flexlash.tolerance.sampling import REPLICATES, UnitPoints
 from flexlash.tolerance.spread import Spread
+from one_input import ONE_INPUT, PROBABILITIES
 
 thorough = settings(deadline=None, max_examples=30, derandomize=True)
 
@@ -444,24 +445,7 @@ def test_another_input_leaves_a_shared_draw_alone(method):
     assert np.array_equal(first.values, second.values)
 
 
-PROBABILITIES = np.array([1e-6, 0.00135, 0.025, 0.1, 0.5, 0.9, 0.975, 0.99865, 1 - 1e-6])
-
-DISTRIBUTIONS = {
-    "normal": (Normal(80, 0.02), stats.norm(80, 0.02)),
-    "uniform": (Uniform(1.55, 1.65), stats.uniform(1.55, 0.1)),
-    "triangular": (Triangular(-1, 3), stats.triang(0.5, -1, 4)),
-    "skewed": (Triangular(0, 4, 1), stats.triang(0.25, 0, 4)),
-    "falling": (Triangular(1, 2, 1), stats.triang(0, 1, 1)),
-    "rising": (Triangular(1, 2, 2), stats.triang(1, 1, 1)),
-    "cut": (TruncatedNormal(5, 2, -1, 11), stats.truncnorm(-3, 3, 5, 2)),
-    "cut short": (TruncatedNormal(5, 2, 4, 6), stats.truncnorm(-0.5, 0.5, 5, 2)),
-    "cut off centre": (TruncatedNormal(0, 1, -0.5, 3), stats.truncnorm(-0.5, 3)),
-    "cut to a tail": (TruncatedNormal(0, 1, 4, 5), stats.truncnorm(4, 5)),
-    "cut below": (TruncatedNormal(1, 2, 0, math.inf), stats.truncnorm(-0.5, math.inf, 1, 2)),
-}
-each_distribution = pytest.mark.parametrize(
-    ("distribution", "reference"), DISTRIBUTIONS.values(), ids=list(DISTRIBUTIONS)
-)
+each_distribution = pytest.mark.parametrize(("distribution", "reference"), ONE_INPUT.values(), ids=list(ONE_INPUT))
 
 
 def bent(a, b, c):

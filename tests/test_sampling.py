@@ -149,3 +149,10 @@ def test_unknown_name_is_refused():
     """A name that the points were not drawn for has no coordinate."""
     with pytest.raises(KeyError):
         points_of("sobol").standard("bore_diameter", UNIT)
+
+
+@each_method
+def test_a_number_of_points_below_one_is_refused(method):
+    """At least one point must be asked for."""
+    with pytest.raises(ValueError, match="at least 1"):
+        points_of(method, samples=0)

@@ -2,27 +2,15 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 import pytest
 
-from flexlash.mechanics import flexspline
+from b3_160 import CUP, NOMINAL, TUBE
 from flexlash.tolerance import spreading
 from flexlash.tolerance.limits import Limits
 from flexlash.tolerance.spreading import spread_batch, spread_rows, variations_of
 from flexlash.tolerance.variation import Draws
 
-CUP, TUBE = (partial(flexspline.backlash, kind) for kind in ("cup", "cylinder"))
-NOMINAL = {
-    "torque": 800.0,
-    "cylinder_length": 0.160,
-    "mean_radius": 0.080,
-    "wall_thickness": 0.0016,
-    "disk_inner_radius": 0.040,
-    "youngs_modulus": 211e9,
-    "poisson_ratio": 0.3,
-}
 ALIKE = {
     "wall_thickness": Limits(low=0.00155, high=0.00165),
     "disk_inner_radius": Limits(low=0.0398, high=0.0402),

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import ndtri
 
+from b3_160 import CUP, NOMINAL
 from flexlash.mechanics import flexspline
 from flexlash.tolerance.limits import Limits
 from flexlash.tolerance.spreading import variations_of
@@ -19,29 +20,19 @@ thorough = settings(deadline=None, max_examples=30, derandomize=True)
 METHODS = ("line", "sobol", "random")
 each_method = pytest.mark.parametrize("method", METHODS)
 
-NOMINAL = {
-    "torque": 800.0,
-    "cylinder_length": 0.160,
-    "mean_radius": 0.080,
-    "wall_thickness": 0.0016,
-    "disk_inner_radius": 0.040,
-    "youngs_modulus": 211e9,
-    "poisson_ratio": 0.3,
-}
 LIMITS = {
     "cylinder_length": Limits(low=0.1598, high=0.1602, distribution="uniform"),
     "wall_thickness": Limits(low=0.00155, high=0.00165),
     "youngs_modulus": Limits(low=207e9, high=215e9),
 }
-cup = partial(flexspline.backlash, "cup")
-EXACT = float(cup(NOMINAL))
+EXACT = float(CUP(NOMINAL))
 ERRORS = [f"{name}_standard_error" for name in (*PERCENTILES, "mean", "sd", "skewness")]
 
 
 def spread(limits=LIMITS, *, nominal=NOMINAL, limit=None, method="line", samples=None, seed=0, coverage=0.95):
     """Return the variation of the cup over its limits."""
     draws = Draws(method=method, samples=samples, seed=seed, coverage=coverage)
-    (found,) = variations_of([(cup, nominal, limits, limit)], draws)
+    (found,) = variations_of([(CUP, nominal, limits, limit)], draws)
     return found
 
 
@@ -123,8 +114,8 @@ def test_worst_case_takes_every_limit():
     found = spread().statistics
     high = {"cylinder_length": 0.1602, "wall_thickness": 0.00155, "youngs_modulus": 207e9}
     low = {"cylinder_length": 0.1598, "wall_thickness": 0.00165, "youngs_modulus": 215e9}
-    assert found["worst_case_high"] == pytest.approx(float(cup(NOMINAL | high)), rel=1e-14)
-    assert found["worst_case_low"] == pytest.approx(float(cup(NOMINAL | low)), rel=1e-14)
+    assert found["worst_case_high"] == pytest.approx(float(CUP(NOMINAL | high)), rel=1e-14)
+    assert found["worst_case_low"] == pytest.approx(float(CUP(NOMINAL | low)), rel=1e-14)
 
 
 def test_swings_hold_each_dimension_at_its_limits():
@@ -132,8 +123,8 @@ def test_swings_hold_each_dimension_at_its_limits():
     found = spread()
     assert list(found.swings) == list(LIMITS)
     for name, (at_low, at_high) in found.swings.items():
-        assert at_low == pytest.approx(float(cup(NOMINAL | {name: LIMITS[name].low})), rel=1e-12)
-        assert at_high == pytest.approx(float(cup(NOMINAL | {name: LIMITS[name].high})), rel=1e-12)
+        assert at_low == pytest.approx(float(CUP(NOMINAL | {name: LIMITS[name].low})), rel=1e-12)
+        assert at_high == pytest.approx(float(CUP(NOMINAL | {name: LIMITS[name].high})), rel=1e-12)
 
 
 @each_method
@@ -152,7 +143,7 @@ def test_shares_are_those_of_the_first_order_budget():
     parts = {}
     for name, limits in LIMITS.items():
         step = limits.as_distribution().standard_deviation * 1e-3
-        high, low = (float(cup(NOMINAL | {name: NOMINAL[name] + sign * step})) for sign in (1, -1))
+        high, low = (float(CUP(NOMINAL | {name: NOMINAL[name] + sign * step})) for sign in (1, -1))
         parts[name] = ((high - low) / 2e-3) ** 2
     budget = {name: part / sum(parts.values()) for name, part in parts.items()}
     assert found.shares == pytest.approx(budget, abs=2e-3)
@@ -180,7 +171,7 @@ def test_curve_and_histogram_of_lines_are_the_model_itself():
     limits = {"youngs_modulus": LIMITS["youngs_modulus"]}
     found = spread(limits)
     middle, sd = 211e9, 8e9 / 6
-    exact = [float(cup(NOMINAL | {"youngs_modulus": middle - sd * ndtri(p)})) for p in CURVE_PROBABILITIES]
+    exact = [float(CUP(NOMINAL | {"youngs_modulus": middle - sd * ndtri(p)})) for p in CURVE_PROBABILITIES]
     assert np.abs(found.curve - exact).max() <= 1e-4 * found.statistics["sd"]
     cumulative = 0.0005 + np.cumsum(found.heights)
     for edge, share in zip(found.edges[1:], cumulative, strict=True):
@@ -218,7 +209,7 @@ def test_lines_tell_a_rare_share(sigmas):
     """With one normal modulus alone, lines tell the share over a limit 4 to 6 sd away to 1e-6 of itself."""
     limits = {"youngs_modulus": LIMITS["youngs_modulus"]}
     modulus = 211e9 - sigmas * 8e9 / 6
-    found = spread(limits, limit=float(cup(NOMINAL | {"youngs_modulus": modulus}))).statistics
+    found = spread(limits, limit=float(CUP(NOMINAL | {"youngs_modulus": modulus}))).statistics
     exact = 0.5 * math.erfc(sigmas / math.sqrt(2))
     assert found["probability_over_limit"] == pytest.approx(exact, rel=1e-6)
     ends = found["probability_over_limit_low"], found["probability_over_limit_high"]
@@ -279,7 +270,7 @@ def test_shift_without_scatter_moves_everything(method):
     """Limits that coincide off the entered value move all statistics there, also the worst case."""
     shift = {"wall_thickness": Limits(low=0.0017, high=0.0017)}
     alone = spread(shift, method=method).statistics
-    assert alone["mean"] == float(cup(NOMINAL | {"wall_thickness": 0.0017}))
+    assert alone["mean"] == float(CUP(NOMINAL | {"wall_thickness": 0.0017}))
     assert alone["sd"] == 0
     together = spread(LIMITS | shift, method=method).statistics
     moved = spread({name: one for name, one in LIMITS.items() if name != "wall_thickness"},
@@ -292,7 +283,7 @@ def test_spread_is_centred_on_mid_limits(method):
     """Lopsided deviations put the spread around mid-limits, not around the entered value."""
     lopsided = {"wall_thickness": Limits(low=0.0016, high=0.0017)}
     found = spread(lopsided, method=method).statistics
-    middle = float(cup(NOMINAL | {"wall_thickness": 0.00165}))
+    middle = float(CUP(NOMINAL | {"wall_thickness": 0.00165}))
     assert abs(found["p50"] - middle) <= 4 * found["p50_standard_error"]
     assert found["mean"] < EXACT
 
