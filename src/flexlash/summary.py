@@ -174,9 +174,9 @@ def share_words(row: dict[str, Any]) -> str:
     if low == high and value in (0, 1):
         return "all" if value else "none"
     if value == 0:
-        return f"at most {_share(high)}"
+        return _at_most(high)
     if value == 1:
-        return f"all but at most {_share(1 - low)}"
+        return f"all but {_at_most(1 - low)}"
     if 1 - value < _RARE:
         return f"all but {_interval(1 - value, 1 - high, 1 - low)}"
     return _interval(value, low, high)
@@ -200,7 +200,7 @@ def _unit(share: float) -> tuple[float, str]:
 def _interval(value: float, low: float, high: float) -> str:
     """Return a share with its interval, in the unit of its upper end."""
     if high < _LEAST:
-        return "fewer than 0.001 ppb"
+        return _at_most(high)
     factor, unit = _unit(high)
     if low == high:
         return _share(value)
@@ -211,10 +211,13 @@ def _interval(value: float, low: float, high: float) -> str:
     return f"{words[0]}{unit} ({words[1]} to {words[2]}{unit})"
 
 
+def _at_most(share: float) -> str:
+    """Return the bound of a share of which none was seen."""
+    return "fewer than 0.001 ppb" if share < _LEAST else f"at most {_share(share)}"
+
+
 def _share(share: float) -> str:
     """Return one bound in per cent, ppm or ppb."""
-    if share < _LEAST:
-        return "0.001 ppb"
     factor, unit = _unit(share)
     return f"{share * factor:.3g}{unit}"
 

@@ -206,7 +206,9 @@ def crossing_at(lines: Lines, output: Array) -> Crossing:
     # An output out of reach is crossed as one just beyond it.
     output = np.clip(output, low - lines.scale, high + lines.scale)
     place, slope = lines.places(lines.each(output))
-    return _settle(lines, output, place, slope, None)
+    found = _settle(lines, output, place, slope, None)
+    told = np.where(found.above <= LEAST, 0.0, np.where(found.above >= 1 - LEAST, 1.0, found.above))
+    return replace(found, above=told)
 
 
 def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Array | None) -> Crossing:
