@@ -27,7 +27,7 @@ def lines_of(function, *rows, lines=64, seed=0):
 
     inputs = Inputs.of(rows)
     net = line_net(seed, len(inputs.names) - 1, lines, one_bent=inputs.one_bent)
-    found = Lines(model, inputs, course_of(model, inputs), net, fine=True)
+    found = Lines(model, inputs, course_of(model, inputs), net)
     assert (found.faults == 0).all()
     return found
 

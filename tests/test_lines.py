@@ -9,7 +9,7 @@ from scipy.special import ndtr, ndtri
 from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform
 from flexlash.tolerance.course import Inputs, course_of
 from flexlash.tolerance.line_nets import LINE_REPLICATES, line_net
-from flexlash.tolerance.lines import FAR, FAULTS, FINE_NODES, REACH, Lines
+from flexlash.tolerance.lines import FAR, FAULTS, NODES, REACH, Lines
 
 thorough = settings(deadline=None, max_examples=40, derandomize=True)
 
@@ -33,7 +33,7 @@ def lines_of(function, *rows, lines=64, seed=0):
     model, inputs = row_model(function), Inputs.of(rows)
     with np.errstate(all="ignore"):
         net = line_net(seed, len(inputs.names) - 1, lines, one_bent=inputs.one_bent)
-        return Lines(model, inputs, course_of(model, inputs), net, fine=True)
+        return Lines(model, inputs, course_of(model, inputs), net)
 
 
 def linear(a, b, c):
@@ -52,7 +52,7 @@ def test_table_rises(row, function):
     """Outputs rise from node to node along every line, whichever way the model turns, and no fault is found."""
     lines = lines_of(function, row)
     assert lines.faults.tolist() == [0]
-    assert lines.table.shape == (len(FINE_NODES), 64)
+    assert lines.table.shape == (len(NODES), 64)
     assert (np.diff(lines.table, axis=0) >= 0).all()
     assert lines.table[-1].min() > lines.table[0].max()
 
@@ -159,7 +159,7 @@ def test_places_beyond_the_table_are_far():
     assert (places[0] == -FAR).all()
     assert (places[1] == FAR).all()
     assert (slopes > 0).all()
-    assert lines.places(lines.table[5:-5])[0] == pytest.approx(FINE_NODES[5:-5, None] * np.ones(8), abs=1e-9)
+    assert lines.places(lines.table[5:-5])[0] == pytest.approx(NODES[5:-5, None] * np.ones(8), abs=1e-9)
 
 
 @thorough
@@ -247,7 +247,7 @@ def test_faults_are_told_row_by_row():
 
     inputs = Inputs.of([TWO] * len(kinds))
     net = line_net(0, 1, 64, one_bent=False)
-    together = Lines(model, inputs, course_of(model, inputs), net, fine=True)
+    together = Lines(model, inputs, course_of(model, inputs), net)
     assert [FAULTS[fault] for fault in together.faults] == ["", NO_GRADIENT, NOT_FINITE, NOT_RISING, STEPS, ""]
     for row in (0, 5):
         alone = lines_of(kinds[row], TWO)
@@ -264,17 +264,6 @@ def test_one_bad_line_is_enough():
 def test_median_passes_through_the_origin_of_scores():
     """The middle node of a table holds outputs around the median, and their mean is that of the plane across."""
     lines = lines_of(lambda a, b: a + b**2 / 50, TWO, lines=1024)
-    middle = lines.table[len(FINE_NODES) // 2]
+    middle = lines.table[len(NODES) // 2]
     assert lines.mean_over_lines(middle[None])[0, 0] == pytest.approx(1 / 50, rel=0.05)
-    assert FINE_NODES[len(FINE_NODES) // 2] == 0 == ndtri(0.5)
-
-
-def test_a_coarse_table_holds_every_second_row_of_the_fine_one():
-    """Both tables are of the same lines, and the fine one can be had from the coarse."""
-    fine = lines_of(linear, MIXED)
-    net = line_net(0, len(fine.inputs.names) - 1, 64, one_bent=fine.inputs.one_bent)
-    model = row_model(linear)
-    coarse = Lines(model, fine.inputs, course_of(model, fine.inputs), net)
-    assert np.array_equal(coarse.table, fine.table[::2])
-    assert np.array_equal(coarse.fine_table, fine.fine_table)
-    assert fine.fine_table is fine.table
+    assert NODES[len(NODES) // 2] == 0 == ndtri(0.5)

@@ -104,7 +104,7 @@ def write_spread(book: Book, drawn: Sequence[Drawn], total: int) -> None:
     sheet.write_string(0, 0, "Spread of one variant", book.format("title"))
     sheet.set_row(0, 28)
     sheet.set_column(0, 0, 26)
-    sheet.set_column(1, 1, 26)
+    sheet.set_column(1, 1, 38)
     sheet.set_column(2, _HELPER - 2, 9)
     if not drawn:
         return

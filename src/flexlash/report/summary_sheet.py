@@ -29,12 +29,12 @@ _COLUMNS = (
     ("P50 [arcmin]", 11),
     ("P97.5 [arcmin]", 11),
     ("Limit [arcmin]", 11),
-    ("Units over the limit", 26),
+    ("Units over the limit", 32),
     ("Main contributor", 22),
 )
 LIGHT_RULE = (
-    "Verdict: green, at least 99.865 % of units stay within the limit; amber, at least 97.5 % do; red, fewer do; "
-    "–, no limit given. Order: share over the limit, then those without a limit."
+    "Verdict: green, at least 99.865 % of units within the limit; amber, at least 97.5 %; red, fewer; –, no limit. "
+    "Order: share over the limit."
 )
 
 

@@ -35,7 +35,9 @@ def cross_checked(variation: Variation, plain: SampledSpread, limit: float | Non
         share = own["probability_over_limit"]
         values["probability_over_limit"] = plain.probability_above(limit)
         # A rare share is counted in whole draws: half a draw is the least that can be told.
-        error = max(math.sqrt(share * (1 - share) / plain.size), 0.5 / plain.size)
+        counted = max(math.sqrt(share * (1 - share) / plain.size), 0.5 / plain.size)
+        width = own["probability_over_limit_high"] - own["probability_over_limit_low"]
+        error = math.hypot(counted, width / (2 * 1.96))
         deviations.append(abs(values["probability_over_limit"] - share) / error)
     greatest = max(deviations)
     beside: dict[str, float | None] = {f"random_{name}": value for name, value in values.items()}

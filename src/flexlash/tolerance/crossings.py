@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from flexlash.arrays import Array
-from flexlash.tolerance.lines import FAR, FINE_NODES, REACH, Lines
+from flexlash.tolerance.lines import FAR, NODES, REACH, STEP, Lines
 from flexlash.tolerance.sampling import standard_error
 
 __all__ = ["Crossing", "Moments", "crossing_at", "moments_of", "quantiles_of"]
@@ -38,6 +38,7 @@ _NEAR = 5e-3
 
 
 _APART = 1e-6
+_NEWTON = 8
 _SEARCHES = 40
 _ROUNDS = 12
 
@@ -126,16 +127,15 @@ Rule: TypeAlias = tuple[Array, Array]
 def _rules(lines: Lines) -> tuple[Rule, Rule]:
     """Return a rule and one of half as many nodes: the table, or for a single input one that knows its kinks."""
     if len(lines.inputs.names) > 1:
-        table = lines.fine_table
-        return (table, _trapezoid(1)), (table[::2], _trapezoid(2))
+        return (lines.table, _trapezoid(1)), (lines.table[::2], _trapezoid(2))
     rules = [_fine_rule(lines.inputs.shapes[0].breaks, count) for count in _FINE]
     return (lines.outputs(rules[0][0]), rules[0][1]), (lines.outputs(rules[1][0]), rules[1][1])
 
 
 @cache
 def _trapezoid(every: int) -> Array:
-    """Return the weights (k, 1) of every so many fine nodes under the normal density, nearly exact if all is smooth."""
-    weights = _density(FINE_NODES[::every, None])
+    """Return the weights (k, 1) of every so many nodes under the normal density, nearly exact if all is smooth."""
+    weights = _density(NODES[::every, None])
     return np.asarray(weights / weights.sum())
 
 
@@ -170,15 +170,15 @@ def _fine_rule(breaks: tuple[float, ...], count: int) -> tuple[Array, Array]:
 def quantiles_of(lines: Lines, probability: Array) -> Crossing:
     """Return the outputs that these shares (levels,) of each row stay below."""
     level = ndtri(np.clip(probability, LEAST, 1 - LEAST))[:, None]
-    scaled = (level - lines.nodes[0]) / lines.step
-    node = np.clip(scaled.astype(int), 0, len(lines.nodes) - 2)
+    scaled = (level - NODES[0]) / STEP
+    node = np.clip(scaled.astype(int), 0, len(NODES) - 2)
     start = lines.table[node[:, 0]] * (1 - (scaled - node)) + lines.table[node[:, 0] + 1] * (scaled - node)
     return _settle(lines, *_in_table(lines, lines.mean_over_lines(start) + level * _wider(lines), level), level)
 
 
 def _wider(lines: Lines) -> Array:
     """Return by how much more than along a line the output scatters, (rows,): the lines are not quite alike."""
-    middle = lines.table[len(lines.nodes) // 2][None]
+    middle = lines.table[len(NODES) // 2][None]
     apart = middle - lines.each(lines.mean_over_lines(middle))
     return np.asarray(np.sqrt(lines.scale**2 + lines.mean_over_lines(apart * apart)[0]) - lines.scale)
 
@@ -187,7 +187,7 @@ def _in_table(lines: Lines, output: Array, level: Array) -> tuple[Array, Array, 
     """Return outputs near the wanted level of Φ, the places and the slopes there, by the table alone."""
     low, high = lines.bounds
     near = np.zeros(output.shape, dtype=bool)
-    for _ in range(_SEARCHES):
+    for search in range(_SEARCHES):
         place, slope = lines.places(lines.each(output))
         moved, corrected, missing = _moved(lines, output, place, slope, level)
         near = near | ((np.abs(moved - output) <= _NEAR * lines.scale) & (missing <= _NEAR))
@@ -195,7 +195,8 @@ def _in_table(lines: Lines, output: Array, level: Array) -> tuple[Array, Array, 
             break
         low = np.where(moved > output, output, low)
         high = np.where(moved < output, output, high)
-        moved = np.where((moved <= low) | (moved >= high), (low + high) / 2, moved)
+        outside = (moved <= low) | (moved >= high) | (search >= _NEWTON)
+        moved = np.where(outside, (low + high) / 2, moved)
         output = np.where(near, output, moved)
     return np.clip(moved, *lines.bounds), corrected, slope
 
@@ -227,7 +228,7 @@ def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Arra
         reached = lines.outputs(place)
         if before is not None:
             slope = np.where(live, _secant(before, (place, reached), slope), slope)
-        gap = _within((lines.each(output) - reached) / slope, lines.step)
+        gap = _within((lines.each(output) - reached) / slope, STEP)
         weight = _density(place)
         left = lines.mean_over_lines(weight * np.abs(gap)) / _positive(lines.mean_over_lines(weight / slope))
         target, corrected = output, _within(place + gap, FAR)

@@ -48,6 +48,9 @@ OF_PROBABILITY = 0.05
 
 RAREST = 1e-9
 
+_SMOOTH = 1e-4
+"""Roughness of a table below which its quantiles need not be tried on the model before they are asked for."""
+
 _STOPPED = 0.3
 _MARGIN = 1.5
 """How much better than wanted the next number of lines should be, since errors are only estimated."""
@@ -133,26 +136,33 @@ class LineSpread(Spread):
             self.size = first_lines(len(inputs), samples)
             self._lines = self._drawn(course)
             self._margin = np.ones(1)
+            if self._lines.roughness[0] > _SMOOTH and (samples is not None or len(inputs) == 1):
+                self._follow(np.array(SETTLED if len(inputs) == 1 else SETTLED[2:3]))
             while samples is None and len(inputs) > 1:
                 settled = quantiles_of(self._lines, np.array(SETTLED))
                 (wanted,), self._margin = lines_wanted(self._lines, settled)
                 if wanted == self.size:
-                    if unsettled(self._lines, settled)[0]:
-                        raise NoLines(FAULTS[STEPS])
+                    self._refuse(settled)
                     self.notes = tuple(note for note in missed(settled, self._moments.sd) if note)
                     break
                 self.size = int(wanted)
                 self._lines = self._drawn(course)
 
     def _drawn(self, course: Course) -> Lines:
-        """Return the lines, with a finer table where the model bends much, or raise NoLines."""
+        """Return the lines, or raise NoLines."""
         net = line_net(self._seed, len(self._inputs.names) - 1, self.size, one_bent=self._inputs.one_bent)
         lines = Lines(self._model, self._inputs, course, net)
-        if lines.faults[0] == STEPS:
-            lines = Lines(self._model, self._inputs, course, net, fine=True)
         if lines.faults[0]:
             raise NoLines(FAULTS[lines.faults[0]])
         return lines
+
+    def _follow(self, probability: Array) -> None:
+        """Raise NoLines where quantiles cannot be followed on the model."""
+        self._refuse(quantiles_of(self._lines, probability))
+
+    def _refuse(self, settled: Crossing) -> None:
+        if unsettled(self._lines, settled)[0]:
+            raise NoLines(FAULTS[STEPS])
 
     @cached_property
     @np.errstate(all="ignore")

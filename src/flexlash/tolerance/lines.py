@@ -10,8 +10,6 @@ with randomized quasi-Monte Carlo).
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 import numpy.typing as npt
 
@@ -20,14 +18,14 @@ from flexlash.tolerance.course import Course, Inputs, RowModel, Rows, across
 from flexlash.tolerance.distributions import Normal
 from flexlash.tolerance.line_nets import LINE_REPLICATES, Net
 
-__all__ = ["FAR", "FAULTS", "FINE_NODES", "REACH", "STEPS", "Lines"]
+__all__ = ["FAR", "FAULTS", "NODES", "REACH", "STEP", "STEPS", "Lines"]
 
 REACH = 8.3
 """Scores beyond ±8.3 have no weight in double precision and are not visited."""
 
-FINE_NODES = np.arange(-8.0, 8.25, 0.5)
-NODES = FINE_NODES[::2]
-"""Places on each line at which the model is tabulated: the fine ones where moments are sure to be asked for."""
+STEP = 0.5
+NODES = np.arange(-8.0, 8.0 + STEP / 2, STEP)
+"""Places on each line at which the model is tabulated."""
 
 FAR = 8.5
 """The place of a crossing that a line does not have: Φ(−FAR) is nothing beside 1."""
@@ -64,8 +62,15 @@ _LAST = 2
 _DIP = 1e-9
 """A fall along a line smaller than this part of its range is rounding."""
 
-_ROUGH, _ROUGH_FINE = 0.02, 0.05
+_ROUGH = 0.05
 """A model that lies this part of a step off the cubic through its neighbours may have steps of its own."""
+
+_LONE = 4.0
+"""A step along a line is a jump if it is this much greater than both its neighbours."""
+
+_FLAT, _HIGH = 1e-12, 0.05
+"""A line is flat where it rises less than the one part of its range, and has an edge where two places on it rises more
+than the other: limits that are approached smoothly take longer."""
 
 _BEYOND = 2.0
 """How much further from the mean lines beyond an evenly spaced row may be than its last."""
@@ -80,7 +85,7 @@ class Lines:
     `FAULTS` of what keeps line sampling from a row; what else is read of the lines holds for the other rows.
     """
 
-    def __init__(self, model: RowModel, inputs: Inputs, course: Course, net: Net, *, fine: bool = False) -> None:
+    def __init__(self, model: RowModel, inputs: Inputs, course: Course, net: Net) -> None:
         self._model = model
         self.inputs = inputs
         self.rows = inputs.count
@@ -96,13 +101,11 @@ class Lines:
             if shape.shape == Normal.shape:
                 self._origin[place] = self._location[place] + self._scale[place] * self._origin[place]
                 self._direction[place] *= self._scale[place]
-        self.nodes = FINE_NODES if fine else NODES
-        self.step = float(self.nodes[1] - self.nodes[0])
-        found = self.outputs(np.concatenate([self.nodes, _PROBED + _ASIDE * self.step])[:, None])
-        table, probes = found[: len(self.nodes)], found[len(self.nodes) :]
+        found = self.outputs(np.concatenate([NODES, _PROBED + _ASIDE * STEP])[:, None])
+        table, probes = found[: len(NODES)], found[len(NODES) :]
         self.faults = self._faults(course.direction, table, probes)
         self.table = table if (np.diff(table, axis=0) >= 0).all() else np.maximum.accumulate(table, axis=0)
-        down, up = np.searchsorted(self.nodes, [-2.0, 2.0])
+        down, up = np.searchsorted(NODES, [-2.0, 2.0])
         self.scale = self.mean_over_lines(self.table[up : up + 1] - self.table[down : down + 1])[0] / 4
 
     def _faults(self, direction: Array, table: Array, probes: Array) -> Rows:
@@ -116,26 +119,27 @@ class Lines:
             size = np.abs(table).max(axis=0)
             slack = _DIP * (table.max(axis=0) - table.min(axis=0)) + 64 * np.finfo(float).eps * size
             faults = np.where(self._all_lines((step >= -slack).all(axis=0)) | (faults > 0), faults, 3)
-        before = table[np.add.outer(np.arange(-1, 3), np.searchsorted(self.nodes, _PROBED))]
+        before = table[np.add.outer(np.arange(-1, 3), np.searchsorted(NODES, _PROBED))]
         between = sum(weight * values for weight, values in zip(_CUBIC, before, strict=True))
         off = self.mean_over_lines(np.abs(probes - between)).sum(axis=0)
-        most = _ROUGH_FINE if self.nodes is FINE_NODES else _ROUGH
-        rough = off > most * self.mean_over_lines(before[2] - before[1]).sum(axis=0)
+        around = self.mean_over_lines(before[2] - before[1]).sum(axis=0)
+        self.roughness = off / np.where(around > 0, around, 1.0)
+        rough = (self.roughness > _ROUGH) | ~self._all_lines(self._even(step))
         return np.where(rough & (faults == 0), STEPS, faults)
+
+    def _even(self, step: Array) -> npt.NDArray[np.bool_]:
+        """Return which lines have neither a lone step, far above both its neighbours, nor an edge to a flat part."""
+        inner = step[1:-1]
+        lone = inner > _LONE * np.maximum(step[:-2], step[2:]) + _DIP * step.sum(axis=0)
+        apart = round(2 / STEP)
+        flat = step <= _FLAT * step.sum(axis=0)
+        high = step >= _HIGH * step.sum(axis=0)
+        edge = (flat[:-apart] & high[apart:]) | (high[:-apart] & flat[apart:])
+        return np.asarray(~(lone.any(axis=0) | edge.any(axis=0)))
 
     def _all_lines(self, sound: npt.NDArray[np.bool_] | np.bool_) -> npt.NDArray[np.bool_]:
         """Return whether every line (rows × lines,) of a row is sound."""
         return np.asarray(sound.reshape(self.rows, -1).all(axis=1))
-
-    @cached_property
-    def fine_table(self) -> Array:
-        """Outputs (fine nodes, rows × lines)."""
-        if self.nodes is FINE_NODES:
-            return self.table
-        fine = np.empty((len(FINE_NODES), self.table.shape[1]))
-        fine[0::2] = self.table
-        fine[1::2] = self.outputs(FINE_NODES[1::2, None])
-        return fine
 
     def outputs(self, places: Array) -> Array:
         """Return the outputs (k, rows × lines) at places (k, 1) or (k, rows × lines) along the lines."""
@@ -205,7 +209,7 @@ class Lines:
         passed = np.zeros(outputs.shape, dtype=np.int8)
         for node in table:
             passed += (node <= outputs).view(np.int8)
-        base = np.minimum(np.maximum(passed - np.int8(2), np.int8(0)), np.int8(len(self.nodes) - 4))
+        base = np.minimum(np.maximum(passed - np.int8(2), np.int8(0)), np.int8(len(NODES) - 4))
         index = base * np.int64(width) + np.arange(width)
         first, second, third, fourth = (table.reshape(-1).take(index + shift * width) for shift in range(4))
         interval = np.minimum(np.maximum(passed - np.int8(1) - base, 0), _LAST)
@@ -213,7 +217,7 @@ class Lines:
         below = np.where(starts, first, np.where(ends, third, second))
         above = np.where(starts, second, np.where(ends, fourth, third))
         secant = above - below
-        inside = (passed > 0) & (passed < len(self.nodes))
+        inside = (passed > 0) & (passed < len(NODES))
         secant = np.where(secant > 0, secant, 1.0)
         bend, twist = third - 2 * second + first, (fourth - 3 * third + 3 * second - first) / 3
         rise = second - first
@@ -222,8 +226,8 @@ class Lines:
             value = first + place * (rise + (place - 1) / 2 * (bend + (place - 2) * twist))
             place = place + (outputs - value) / _slope(place, rise, bend, twist, secant)
             place = np.minimum(np.maximum(place, low), low + 1)
-        slope = _slope(place, rise, bend, twist, secant) / self.step
-        found = self.nodes[0] + self.step * (base + place)
+        slope = _slope(place, rise, bend, twist, secant) / STEP
+        found = NODES[0] + STEP * (base + place)
         outside = np.where(passed == 0, -FAR, FAR)
         return np.where(inside, found, outside), slope
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -74,7 +75,7 @@ class Spread(ABC):
     def quantile(self, probability: npt.ArrayLike) -> Any:
         """Return the values that this share of the output stays below; scalar in, scalar out."""
         wanted = _probabilities(probability)
-        return _shaped(self._quantiles(wanted.ravel()), wanted)
+        return _shaped(self._quantiles, wanted)
 
     @overload
     def standard_error(self, probability: float) -> float: ...
@@ -83,7 +84,7 @@ class Spread(ABC):
     def standard_error(self, probability: npt.ArrayLike) -> Any:
         """Return the standard errors of quantiles."""
         wanted = _probabilities(probability)
-        return _shaped(self._quantile_errors(wanted.ravel()), wanted)
+        return _shaped(self._quantile_errors, wanted)
 
     @overload
     def probability_above(self, value: float) -> float: ...
@@ -92,7 +93,7 @@ class Spread(ABC):
     def probability_above(self, value: npt.ArrayLike) -> Any:
         """Return the share of the output greater than a value; scalar in, scalar out."""
         wanted = np.asarray(value, dtype=float)
-        return _shaped(self._shares_above(wanted.ravel()), wanted)
+        return _shaped(self._shares_above, wanted)
 
     @abstractmethod
     def probability_interval(self, value: float, confidence: float = 0.95) -> tuple[float, float]:
@@ -121,6 +122,9 @@ def _probabilities(probability: npt.ArrayLike) -> Array:
     return wanted
 
 
-def _shaped(found: Array, like: Array) -> Any:
-    """Return numbers found for a raveled array in its shape, a float for a scalar."""
-    return float(found[0]) if like.ndim == 0 else found.reshape(like.shape)
+def _shaped(of: Callable[[Array], Array], wanted: Array) -> Any:
+    """Return what a function of a row of numbers finds, in the shape wanted, a float for a scalar."""
+    if not wanted.size:
+        return np.empty(wanted.shape)
+    found = of(wanted.ravel())
+    return float(found[0]) if wanted.ndim == 0 else found.reshape(wanted.shape)

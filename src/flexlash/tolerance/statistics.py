@@ -24,7 +24,7 @@ from flexlash.tolerance.line_spread import (
     share_interval,
     unsettled,
 )
-from flexlash.tolerance.lines import FAULTS, FINE_NODES, STEPS, Lines
+from flexlash.tolerance.lines import FAULTS, NODES, STEPS, Lines
 from flexlash.tolerance.quantile_curve import QuantileCurve
 from flexlash.tolerance.shares import variance_shares
 from flexlash.tolerance.spread import Spread
@@ -68,7 +68,7 @@ class _Drawing:
     def lines(self, rows: Rows, number: int) -> Lines:
         """Return this number of lines through each of some rows."""
         net = line_net(self._seed, len(self._inputs.names) - 1, number, one_bent=self._inputs.one_bent)
-        return Lines(self.model(rows), self._inputs.take(rows), self._course.take(rows), net, fine=True)
+        return Lines(self.model(rows), self._inputs.take(rows), self._course.take(rows), net)
 
 
 def line_variations(
@@ -86,7 +86,7 @@ def line_variations(
         while pending:
             number, rows = pending.pop()
             wanted = np.full(len(rows), number)
-            for block in _blocks(len(rows), number * len(FINE_NODES)):
+            for block in _blocks(len(rows), number * len(NODES)):
                 lines = drawing.lines(rows[block], number)
                 if lines.faults.any():
                     faulty = np.flatnonzero(lines.faults)
