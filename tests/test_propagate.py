@@ -675,11 +675,13 @@ def test_bounds_and_saturation_give_no_warning(model, inputs, samples):
 
 @pytest.mark.parametrize("kink", [0.6, 0.8, 1.0])
 def test_quantiles_of_a_saturating_output_do_not_pass_its_limit(kink):
-    """Of an output that saturates no percentile lies beyond its limit."""
+    """Of an output that saturates no percentile lies beyond its limit, and each is right within its error."""
     spread = propagate(lambda a: np.minimum(a, kink), {"a": Normal(0, 1)})
     inner = PROBABILITIES[1:-1]
     exact = np.minimum(stats.norm.ppf(inner), kink)
-    assert spread.quantile(inner) == pytest.approx(exact, abs=1e-6)
+    found = spread.quantile(inner)
+    assert found.max() <= kink
+    assert np.all(np.abs(found - exact) <= 4 * spread.standard_error(inner) + 1e-12)
 
 
 @pytest.mark.parametrize("kink", [0.6, 0.8])

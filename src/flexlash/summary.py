@@ -141,9 +141,9 @@ def spread_notes(outcome: Outcome) -> Iterator[str]:
     if "cross_check" in results.columns:
         checked = results.filter(results["cross_check"].is_not_null())
         agreeing = (checked["cross_check"] == "agrees").sum()
-        if not checked.height:
+        if outcome.settings.method == "random":
             yield "The spread is plain Monte Carlo itself: there is nothing to cross-check it with."
-        else:
+        elif checked.height:
             yield (
                 f"Plain Monte Carlo agrees for {agreeing} of {checked.height} variants; the greatest difference is "
                 f"{max(checked['cross_check_deviation'].to_list()):.1f} combined standard errors."

@@ -285,4 +285,5 @@ def _moved(lines: Lines, output: Array, place: Array, slope: Array, level: Array
     density = _positive(lines.mean_over_lines(_density(place) / slope))
     now = -ndtri(above)
     step = np.clip((level - now) * _density(now) / density, -lines.scale, lines.scale)
-    return output + step, _within(place + lines.each(step) / slope, FAR), np.abs(level - now)
+    shift = _within(lines.each(step) / slope, STEP)
+    return output + step, _within(place + shift, FAR), np.abs(level - now)

@@ -130,7 +130,7 @@ class Lines:
     def _even(self, step: Array) -> npt.NDArray[np.bool_]:
         """Return which lines have neither a lone step, far above both its neighbours, nor an edge to a flat part."""
         inner = step[1:-1]
-        lone = inner > _LONE * np.maximum(step[:-2], step[2:]) + _DIP * step.sum(axis=0)
+        lone = (inner > _LONE * np.maximum(step[:-2], step[2:])) & (inner >= _HIGH * step.sum(axis=0))
         apart = round(2 / STEP)
         flat = step <= _FLAT * step.sum(axis=0)
         high = step >= _HIGH * step.sum(axis=0)
