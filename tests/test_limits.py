@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from b3_160 import NOMINAL
 from flexlash.columns import DIMENSIONS
 from flexlash.mechanics.flexspline import backlash, radius_of
 from flexlash.submission.tables import standard_class
@@ -16,17 +17,7 @@ from flexlash.variant import ToleranceRow, Variant
 
 thorough = settings(deadline=None, max_examples=60, derandomize=True)
 
-CUP = {
-    "torque": 800.0,
-    "cylinder_length": 0.160,
-    "mean_radius": 0.080,
-    "wall_thickness": 0.0016,
-    "disk_inner_radius": 0.040,
-    "youngs_modulus": 211e9,
-    "poisson_ratio": 0.3,
-    "cylinder_calibration": 1.0,
-    "disk_calibration": 1.0,
-}
+CUP = NOMINAL | {"cylinder_calibration": 1.0, "disk_calibration": 1.0}
 
 
 def variant(kind="cup", **changes):
