@@ -17,7 +17,7 @@ from flexlash.arrays import Array
 from flexlash.tolerance.lines import FAR, NODES, REACH, STEP, Lines
 from flexlash.tolerance.sampling import standard_error
 
-__all__ = ["Crossing", "Moments", "crossing_at", "moments_of", "quantiles_of"]
+__all__ = ["Crossing", "Moments", "crossing_at", "moments_of", "normal_density", "quantiles_of"]
 
 LEAST = 1e-15
 """Shares below are not told from none."""
@@ -43,7 +43,7 @@ _SEARCHES = 40
 _ROUNDS = 12
 
 
-def _density(score: Array) -> Array:
+def normal_density(score: Array) -> Array:
     """Return the standard normal density."""
     return np.asarray(np.exp(score * score * -0.5) * (1 / np.sqrt(2 * np.pi)))
 
@@ -135,7 +135,7 @@ def _rules(lines: Lines) -> tuple[Rule, Rule]:
 @cache
 def _trapezoid(every: int) -> Array:
     """Return the weights (k, 1) of every so many nodes under the normal density, nearly exact if all is smooth."""
-    weights = _density(NODES[::every, None])
+    weights = normal_density(NODES[::every, None])
     return np.asarray(weights / weights.sum())
 
 
@@ -163,7 +163,7 @@ def _fine_rule(breaks: tuple[float, ...], count: int) -> tuple[Array, Array]:
     ends = np.unique([-REACH, *breaks, *(-one for one in breaks), REACH])
     half = np.diff(ends)[:, None] / 2
     places = (half * nodes + ends[:-1, None] + half).reshape(-1, 1)
-    shares = (half * weights).reshape(-1, 1) * _density(places)
+    shares = (half * weights).reshape(-1, 1) * normal_density(places)
     return places, shares / shares.sum()
 
 
@@ -229,7 +229,7 @@ def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Arra
         if before is not None:
             slope = np.where(live, _secant(before, (place, reached), slope), slope)
         gap = _within((lines.each(output) - reached) / slope, STEP)
-        weight = _density(place)
+        weight = normal_density(place)
         left = lines.mean_over_lines(weight * np.abs(gap)) / _positive(lines.mean_over_lines(weight / slope))
         target, corrected = output, _within(place + gap, FAR)
         if level is not None:
@@ -256,7 +256,7 @@ def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Arra
         output=output,
         above=lines.mean_over_lines(above),
         above_error=_error(lines, above),
-        density=lines.mean_over_lines(_density(place) / slope),
+        density=lines.mean_over_lines(normal_density(place) / slope),
         residual=np.maximum(np.where(lost, residual, _SLOPE_ERROR * residual), _ROUNDING * lines.scale),
     )
 
@@ -282,8 +282,8 @@ def _positive(density: Array) -> Array:
 def _moved(lines: Lines, output: Array, place: Array, slope: Array, level: Array) -> tuple[Array, Array, Array]:
     """Return outputs nearer to the wanted level of Φ by Newton's rule, the places there, and what was missing."""
     above = np.clip(lines.mean_over_lines(ndtr(-place)), LEAST / 10, 1 - LEAST / 10)
-    density = _positive(lines.mean_over_lines(_density(place) / slope))
+    density = _positive(lines.mean_over_lines(normal_density(place) / slope))
     now = -ndtri(above)
-    step = np.clip((level - now) * _density(now) / density, -lines.scale, lines.scale)
+    step = np.clip((level - now) * normal_density(now) / density, -lines.scale, lines.scale)
     shift = _within(lines.each(step) / slope, STEP)
     return output + step, _within(place + shift, FAR), np.abs(level - now)

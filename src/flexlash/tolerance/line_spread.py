@@ -11,7 +11,7 @@ from scipy.special import ndtr, ndtri
 
 from flexlash.arrays import Array
 from flexlash.tolerance.course import Course, Inputs, RowModel, Rows, course_of
-from flexlash.tolerance.crossings import LEAST, Crossing, Moments, crossing_at, moments_of, quantiles_of
+from flexlash.tolerance.crossings import LEAST, Crossing, Moments, crossing_at, moments_of, normal_density, quantiles_of
 from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.line_nets import LINE_REPLICATES, line_net, mirrored_net
 from flexlash.tolerance.lines import FAULTS, STEPS, Lines
@@ -113,7 +113,7 @@ def share_interval(share: Array, error: Array, factor: float = 1.96) -> tuple[Ar
     """Return the ends of intervals of shares, ± factor standard errors on the normal scale, never below 0."""
     inside = np.clip(share, LEAST, 1 - LEAST)
     score = ndtri(inside)
-    reach = factor * error * np.sqrt(2 * np.pi) * np.exp(score * score / 2)
+    reach = factor * error / normal_density(score)
     low, high = ndtr(score - reach), ndtr(score + reach)
     return np.where(share <= LEAST, 0.0, low), np.where(share >= 1 - LEAST, 1.0, high)
 

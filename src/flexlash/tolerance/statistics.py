@@ -14,7 +14,7 @@ from scipy.special import ndtr, ndtri
 from flexlash.arrays import Array
 from flexlash.tolerance.capability import ppk_normal, ppk_upper
 from flexlash.tolerance.course import Inputs, RowModel, Rows, course_of
-from flexlash.tolerance.crossings import crossing_at, moments_of, quantiles_of
+from flexlash.tolerance.crossings import crossing_at, moments_of, normal_density, quantiles_of
 from flexlash.tolerance.line_nets import line_net, mirrored_net
 from flexlash.tolerance.line_spread import (
     SETTLED,
@@ -192,11 +192,10 @@ class _Reading:
         order = np.argsort(self._levels.probabilities)
         scores = ndtri(self._levels.probabilities[order])
         density = self._quantiles.density[order][:, rows]
-        weight = np.exp(-scores * scores / 2) / np.sqrt(2 * np.pi)
         knots = QuantileCurve(
             scores=scores,
             outputs=self._quantiles.output[order][:, rows],
-            rises=weight[:, None] / np.maximum(density, np.finfo(float).tiny),
+            rises=normal_density(scores)[:, None] / np.maximum(density, np.finfo(float).tiny),
         )
         first, last = knots.outputs_at(ndtri(np.array([_HISTOGRAM_CUT, 1 - _HISTOGRAM_CUT])))
         steps = np.linspace(0, 1, HISTOGRAM_BINS + 1)[:, None]
