@@ -15,6 +15,7 @@ MODULES = sorted(SOURCE.rglob("*.py"))
 CORE = {"arrays", "catalogue", "column", "columns", "findings", "result_columns", "tables", "units", "variant"}
 ALLOWED = {
     "mechanics": CORE,
+    "elasticity": CORE | {"mechanics"},
     "tolerance": CORE,
     "submission": CORE | {"tolerance.grades"},
     "assessment": CORE | {"mechanics", "submission", "tolerance"},
@@ -32,7 +33,9 @@ EDGES = {
     "xlsxwriter": {"submission", "report"},
     "pandera": {"submission"},
     "click": {"cli"},
-    "scipy": {"tolerance"},
+    "scipy": {"mechanics", "tolerance"},
+    "skfem": {"elasticity"},
+    "matplotlib": {"report"},
 }
 
 

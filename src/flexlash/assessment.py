@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from flexlash.columns import DIMENSIONS, VARIANTS
-from flexlash.mechanics.nominal import nominal_numbers
+from flexlash.mechanics.nominal import Numbers, nominal_numbers
 from flexlash.submission.headers import plain
 from flexlash.submission.validate import Validated
 from flexlash.tolerance.limits import Limits, LimitsProblem, limits_of, shape_problems
 from flexlash.tolerance.variation import Variation
+from flexlash.units import RPM
 from flexlash.variant import Settings, Variant
 
 __all__ = ["Computed", "assess"]
@@ -18,6 +19,9 @@ __all__ = ["Computed", "assess"]
 _REFINEMENTS = {column.dimension: column.key for column in VARIANTS if column.group == "Refinements"}
 _LEAST, _GREATEST = 1e-12, 10.0
 """Backlash [rad] between which linear elasticity of a steel cup can have a meaning."""
+
+_USUAL_SPEED = 3000 * RPM
+"""Input speed [rad/s] that usual motors reach."""
 
 _CODES = {"impossible": "E314", "untabulated": "E315", "cut": "W405", "overlap": "W409"}
 
@@ -28,7 +32,7 @@ class Computed:
 
     variant: Variant
     limits: dict[str, Limits]
-    nominal: dict[str, float | None]
+    nominal: Numbers
     variation: Variation | None = None
 
 
@@ -49,6 +53,7 @@ def assess(validated: Validated, settings: Settings) -> dict[int, Computed]:
             _add(validated, "E324", variant, "torque_Nm", value=f"{nominal['backlash']:.3g}")
             continue
         _warn_strength(validated, variant, nominal)
+        _warn_stiffness(validated, variant, nominal)
         _warn_calibration(validated, variant)
     return {
         variant.row: Computed(variant=variant, limits=limits[variant.row], nominal=nominal)
@@ -83,11 +88,38 @@ def _details(problem: LimitsProblem) -> Iterator[tuple[str, str]]:
     yield "impossible", "the other radius of the disk" if radius else problem.detail
 
 
-def _warn_strength(validated: Validated, variant: Variant, nominal: dict[str, float | None]) -> None:
-    """Warn when the von Mises stress exceeds the yield strength."""
+def _warn_strength(validated: Validated, variant: Variant, nominal: Numbers) -> None:
+    """Warn when the part yields or buckles."""
     stress, strength = nominal["von_mises"], variant.yield_strength
-    if stress is not None and strength is not None and stress > strength:
-        _add(validated, "W402", variant, "torque_Nm", value=f"{stress / 1e6:.4g}", other=strength / 1e6)
+    if strength is not None and _exceeds(stress, strength):
+        facts = {"value": _megapascals(stress), "other": strength / 1e6, "detail": nominal["governing_section"]}
+        limit = f"{nominal['elastic_limit_torque']:.4g}"
+        _add(validated, "W402", variant, "torque_Nm", limit=limit, **facts)
+    shear, buckling = nominal["wall_shear"], nominal.get("buckling_shear")
+    if _exceeds(shear, buckling):
+        _add(validated, "W411", variant, "torque_Nm", value=_megapascals(shear), other=_megapascals(buckling))
+
+
+def _warn_stiffness(validated: Validated, variant: Variant, nominal: Numbers) -> None:
+    """Warn when the flexspline is softer than drives that contain one, or resonates within usual speeds."""
+    stiffness, listed = nominal["stiffness"], nominal.get("catalogue_stiffness")
+    if _exceeds(listed, stiffness):
+        key = "mean_radius_mm" if "mean_radius" in variant.dimensions else "bore_diameter_mm"
+        size = f"{nominal['catalogue_size']:.0f}"
+        _add(validated, "W412", variant, key, value=f"{stiffness:.4g}", other=listed, detail=size)
+    speed = nominal.get("resonance_speed")
+    if _exceeds(_USUAL_SPEED, speed):
+        facts = {"value": f"{nominal['natural_frequency']:.4g}", "other": f"{float(speed or 0) / RPM:.0f}"}
+        _add(validated, "W415", variant, "load_inertia_kg_m2", **facts)
+
+
+def _exceeds(one: float | str | None, other: float | str | None) -> bool:
+    """Whether both are numbers and the first is the greater."""
+    return isinstance(one, float) and isinstance(other, float) and one > other
+
+
+def _megapascals(stress: float | str | None) -> str:
+    return f"{float(stress or 0) / 1e6:.4g}"
 
 
 def _warn_calibration(validated: Validated, variant: Variant) -> None:

@@ -425,6 +425,34 @@ CATALOGUE = _rules(
         "Each cell is within its bounds, but together they give a backlash below 1e-12 or above 10 rad.",
     ),
     (
+        "E325",
+        "exponent without thickness at hub",
+        "{place}: {name} is empty; a disk with a thickness exponent requires it.",
+        "Enter the thickness at the hub, or clear the exponent.",
+        "A disk that thins as a power of the radius starts from its thickness at the hub.",
+    ),
+    (
+        "E326",
+        "two disk profiles",
+        "{place} {name} = {value} mm: the exponent {other} gives the thickness at every radius already.",
+        "Clear the disk thickness, or the exponent for a straight taper.",
+        "Thickness at hub with a disk thickness is a straight taper; with an exponent it is a power of the radius.",
+    ),
+    (
+        "E327",
+        "fillet on a cone",
+        "{place} {name} = {value} mm: a disk at {other}° to the axis takes no fillet.",
+        "Clear the fillet, or the cone angle for a flat disk.",
+        "The fillets of the model are quarter circles between a flat disk and its hub or wall.",
+    ),
+    (
+        "E328",
+        "junction fillet wider than the bore",
+        "{place} {name} = {value} mm: at most the radius of the bore, {other:g} mm, is required.",
+        "Check the fillet radius and its unit.",
+        "A fillet between disk and wall cannot reach beyond the axis.",
+    ),
+    (
         "W401",
         "disk does not meet the wall",
         "{place} {name} = {value} mm differs from the mean radius {other:g} mm.",
@@ -434,8 +462,8 @@ CATALOGUE = _rules(
     (
         "W402",
         "beyond yield",
-        "{place}: the von Mises stress {value} MPa exceeds the yield strength {other:g} MPa.",
-        "Lower the torque, thicken the part, or choose a stronger material.",
+        "{place}: von Mises stress {value} MPa in the {detail} exceeds the yield strength {other:g} MPa.",
+        "Keep the torque below {limit} N·m, thicken the {detail}, or choose a stronger material.",
         "Linear elasticity no longer holds: the real wind-up is greater and part of it stays.",
     ),
     (
@@ -494,6 +522,52 @@ CATALOGUE = _rules(
         "{place} {name} = {value} equals the lower deviation: the dimension is shifted, but does not scatter.",
         "For ± {value} enter -{value} as the lower deviation.",
         "Deviations are signed: +0.02 and +0.02 mean that every part is larger by 0.02.",
+    ),
+    (
+        "W411",
+        "wall buckles",
+        "{place}: the wall shear {value} MPa exceeds the buckling stress {other} MPa.",
+        "Lower the torque, shorten the cylinder or thicken the wall.",
+        "A thin cylinder under torque folds into oblique waves at 0.747 · 0.67 E (r/t)^(−5/4) (l/r)^(−½), NASA "
+        "SP-8007. Results say whether the cylinder is within the range of that formula.",
+    ),
+    (
+        "W412",
+        "softer than a whole drive",
+        "{place}: stiffness {value} N·m/rad, but whole drives of size {detail} reach {other:g} N·m/rad.",
+        "Check radius, thicknesses and their units, and the elastic constants.",
+        "A flexspline alone is stiffer than the drive that contains it. Compared with the least K3 of a maker's "
+        "catalogue at the nearest size, which is the mean diameter over 2.54 mm.",
+    ),
+    (
+        "W413",
+        "no elasticity check",
+        "{place} {name} = {value}: {detail}, so that there is no closed half-section to check.",
+        "Check the value; the wind-up by the formula stands beside without a check.",
+        "The check by two-dimensional elasticity needs a part that could be made: disk, wall and fillets must meet.",
+    ),
+    (
+        "W414",
+        "elasticity differs",
+        "{place}: the wind-up is {value} % off two-dimensional elasticity; the spread keeps the formula.",
+        "Trust the elasticity result for the nominal value, and mind the difference in the spread.",
+        "Short, thick or strongly stepped parts depart from the thin shell of the formula. Calibrations are part of "
+        "the difference. More than 2 % is reported.",
+    ),
+    (
+        "W415",
+        "resonance within usual input speeds",
+        "{place}: the load's natural frequency {value} Hz is met at {other} rpm of the input.",
+        "Avoid dwelling near that input speed, stiffen the flexspline or reduce the inertia.",
+        "A strain wave gear's torque ripples twice per turn of its input. Bearing and teeth lower the frequency "
+        "further. Speeds below 3000 rpm are reported.",
+    ),
+    (
+        "W416",
+        "fillets overlap on the disk",
+        "{place} {name} = {value} mm: with the hub fillet it exceeds the width of the disk inside, {other:g} mm.",
+        "Check both fillet radii and the disk inner radius.",
+        "Such a part cannot be made as drawn. The wind-up adds both fillets by formula; it is an approximation.",
     ),
     (
         "I501",

@@ -141,6 +141,25 @@ VARIANTS = (
         group="Refinements",
     ),
     _variant(
+        "disk_thickness_exponent",
+        "Disk thickness exponent n [-]",
+        "Cup only. Disk that thins as t = t_hub (r_ci/r)^n from the thickness at hub; leave the disk thickness blank. "
+        "2: the same shear stress at every radius.",
+        quantity="ratio",
+        minimum=0,
+        maximum=10,
+        group="Refinements",
+    ),
+    _variant(
+        "disk_cone_angle_deg",
+        "Disk cone angle [°]",
+        "Angle between a conical disk or flange and the axis; thicknesses are normal to it. Blank or 90: flat.",
+        quantity="angle",
+        minimum=30,
+        maximum=90,
+        group="Refinements",
+    ),
+    _variant(
         "hub_fillet_radius_mm",
         "Hub fillet radius [mm]",
         "Cup only. Fillet between hub and inner face of the disk. Blank or 0: sharp corner.",
@@ -171,6 +190,14 @@ VARIANTS = (
         "Rated torque [N·m]",
         "Gives the lost motion at a few per cent of this torque (Settings: lost_motion_percent).",
         **_TORQUE,
+        group="Requirements",
+    ),
+    _variant(
+        "load_inertia_kg_m2",
+        "Load inertia J [kg·m²]",
+        "Moment of inertia on the output. Gives the natural frequency of the load on the flexspline.",
+        quantity="inertia",
+        **_POSITIVE,
         group="Requirements",
     ),
     _variant(
@@ -278,7 +305,7 @@ SETTINGS = (
 DIMENSIONS: dict[str, Column] = {
     column.dimension: column
     for column in (*VARIANTS, *MATERIALS[1:4], *SETTINGS[-2:])
-    if column.is_number and column.dimension not in {"rated_torque", "backlash_limit"}
+    if column.is_number and column.dimension not in {"rated_torque", "load_inertia_kg_m2", "backlash_limit"}
 }
 """Every dimension that may have a tolerance, with the column its nominal value stands in."""
 

@@ -10,7 +10,7 @@ import polars as pl
 
 from flexlash.result_columns import result_columns
 from flexlash.tolerance.variation import Variation
-from flexlash.units import ARCMIN
+from flexlash.units import ARCMIN, RPM
 from flexlash.variant import Variant
 
 __all__ = ["result_record", "results_frame"]
@@ -18,6 +18,9 @@ __all__ = ["result_record", "results_frame"]
 _COLUMNS = result_columns(cross_check=True)
 _STEMS = {column.key: (column.dimension, column.si_unit.si) for column in _COLUMNS if column.quantity} | {
     "stiffness_Nm_per_rad": ("stiffness", 1.0),
+    "catalogue_stiffness_Nm_per_rad": ("catalogue_stiffness", 1.0),
+    "natural_frequency_Hz": ("natural_frequency", 1.0),
+    "resonance_speed_rpm": ("resonance_speed", RPM),
     "stiffness_Nm_per_arcmin": ("stiffness", 1 / ARCMIN),
     "ppm_over_limit": ("probability_over_limit", 1e-6),
     "ppm_over_limit_low": ("probability_over_limit_low", 1e-6),
@@ -26,7 +29,9 @@ _STEMS = {column.key: (column.dimension, column.si_unit.si) for column in _COLUM
 """Result key → its SI number's name and the size of the printed unit."""
 
 
-def result_record(variant: Variant, nominal: Mapping[str, float | None], variation: Variation | None) -> dict[str, Any]:
+def result_record(
+    variant: Variant, nominal: Mapping[str, float | str | None], variation: Variation | None
+) -> dict[str, Any]:
     """Return the Results of a computed variant in printed units."""
     numbers: dict[str, Any] = dict(nominal)
     if variation is not None:

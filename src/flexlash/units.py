@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-__all__ = ["ARCMIN", "ARCSEC", "Unit", "find_unit"]
+__all__ = ["ARCMIN", "ARCSEC", "RPM", "Unit", "find_unit"]
 
 ARCMIN = math.pi / 180 / 60
 ARCSEC = ARCMIN / 60
+RPM = math.pi / 30
 
 _INCH = 0.0254
 _POUND_FORCE = 4.4482216152605
@@ -63,6 +64,14 @@ _TABLE: dict[str, dict[str, float]] = {
         "arcmin": ARCMIN,
         "arcsec": ARCSEC,
     },
+    "inertia": {
+        "kg·m²": 1.0,
+        "kg·cm²": 1e-4,
+        "kg·mm²": 1e-6,
+        "g·cm²": 1e-7,
+        "lb·in²": 0.45359237 * _INCH**2,
+        "lb·ft²": 0.45359237 * (12 * _INCH) ** 2,
+    },
     "density": {"kg/m³": 1.0, "g/cm³": 1e3, "kg/dm³": 1e3, "lb/in³": 0.45359237 / _INCH**3},
     "ratio": {"-": 1.0, "%": 1e-2},
 }
@@ -96,6 +105,12 @@ _ALIASES = {
     "″": "arcsec",
     "N/mm2": "N/mm²",
     "kN/mm2": "kN/mm²",
+    "kgm2": "kg·m²",
+    "kgcm2": "kg·cm²",
+    "kgmm2": "kg·mm²",
+    "gcm2": "g·cm²",
+    "lbin2": "lb·in²",
+    "lbft2": "lb·ft²",
     "kg/m3": "kg/m³",
     "g/cm3": "g/cm³",
     "kg/dm3": "kg/dm³",

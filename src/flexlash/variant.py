@@ -22,7 +22,8 @@ class Variant:
     """One valid row of Variants in SI; `dimensions` holds those it has itself, by name.
 
     A dimension that is blank because it equals another is absent: mean_radius when a bore is given,
-    disk_thickness, disk radii, a fillet of 0, E and ν when the material gives G.
+    disk_thickness, disk radii, a fillet of 0, E and ν when the material gives G. `youngs_modulus` and
+    `poisson_ratio` are those of the material in any case, for what does not follow from G.
     """
 
     row: int
@@ -32,8 +33,11 @@ class Variant:
     tolerance_class: str
     dimensions: dict[str, float]
     rated_torque: float | None = None
+    load_inertia: float | None = None
     backlash_limit: float | None = None
     yield_strength: float | None = None
+    youngs_modulus: float | None = None
+    poisson_ratio: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

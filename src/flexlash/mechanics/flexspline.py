@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
+from scipy.special import expm1, xlogy
 
 from flexlash.arrays import Array
 from flexlash.mechanics import windup
 
-__all__ = ["CYLINDER_SEGMENTS", "DISK_SEGMENTS", "backlash", "modulus_of", "radius_of", "windups"]
+__all__ = [
+    "CYLINDER_SEGMENTS",
+    "DISK_SEGMENTS",
+    "backlash",
+    "disk_radii",
+    "disk_thickness",
+    "modulus_of",
+    "radius_of",
+    "windups",
+]
 
 CYLINDER_SEGMENTS = ("rim", "wall", "junction_fillet")
 DISK_SEGMENTS = ("disk_body", "hub_fillet")
@@ -49,6 +60,46 @@ def modulus_of(dimensions: Dimensions) -> Array:
     return windup.shear_modulus(dimensions["youngs_modulus"], dimensions["poisson_ratio"])
 
 
+def disk_radii(dimensions: Dimensions) -> tuple[Array | float, Array | float]:
+    """Inner and outer radius of the disk or flange [m]; a blank one is the mean radius.
+
+    Equation: r_ci and r_co as given, else r_m
+    Arguments: dimensions in SI by name as for `windups`.
+    Valid: cups and hats.
+    Source: geometry.
+
+    >>> inner, outer = disk_radii({"mean_radius": 0.08, "disk_inner_radius": 0.04})
+    >>> float(inner), float(outer)
+    (0.04, 0.08)
+    """
+    mean_radius = radius_of(dimensions)
+    return dimensions.get("disk_inner_radius", mean_radius), dimensions.get("disk_outer_radius", mean_radius)
+
+
+def disk_thickness(dimensions: Dimensions, radius: Array | float) -> Array | float:
+    """Thickness of the disk itself at a radius, normal to it and without fillets [m].
+
+    Equation: t; or a straight line from t_h at r_ci to t at r_co; or t_h (r_ci/r)^n
+    Arguments: dimensions in SI by name as for `windups`; radius [m], of any one shape with them.
+    Valid: r_ci ≤ r ≤ r_co.
+    Source: geometry.
+
+    >>> tapered = {"wall_thickness": 0.0016, "mean_radius": 0.08, "disk_inner_radius": 0.04,
+    ...            "disk_hub_thickness": 0.004}
+    >>> round(float(disk_thickness(tapered, 0.06)), 9)
+    0.0028
+    """
+    if "disk_hub_thickness" not in dimensions:
+        return dimensions.get("disk_thickness", dimensions["wall_thickness"])
+    hub_thickness, inner = dimensions["disk_hub_thickness"], dimensions["disk_inner_radius"]
+    if "disk_thickness_exponent" in dimensions:
+        # expm1 of SciPy, since NumPy's exp may round otherwise at another place of an array.
+        return hub_thickness * (1 + expm1(-xlogy(dimensions["disk_thickness_exponent"], radius / np.asarray(inner))))
+    thickness = dimensions.get("disk_thickness", dimensions["wall_thickness"])
+    outer = dimensions.get("disk_outer_radius", radius_of(dimensions))
+    return hub_thickness + (thickness - hub_thickness) / (outer - inner) * (radius - inner)
+
+
 def _cylinder_integrals(dimensions: Dimensions, mean_radius: Array) -> dict[str, Array]:
     """Integrals of rim, plain wall and junction fillet [1/m³]."""
     thickness = dimensions["wall_thickness"]
@@ -65,23 +116,26 @@ def _cylinder_integrals(dimensions: Dimensions, mean_radius: Array) -> dict[str,
     return integrals | {"wall": windup.wall_integral(plain, mean_radius, thickness)}
 
 
-def _disk_integrals(dimensions: Dimensions, mean_radius: Array) -> dict[str, Array]:
+def _disk_integrals(dimensions: Dimensions) -> dict[str, Array]:
     """Integrals of disk or flange and of the hub fillet [1/m³]; blanks are the same dimension elsewhere."""
-    inner = dimensions.get("disk_inner_radius", mean_radius)
-    outer = dimensions.get("disk_outer_radius", mean_radius)
-    thickness = dimensions.get("disk_thickness", dimensions["wall_thickness"])
-    hub_thickness = dimensions.get("disk_hub_thickness", thickness)
+    inner, outer = disk_radii(dimensions)
     integrals = {}
-    start, start_thickness = inner, hub_thickness
+    start = inner
     if "hub_fillet_radius" in dimensions:
         fillet = dimensions["hub_fillet_radius"]
-        slope = (thickness - hub_thickness) / (outer - inner) if "disk_hub_thickness" in dimensions else 0.0
-        integrals["hub_fillet"] = windup.hub_fillet_integral(inner, fillet, hub_thickness, slope)
-        start, start_thickness = inner + fillet, hub_thickness + slope * fillet
-    if "disk_hub_thickness" in dimensions:
-        body = windup.tapered_disk_integral(start, outer, start_thickness, thickness)
+        thickness_at = partial(disk_thickness, dimensions)
+        integrals["hub_fillet"] = windup.hub_fillet_integral(inner, fillet, thickness_at)
+        start = inner + fillet
+    if "disk_thickness_exponent" in dimensions:
+        exponent = dimensions["disk_thickness_exponent"]
+        body = windup.power_law_disk_integral(start, outer, disk_thickness(dimensions, start), exponent)
+    elif "disk_hub_thickness" in dimensions:
+        thickness = dimensions.get("disk_thickness", dimensions["wall_thickness"])
+        body = windup.tapered_disk_integral(start, outer, disk_thickness(dimensions, start), thickness)
     else:
-        body = windup.annulus_integral(start, outer, thickness)
+        body = windup.annulus_integral(start, outer, disk_thickness(dimensions, start))
+    if "disk_cone_angle" in dimensions:
+        body = windup.cone_integral(body, dimensions["disk_cone_angle"])
     return integrals | {"disk_body": body}
 
 
@@ -103,7 +157,7 @@ def windups(flexspline_type: str, dimensions: Dimensions) -> dict[str, Array]:
     mean_radius = radius_of(dimensions)
     integrals = _cylinder_integrals(dimensions, mean_radius)
     if flexspline_type != "cylinder":
-        integrals |= _disk_integrals(dimensions, mean_radius)
+        integrals |= _disk_integrals(dimensions)
     torque, modulus = dimensions["torque"], modulus_of(dimensions)
     calibration = {
         segment: dimensions.get("cylinder_calibration" if segment in CYLINDER_SEGMENTS else "disk_calibration", 1.0)

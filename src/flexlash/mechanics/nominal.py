@@ -4,20 +4,27 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 
 from flexlash.arrays import Array
 from flexlash.mechanics import flexspline, strength, windup
+from flexlash.mechanics.stiffness import catalogue_stiffness, natural_frequency, resonance_speed
 from flexlash.variant import Variant
 
-__all__ = ["nominal_numbers"]
+__all__ = ["Numbers", "nominal_numbers"]
 
 
-def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> list[dict[str, float | None]]:
+Numbers: TypeAlias = dict[str, float | str | None]
+"""Numbers [SI] and words of one variant by result key without unit."""
+
+
+def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> list[Numbers]:
     """Nominal results of each variant [SI] by result key without unit.
 
-    Equation: as in `flexspline.windups`, `windup.wall_integral`, `strength`; lost motion 2 p T_rated / K
+    Equation: as in `flexspline.windups`, `strength`, `stiffness`; lost motion 2 p T_rated / K
     Arguments: variants, and lost_motion_share p [-] of the rated torque at which lost motion is stated.
     Valid: as for the functions it calls; absurd dimensions give infinite numbers or NaN, without a warning.
     Source: as for the functions it calls.
@@ -32,25 +39,23 @@ def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> li
     groups: dict[tuple[str, frozenset[str]], list[int]] = defaultdict(list)
     for place, variant in enumerate(variants):
         groups[variant.flexspline_type, frozenset(variant.dimensions)].append(place)
-    numbers: list[dict[str, float | None]] = [{} for _ in variants]
+    numbers: list[Numbers] = [{} for _ in variants]
     for (flexspline_type, _), places in groups.items():
         first = variants[places[0]]
         dimensions = {
             name: np.array([variants[place].dimensions[name] for place in places]) for name in first.dimensions
         }
         with np.errstate(all="ignore"):
-            columns = _group(flexspline_type, dimensions)
+            columns = _windups(flexspline_type, dimensions) | _stresses(flexspline_type, dimensions)
         for offset, place in enumerate(places):
             numbers[place] = {key: float(values[offset]) for key, values in columns.items()}
-            rated = variants[place].rated_torque
-            if rated is not None:
-                stiffness = columns["stiffness"][offset]
-                numbers[place]["lost_motion"] = float(2 * lost_motion_share * rated / stiffness)
+            with np.errstate(all="ignore"):
+                numbers[place] |= _beside(variants[place], numbers[place], lost_motion_share)
     return numbers
 
 
-def _group(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Array]:
-    """Return the nominal results of variants of one shape, each of shape (variants,)."""
+def _windups(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Array]:
+    """Return wind-ups and what follows from them for variants of one shape, each of shape (variants,)."""
     segments = flexspline.windups(flexspline_type, dimensions)
     torque, radius = dimensions["torque"], flexspline.radius_of(dimensions)
     nothing = np.zeros(len(torque))
@@ -59,33 +64,83 @@ def _group(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Arra
     total = cylinder + disk
     plain_wall = windup.wall_integral(dimensions["cylinder_length"], radius, dimensions["wall_thickness"])
     modulus = flexspline.modulus_of(dimensions)
-    wall_shear = strength.shear_stress(torque, radius, dimensions["wall_thickness"])
-    columns = {
+    cylinder_only = 2 * windup.segment_windup(torque, modulus, plain_wall)
+    two_term = cylinder_only
+    if flexspline_type != "cylinder":
+        inner, outer = flexspline.disk_radii(dimensions)
+        even_disk = windup.annulus_integral(inner, outer, flexspline.disk_thickness(dimensions, outer))
+        two_term = cylinder_only + 2 * windup.segment_windup(torque, modulus, even_disk)
+    return {
         "cylinder_windup": cylinder,
         "disk_windup": disk,
         "windup": total,
         "backlash": flexspline.backlash(flexspline_type, dimensions),
         "disk_share": disk / total,
-        "cylinder_only_backlash": 2 * windup.segment_windup(torque, modulus, plain_wall),
+        "cylinder_only_backlash": cylinder_only,
+        "two_term_backlash": two_term,
         "stiffness": torque / total,
-        "wall_shear": wall_shear,
+        "mean_radius": radius,
+        "wall_ratio": dimensions["wall_thickness"] / radius,
         **{f"{name}_windup": angle for name, angle in segments.items()},
     }
-    greatest = wall_shear
+
+
+def _stresses(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Array]:
+    """Return the greatest shear and von Mises stress of each section for variants of one shape."""
+    torque, radius, wall = dimensions["torque"], flexspline.radius_of(dimensions), dimensions["wall_thickness"]
+    shear = {"wall": strength.shear_stress(torque, radius, wall)}
+    found = {}
+    if "rim_length" in dimensions:
+        rim = dimensions["rim_thickness"]
+        shear["rim"] = strength.shear_stress(torque, radius + (rim - wall) / 2, rim)
     if flexspline_type != "cylinder":
-        columns["hub_shear"] = _hub_shear(dimensions, radius)
-        greatest = np.maximum(wall_shear, columns["hub_shear"])
-    return columns | {"von_mises": strength.von_mises_stress(greatest)}
+        inner, outer = flexspline.disk_radii(dimensions)
+        shear["hub"], found["hub_shear_radius"] = strength.disk_shear(
+            torque=torque,
+            inner_radius=inner,
+            outer_radius=outer,
+            fillet_radius=dimensions.get("hub_fillet_radius", np.zeros(len(torque))),
+            thickness_at=partial(flexspline.disk_thickness, dimensions),
+        )
+    stress = {section: strength.von_mises_stress(values) for section, values in shear.items()}
+    found |= {f"{section}_shear": values for section, values in shear.items()}
+    found |= {f"{section}_von_mises": values for section, values in stress.items()}
+    return found | {"von_mises": np.max(list(stress.values()), axis=0)}
 
 
-def _hub_shear(dimensions: dict[str, Array], radius: Array) -> Array:
-    """Greatest shear stress in the disk [Pa], of shape (variants,)."""
-    thickness = dimensions.get("disk_thickness", dimensions["wall_thickness"])
-    return strength.hub_shear(
-        torque=dimensions["torque"],
-        inner_radius=dimensions.get("disk_inner_radius", radius),
-        outer_radius=dimensions.get("disk_outer_radius", radius),
-        hub_thickness=dimensions.get("disk_hub_thickness", thickness),
-        thickness=thickness,
-        fillet_radius=dimensions.get("hub_fillet_radius", np.zeros(len(radius))),
-    )
+_SECTIONS = {"wall": "wall", "rim": "tooth rim", "hub": "disk"}
+_RANGES = {-1: "shorter", 0: "yes", 1: "longer"}
+
+
+def _beside(variant: Variant, numbers: Numbers, lost_motion_share: float) -> Numbers:
+    """Return what asks for more than dimensions and torque: material strength, rated torque, inertia, catalogue."""
+    found: Numbers = {}
+    stiffness, torque = _of(numbers, "stiffness"), variant.dimensions["torque"]
+    stress = {section: numbers.get(f"{section}_von_mises") or 0.0 for section in _SECTIONS}
+    found["governing_section"] = _SECTIONS[max(stress, key=lambda section: stress[section])]
+    if variant.yield_strength is not None:
+        limit = strength.elastic_limit_torque(torque, _of(numbers, "von_mises"), variant.yield_strength)
+        found["elastic_limit_torque"] = float(limit)
+    wall, length = variant.dimensions["wall_thickness"], variant.dimensions["cylinder_length"]
+    radius = _of(numbers, "mean_radius")
+    if variant.youngs_modulus is not None and variant.poisson_ratio is not None:
+        found["buckling_shear"] = float(strength.buckling_shear(variant.youngs_modulus, radius, wall, length))
+        within = int(strength.buckling_range(variant.poisson_ratio, radius, wall, length))
+        found["buckling_range"] = _RANGES[within]
+    if variant.rated_torque is not None:
+        found["lost_motion"] = 2 * lost_motion_share * variant.rated_torque / stiffness
+    if variant.load_inertia is not None:
+        frequency = natural_frequency(stiffness, variant.load_inertia)
+        found |= {"natural_frequency": frequency, "resonance_speed": resonance_speed(frequency)}
+    listed = catalogue_stiffness(radius)
+    if listed and variant.flexspline_type != "cylinder":
+        found |= {"catalogue_size": float(listed[0]), "catalogue_stiffness": listed[1]}
+    return found
+
+
+def _of(numbers: Numbers, key: str) -> float:
+    """Return a number that every variant has."""
+    value = numbers[key]
+    if not isinstance(value, float):
+        raise TypeError(key)
+    return value

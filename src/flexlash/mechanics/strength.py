@@ -1,4 +1,4 @@
-"""Shear stresses of wall and disk and the von Mises stress they make."""
+"""Shear stresses of wall, rim and disk, the von Mises stress they make, and the torque at which a thin wall buckles."""
 
 from __future__ import annotations
 
@@ -8,10 +8,26 @@ import numpy as np
 
 from flexlash.arrays import Array
 
-__all__ = ["hub_shear", "shear_stress", "von_mises_stress"]
+__all__ = [
+    "buckling_range",
+    "buckling_shear",
+    "disk_shear",
+    "elastic_limit_torque",
+    "shear_stress",
+    "von_mises_stress",
+]
 
 _STATIONS = 41
 _PASSES = 3
+
+_KNOCK_DOWN = 0.67
+"""γ^¾ of NASA SP-8007 for cylinders in torsion."""
+
+_LEAST_CURVATURE = 50.0
+"""γZ above which a cylinder counts as moderately long."""
+
+_GREATEST_SLENDERNESS = 6.5
+"""(l/r)/√(r/t) above which two waves around a long tube buckle earlier than the formula says."""
 
 
 def shear_stress(torque: Array | float, radius: Array | float, thickness: Array | float) -> Array:
@@ -28,58 +44,60 @@ def shear_stress(torque: Array | float, radius: Array | float, thickness: Array 
     return np.asarray(torque / (2 * np.pi * radius * radius * thickness))
 
 
-def hub_shear(
+def disk_shear(
     *,
     torque: Array | float,
     inner_radius: Array | float,
     outer_radius: Array | float,
-    hub_thickness: Array | float,
-    thickness: Array | float,
     fillet_radius: Array | float,
-) -> Array:
-    """Greatest shear stress in the disk [Pa].
+    thickness_at: Callable[[Array], Array | float],
+) -> tuple[Array, Array]:
+    """Greatest shear stress in the disk [Pa] and the radius where it acts [m].
 
-    Equation: max over r of T / (2π r² t), t linear from hub_thickness to thickness plus the hub fillet
-    Arguments: torque [N·m]; inner_radius, outer_radius, hub_thickness, thickness and fillet_radius (0: none)
-        [m], of shape (variants,).
-    Valid: thin disk; found within 1e-6 by three passes over ever finer stations.
+    Equation: max over r of T / (2π r² t), t the disk's own thickness plus the hub fillet
+    Arguments: torque [N·m]; inner_radius, outer_radius and fillet_radius (0: none) [m], of shape (variants,);
+        thickness_at gives the disk's own thickness [m] at radii of shape (stations, variants).
+    Valid: thin disk; the stress is found within 1e-6 by three passes over ever finer stations.
     Source: equilibrium of a ring.
 
-    >>> stress = hub_shear(torque=800.0, inner_radius=0.04, outer_radius=0.08, hub_thickness=0.0016,
-    ...                    thickness=0.0016, fillet_radius=0.0)
-    >>> f"{stress / 1e6:.3f}"
-    '49.736'
+    >>> stress, radius = disk_shear(torque=800.0, inner_radius=0.04, outer_radius=0.08, fillet_radius=0.0,
+    ...                             thickness_at=lambda _: 0.0016)
+    >>> f"{stress / 1e6:.3f} at {radius:.3f}"
+    '49.736 at 0.040'
     """
     width = np.atleast_1d(np.asarray(outer_radius) - inner_radius)
     fillet = np.minimum(fillet_radius, width)
 
-    def in_fillet(fraction: Array) -> Array:
+    def in_fillet(fraction: Array) -> tuple[Array, Array]:
         angle = fraction * np.pi / 2
         return at(fillet * (1 - np.cos(angle)), fillet * (1 - np.sin(angle)))
 
-    def in_body(fraction: Array) -> Array:
+    def in_body(fraction: Array) -> tuple[Array, Array]:
         return at(fillet + (width - fillet) * fraction, 0.0)
 
-    def at(advance: Array, added: Array | float) -> Array:
-        linear = hub_thickness + (np.asarray(thickness) - hub_thickness) * advance / width
-        return shear_stress(torque, inner_radius + advance, linear + added)
+    def at(advance: Array, added: Array | float) -> tuple[Array, Array]:
+        radius = inner_radius + advance
+        return shear_stress(torque, radius, thickness_at(radius) + added), radius
 
-    greatest = np.maximum(_greatest(in_fillet, width.shape), _greatest(in_body, width.shape))
-    return greatest.reshape(np.shape(torque * np.asarray(inner_radius)))
+    shape = np.shape(torque * np.asarray(inner_radius))
+    ring, body = _greatest(in_fillet, width.shape), _greatest(in_body, width.shape)
+    in_ring = ring[0] > body[0]
+    stress, radius = (np.where(in_ring, one, other).reshape(shape) for one, other in zip(ring, body, strict=True))
+    return stress, radius
 
 
-def _greatest(curve: Callable[[Array], Array], shape: tuple[int, ...]) -> Array:
-    """Return the greatest value of smooth curves over [0, 1], each narrowed down between its best stations."""
+def _greatest(curve: Callable[[Array], tuple[Array, Array]], shape: tuple[int, ...]) -> tuple[Array, Array]:
+    """Return the greatest stress of smooth curves over [0, 1] and its radius, narrowed down to the best stations."""
     low, high = np.zeros(shape), np.ones(shape)
     stations = np.linspace(0, 1, _STATIONS).reshape(-1, *(1 for _ in shape))
     for _ in range(_PASSES):
         places = low + (high - low) * stations
-        values = curve(places)
-        best = np.argmax(values, axis=0)
+        stresses, radii = curve(places)
+        best = np.argmax(stresses, axis=0)[np.newaxis]
         step = (high - low) / (_STATIONS - 1)
-        centre = np.take_along_axis(places, best[np.newaxis], axis=0)[0]
+        centre = np.take_along_axis(places, best, axis=0)[0]
         low, high = np.maximum(centre - step, 0.0), np.minimum(centre + step, 1.0)
-    return np.asarray(values.max(axis=0))
+    return np.take_along_axis(stresses, best, axis=0)[0], np.take_along_axis(radii, best, axis=0)[0]
 
 
 def von_mises_stress(shear: Array | float) -> Array:
@@ -94,3 +112,64 @@ def von_mises_stress(shear: Array | float) -> Array:
     '86.145'
     """
     return np.asarray(np.sqrt(3) * shear)
+
+
+def elastic_limit_torque(torque: Array | float, stress: Array | float, yield_strength: Array | float) -> Array:
+    """Torque at which the governing section begins to yield [N·m].
+
+    Equation: T_el = T σ_y / σ
+    Arguments: torque T [N·m], its greatest von Mises stress σ [Pa], yield_strength σ_y [Pa], of any one shape.
+    Valid: stress proportional to torque; without notch factors.
+    Source: von Mises yield criterion.
+
+    >>> round(float(elastic_limit_torque(800.0, 86.145e6, 1080e6)))
+    10030
+    """
+    return np.asarray(torque * np.asarray(yield_strength) / stress)
+
+
+def buckling_shear(
+    youngs_modulus: Array | float, radius: Array | float, thickness: Array | float, length: Array | float
+) -> Array:
+    """Shear stress at which a thin cylinder under torque buckles [Pa].
+
+    Equation: τ_cr = 0.747 γ^¾ E (r/t)^(−5/4) (l/r)^(−½), γ^¾ = 0.67
+    Arguments: youngs_modulus E [Pa]; radius r, thickness t and length l [m], of any one shape.
+    Valid: moderately long cylinders with simply supported ends, see `buckling_range`; for shorter ones it is low.
+    Source: NASA SP-8007, torsion of isotropic cylinders, with its knock-down factor.
+
+    >>> f"{buckling_shear(211e9, 0.08, 0.0016, 0.16) / 1e6:.1f}"
+    '561.6'
+    """
+    slender = np.sqrt(np.asarray(radius) / thickness)
+    return np.asarray(
+        0.747
+        * _KNOCK_DOWN
+        * youngs_modulus
+        / (slender * slender * np.sqrt(slender))
+        / np.sqrt(length / np.asarray(radius))
+    )
+
+
+def buckling_range(
+    poisson_ratio: Array | float, radius: Array | float, thickness: Array | float, length: Array | float
+) -> Array:
+    """Whether the buckling formula is meant for a cylinder [-]: −1 it is shorter, 0 yes, 1 it is longer.
+
+    Equation: γZ > 50 with Z = l² √(1 − ν²)/(r t), γ = 0.67^(4/3); and l/r < 6.5 √(r/t)
+    Arguments: poisson_ratio ν [-]; radius r, thickness t and length l [m], of any one shape.
+    Valid: any tube.
+    Source: NASA SP-8007; the upper end is where Donnell's long tube buckles at the same stress.
+
+    >>> int(buckling_range(0.3, 0.08, 0.0016, 0.16)), int(buckling_range(0.3, 0.08, 0.0016, 0.08))
+    (0, -1)
+    """
+    curvature = (
+        np.asarray(length)
+        * length
+        * np.sqrt(1 - np.asarray(poisson_ratio) * poisson_ratio)
+        / (radius * np.asarray(thickness))
+    )
+    short = curvature * _KNOCK_DOWN ** (4 / 3) <= _LEAST_CURVATURE
+    long = np.asarray(length) / radius >= _GREATEST_SLENDERNESS * np.sqrt(np.asarray(radius) / thickness)
+    return np.asarray(np.where(short, -1, np.where(long, 1, 0)))

@@ -29,6 +29,9 @@ class Relation:
         return {self.key, *self.broken.meta.root_names()}
 
 
+_FLAT = 90.0
+"""Angle between a flat disk and the axis [°]."""
+
 _EDGE = 1e-9
 """Sums of decimals miss an edge [mm] by their last binary digit; so much counts as on it."""
 
@@ -64,6 +67,16 @@ def _foreign(key: str, *types: str) -> Relation:
     )
 
 
+def _fillet_on_a_cone(key: str) -> Relation:
+    """Return the relation that a conical disk has no fillets."""
+    return Relation(
+        code="E327",
+        key=key,
+        broken=_is("cup") & (pl.col("disk_cone_angle_deg") < _FLAT) & (pl.col(key) > 0),
+        facts=lambda row: {"other": f"{row['disk_cone_angle_deg']:g}"},
+    )
+
+
 RELATIONS = (
     Relation(
         code="E301",
@@ -80,6 +93,8 @@ RELATIONS = (
     _foreign("disk_inner_radius_mm", "cylinder"),
     _foreign("disk_outer_radius_mm", "cylinder"),
     _foreign("disk_hub_thickness_mm", "cylinder", "hat"),
+    _foreign("disk_thickness_exponent", "cylinder", "hat"),
+    _foreign("disk_cone_angle_deg", "cylinder"),
     _foreign("hub_fillet_radius_mm", "cylinder", "hat"),
     _foreign("junction_fillet_radius_mm", "cylinder", "hat"),
     Relation(
@@ -120,6 +135,22 @@ RELATIONS = (
         broken=pl.col("rim_thickness_mm").is_not_null() & pl.col("rim_length_mm").is_null(),
     ),
     Relation(
+        code="E325",
+        key="disk_hub_thickness_mm",
+        broken=_is("cup") & pl.col("disk_thickness_exponent").is_not_null() & pl.col("disk_hub_thickness_mm").is_null(),
+    ),
+    Relation(
+        code="E326",
+        key="disk_thickness_mm",
+        broken=_is("cup")
+        & pl.col("disk_thickness_exponent").is_not_null()
+        & pl.col("disk_hub_thickness_mm").is_not_null()
+        & pl.col("disk_thickness_mm").is_not_null(),
+        facts=lambda row: {"other": f"{row['disk_thickness_exponent']:g}"},
+    ),
+    _fillet_on_a_cone("hub_fillet_radius_mm"),
+    _fillet_on_a_cone("junction_fillet_radius_mm"),
+    Relation(
         code="E305",
         key="rim_length_mm",
         broken=pl.col("rim_length_mm") >= pl.col("cylinder_length_mm"),
@@ -145,6 +176,23 @@ RELATIONS = (
         & (pl.col("cylinder_length_mm") > _RIM)
         & (pl.col("junction_fillet_radius_mm") + _RIM > pl.col("cylinder_length_mm") + _EDGE),
         facts=lambda row: {"other": row["cylinder_length_mm"]},
+    ),
+    Relation(
+        code="E328",
+        key="junction_fillet_radius_mm",
+        broken=_is("cup") & (pl.col("junction_fillet_radius_mm") > _RADIUS - pl.col("wall_thickness_mm") / 2 + _EDGE),
+        facts=lambda row: {"other": radius(row) - row["wall_thickness_mm"] / 2},
+    ),
+    Relation(
+        code="W416",
+        key="junction_fillet_radius_mm",
+        broken=_is("cup")
+        & (pl.col("junction_fillet_radius_mm") > 0)
+        & (
+            pl.col("junction_fillet_radius_mm") + pl.col("hub_fillet_radius_mm").fill_null(0)
+            > _RADIUS - pl.col("wall_thickness_mm") / 2 - pl.col("disk_inner_radius_mm") + _EDGE
+        ),
+        facts=lambda row: {"other": radius(row) - row["wall_thickness_mm"] / 2 - row["disk_inner_radius_mm"]},
     ),
     Relation(
         code="W401",

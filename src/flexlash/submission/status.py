@@ -101,10 +101,20 @@ _RULES = (
     ),
     _Rule(
         text="a cylinder has no disk",
-        excel='AND({flexspline_type}="cylinder",COUNTA({disk_thickness_mm}:{disk_hub_thickness_mm})>0)',
+        excel='AND({flexspline_type}="cylinder",COUNTA({disk_thickness_mm}:{disk_cone_angle_deg})>0)',
         holds=lambda row, _: (
             _type(row) == "cylinder" and any(not _blank(row, key) for key in _KEYS if key.startswith("disk_"))
         ),
+    ),
+    _Rule(
+        text="exponent needs the thickness at hub",
+        excel='AND({disk_thickness_exponent}<>"",{disk_hub_thickness_mm}="")',
+        holds=lambda row, _: not _blank(row, "disk_thickness_exponent") and _blank(row, "disk_hub_thickness_mm"),
+    ),
+    _Rule(
+        text="exponent and disk thickness both given",
+        excel='AND({disk_thickness_exponent}<>"",{disk_thickness_mm}<>"")',
+        holds=lambda row, _: not _blank(row, "disk_thickness_exponent") and not _blank(row, "disk_thickness_mm"),
     ),
     _Rule(
         text="hub larger than the disk",

@@ -206,9 +206,10 @@ def _variant(record: dict[str, Any], result: Validated) -> Variant:
     dimensions = {
         column.dimension: record[key] * column.si_unit.si
         for key, column in columns.items()
-        if column.is_number and record[key] is not None and not (column.minimum == 0 and record[key] == 0)
+        if column.is_number and record[key] is not None and not (key.endswith("fillet_radius_mm") and record[key] == 0)
     }
     rated_torque = dimensions.pop("rated_torque", None)
+    load_inertia = dimensions.pop("load_inertia_kg_m2", None)
     backlash_limit = dimensions.pop("backlash_limit", None)
     material = result.materials[plain(record["material"])]
     constants = dict(material.constants)
@@ -222,6 +223,9 @@ def _variant(record: dict[str, Any], result: Validated) -> Variant:
         tolerance_class=record["tolerance_class"] or "standard",
         dimensions=dimensions | constants | result.settings.calibrations,
         rated_torque=rated_torque,
+        load_inertia=load_inertia,
         backlash_limit=backlash_limit,
         yield_strength=material.yield_strength,
+        youngs_modulus=material.constants.get("youngs_modulus"),
+        poisson_ratio=material.constants.get("poisson_ratio"),
     )

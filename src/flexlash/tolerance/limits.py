@@ -136,6 +136,10 @@ def _bounds(name: str) -> tuple[float, float]:
     """Open lower and closed upper bound [SI] that a shape must respect."""
     if name == "poisson_ratio":
         return -1.0, 0.5
+    if name == "disk_thickness_exponent":
+        return -math.inf, math.inf
+    if name == "disk_cone_angle":
+        return 0.0, math.pi
     return 0.0, math.inf
 
 
@@ -147,7 +151,9 @@ def _beyond_bounds(limits: Mapping[str, Limits]) -> Iterator[LimitsProblem]:
         if limit.low <= low + slack:
             yield LimitsProblem(kind="impossible", dimension=name, detail="0")
         elif limit.high > high + slack:
-            yield LimitsProblem(kind="impossible", dimension=name, detail="0.5")
+            yield LimitsProblem(
+                kind="impossible", dimension=name, detail="180°" if name == "disk_cone_angle" else "0.5"
+            )
 
 
 def _ends(variant: Variant, limits: Mapping[str, Limits], name: str) -> tuple[float, float]:

@@ -1,0 +1,79 @@
+"""Torsional stiffness of the flexspline beside that of whole drives, and the vibration of a load on it."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+from flexlash import tables
+
+__all__ = ["catalogue_stiffness", "natural_frequency", "resonance_speed"]
+
+_MILLIMETRES_PER_SIZE = 2.54
+"""A maker's size counts tenths of an inch of pitch diameter."""
+
+_WAVES = 2
+"""Meshing waves, and so torque ripples, per turn of the wave generator."""
+
+
+def natural_frequency(stiffness: float, inertia: float) -> float:
+    """Natural frequency of a load on the flexspline, the other end held [Hz].
+
+    Equation: f = √(K/J) / 2π
+    Arguments: stiffness K [N·m/rad], inertia J of the load on the output [kg·m²].
+    Valid: flexspline without mass; an upper bound, since bearing, teeth and hub bolts yield as well.
+    Source: one-mass oscillator.
+
+    >>> f"{natural_frequency(1.491835e6, 1.0):.2f}"
+    '194.39'
+    """
+    return math.sqrt(stiffness / inertia) / (2 * math.pi)
+
+
+def resonance_speed(frequency: float) -> float:
+    """Speed of the wave generator at which its ripple meets a natural frequency [rad/s].
+
+    Equation: ω = 2π f / 2
+    Arguments: frequency f [Hz].
+    Valid: kinematic error at two waves per turn of the wave generator, its strongest order.
+    Source: kinematic error of strain wave gears.
+
+    >>> f"{resonance_speed(194.39) * 30 / math.pi:.0f} per minute"
+    '5832 per minute'
+    """
+    return 2 * math.pi * frequency / _WAVES
+
+
+def catalogue_stiffness(mean_radius: float) -> tuple[int, float] | None:
+    """Size of the nearest catalogue drive [-] and its stiffness beyond the second slope [N·m/rad]; None if unlisted.
+
+    Equation: size = 2 r_m / 2.54 mm; K3 the least over the listed ratios
+    Arguments: mean_radius r_m of the wall [m].
+    Valid: sizes 14 to 100, where the catalogue lists K3.
+    Source: a maker's catalogue, `tables/catalogue_stiffness.csv`.
+
+    >>> catalogue_stiffness(0.0178), catalogue_stiffness(0.2)
+    ((14, 3400.0), None)
+    """
+    size = 2 * mean_radius * 1000 / _MILLIMETRES_PER_SIZE
+    listed = _least_stiffness()
+    if not min(listed) - _SLACK <= size <= max(listed) + _SLACK:
+        return None
+    nearest = min(listed, key=lambda one: (abs(one - size), one))
+    stiffness = listed[nearest]
+    return None if stiffness is None else (nearest, stiffness)
+
+
+_SLACK = 1e-9
+
+
+@cache
+def _least_stiffness() -> dict[int, float | None]:
+    """Return the least K3 [N·m/rad] of each size over its ratios, None where none is listed."""
+    found: dict[int, float | None] = {}
+    for row in tables.rows("catalogue_stiffness"):
+        size, text = int(row["size"]), row["K3_Nm_per_rad"]
+        listed = float(text) if text else None
+        known = found.get(size)
+        found[size] = known if listed is None else listed if known is None else min(known, listed)
+    return found

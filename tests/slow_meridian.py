@@ -1,0 +1,97 @@
+"""The wind-up of a flexspline by slow quadrature along its meridian, apart from `flexlash.mechanics`.
+
+Radius and thickness are plain functions of the place on the meridian; adaptive quadrature adds up
+U = T/(2πG) · ∫ ds/(r³ t) between the kinks. A fillet's arc rises as a square root of the distance from where it is
+steep, so there the distance is a square, and the square's root is what the quadrature steps in.
+"""
+
+import math
+
+from scipy.integrate import quad
+
+__all__ = ["slow_windup"]
+
+
+def _arc(fillet, distance):
+    """Return what a fillet adds to the thickness [m] at a distance [m] from its steep end."""
+    return fillet - math.sqrt(distance * (2 * fillet - distance)) if distance < fillet else 0.0
+
+
+def _integral(integrand, start, end):
+    """Return an integral over a smooth stretch; an empty one is 0."""
+    return quad(integrand, start, end, epsabs=0, epsrel=1e-12, limit=500)[0] if end > start else 0.0
+
+
+def _steep_integral(integrand, end):
+    """Return an integral from 0, where the integrand changes as the square root of its argument does."""
+    return _integral(lambda root: 2 * root * integrand(root * root), 0.0, math.sqrt(end))
+
+
+def _mean_radius(dimensions):
+    """Return the radius of the middle of the wall [m]."""
+    if "mean_radius" in dimensions:
+        return dimensions["mean_radius"]
+    return dimensions["bore_diameter"] / 2 + dimensions["wall_thickness"] / 2
+
+
+def _shear_modulus(dimensions):
+    """Return the shear modulus [Pa]."""
+    if "shear_modulus" in dimensions:
+        return dimensions["shear_modulus"]
+    return dimensions["youngs_modulus"] / (2 * (1 + dimensions["poisson_ratio"]))
+
+
+def _cylinder(dimensions):
+    """Return ∫ dz/(r³ t) [1/m³] from the inner face of the disk to the open end."""
+    wall, length = dimensions["wall_thickness"], dimensions["cylinder_length"]
+    mean = _mean_radius(dimensions)
+    fillet = dimensions.get("junction_fillet_radius", 0.0)
+    rim = dimensions.get("rim_thickness", wall)
+    rim_start = length - dimensions.get("rim_length", 0.0)
+
+    def in_wall(height):
+        added = _arc(fillet, height)
+        return 1 / ((mean - added / 2) ** 3 * (wall + added))
+
+    def in_rim(_):
+        return 1 / ((mean - wall / 2 + rim / 2) ** 3 * rim)
+
+    return (
+        _steep_integral(in_wall, fillet) + _integral(in_wall, fillet, rim_start) + _integral(in_rim, rim_start, length)
+    )
+
+
+def _disk(dimensions):
+    """Return ∫ ds/(r³ t) [1/m³] over the disk of a cup or the flange of a hat."""
+    mean = _mean_radius(dimensions)
+    inner, outer = dimensions.get("disk_inner_radius", mean), dimensions.get("disk_outer_radius", mean)
+    fillet = dimensions.get("hub_fillet_radius", 0.0)
+
+    def thickness(distance):
+        if "disk_thickness_exponent" in dimensions:
+            exponent = dimensions["disk_thickness_exponent"]
+            return dimensions["disk_hub_thickness"] * (inner / (inner + distance)) ** exponent
+        last = dimensions.get("disk_thickness", dimensions["wall_thickness"])
+        first = dimensions.get("disk_hub_thickness", last)
+        return first + (last - first) * (distance / (outer - inner))
+
+    def in_disk(distance):
+        return 1 / ((inner + distance) ** 3 * (thickness(distance) + _arc(fillet, distance)))
+
+    flat = _steep_integral(in_disk, fillet) + _integral(in_disk, fillet, outer - inner)
+    return flat / math.sin(dimensions.get("disk_cone_angle", math.pi / 2))
+
+
+def slow_windup(flexspline_type, dimensions):
+    """Return the wind-up [rad] of a flexspline as `cylinder`, `disk` and `total`.
+
+    Dimensions are scalars in SI by the names of `flexlash.mechanics.flexspline.windups`; a blank disk thickness is
+    the wall's, a blank disk radius the mean radius. With `disk_thickness_exponent` n the disk has the thickness
+    t_h (r_ci/r)^n; with `disk_cone_angle` a between disk and axis its meridian is 1/sin a as long.
+    """
+    scale = dimensions["torque"] / (2 * math.pi * _shear_modulus(dimensions))
+    cylinder = scale * _cylinder(dimensions) * dimensions.get("cylinder_calibration", 1.0)
+    disk = 0.0
+    if flexspline_type != "cylinder":
+        disk = scale * _disk(dimensions) * dimensions.get("disk_calibration", 1.0)
+    return {"cylinder": cylinder, "disk": disk, "total": cylinder + disk}
