@@ -8,13 +8,16 @@ from __future__ import annotations
 import datetime
 import re
 import sys
+import tempfile
 from pathlib import Path
 
 from flexlash import tables
 from flexlash.columns import SETTINGS, VARIANTS
 from flexlash.findings import CATALOGUE
+from flexlash.pipeline import run
 from flexlash.submission.read import ErrorCell, Unstored
 from flexlash.submission.template import Filling, study, template_bytes
+from flexlash.units import ARCMIN
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -57,12 +60,20 @@ FAULTS = (
         "junction_fillet_radius_mm",
         {"junction_fillet_radius_mm": 20.0, "rim_length_mm": 145.0, "rim_thickness_mm": 3.2},
     ),
+    ("E325", "disk_hub_thickness_mm", {"disk_thickness_exponent": 2.0}),
+    (
+        "E326",
+        "disk_thickness_mm",
+        {"disk_thickness_exponent": 2.0, "disk_hub_thickness_mm": 4.0, "disk_thickness_mm": 1.6},
+    ),
+    ("E327", "hub_fillet_radius_mm", {"disk_cone_angle_deg": 60.0, "hub_fillet_radius_mm": 2.0}),
+    ("E328", "junction_fillet_radius_mm", {"junction_fillet_radius_mm": 85.0}),
 )
 """Code, the column it is found in, and what makes the otherwise sound row faulty."""
 
 
 def needs_fixing() -> Filling:
-    """Return three sound rows, and twenty rows with a fault each."""
+    """Return three sound rows, and twenty-four rows with a fault each."""
     rows = [
         {"variant": "sound cup", **_SOUND},
         {"variant": "sound bore", **_SOUND, "mean_radius_mm": None, "bore_diameter_mm": 160.0},
@@ -105,6 +116,56 @@ def catalogue_sizes() -> Filling:
     return Filling(variants=rows)
 
 
+def proof() -> Filling:
+    """Return B3-160 as published, at its true mean radius, with its fillets, and with a tooth rim in two lengths."""
+    plain = {
+        "flexspline_type": "cup",
+        "material": "20Cr2Ni4",
+        "torque_Nm": 800.0,
+        "cylinder_length_mm": 160.0,
+        "wall_thickness_mm": 1.6,
+        "disk_inner_radius_mm": 40.0,
+        "backlash_limit_arcmin": 3.5,
+    }
+    bore = {"bore_diameter_mm": 160.0}
+    fillets = bore | {"hub_fillet_radius_mm": 3.5, "junction_fillet_radius_mm": 3.5}
+    rim = {"rim_thickness_mm": 3.2}
+    return Filling(
+        variants=[
+            {"variant": "as published", **plain, "mean_radius_mm": 80.0, "notes": "80 mm is the radius of the bore"},
+            {"variant": "true mean radius", **plain, **bore},
+            {"variant": "fillets", **plain, **fillets, "notes": "R 3.5 mm at hub and junction"},
+            {"variant": "fillets, rim 20 mm", **plain, **fillets, **rim, "rim_length_mm": 20.0},
+            {"variant": "fillets, rim 30 mm", **plain, **fillets, **rim, "rim_length_mm": 30.0},
+        ]
+    )
+
+
+def calibrated() -> Filling:
+    """Return the published case with factors from its finite elements, which scatter as a model does."""
+    variant = {
+        "variant": "B3-160 calibrated",
+        **_SOUND,
+        "backlash_limit_arcmin": 3.5,
+        "tolerance_class": "calibrated",
+        "notes": "Factors: published FEA over the two-term formula, cylinder 2.78/3.064, disk 2.15/2.298",
+    }
+    texts = {"dimension", "deviation_unit", "grade", "distribution"}
+    standard = [
+        {key: text if key in texts else float(text) for key, text in row.items() if text}
+        for row in tables.rows("standard_class")
+    ]
+    uncertain = [
+        {"dimension": name, "lower_deviation": -3.0, "upper_deviation": 3.0, "deviation_unit": "%"}
+        for name in ("cylinder_calibration", "disk_calibration")
+    ]
+    return Filling(
+        variants=[variant],
+        tolerances=[{"tolerance_class": "calibrated", **row} for row in (*standard, *uncertain)],
+        settings={"cylinder_calibration": 0.907, "disk_calibration": 0.936},
+    )
+
+
 def column_table() -> str:
     """Return the README's table of the Variants columns."""
     lines = ["| column | required | holds | meaning |", "|---|---|---|---|"]
@@ -123,10 +184,33 @@ def settings_table() -> str:
     return "\n".join(lines)
 
 
+PUBLISHED = 9.86e-4
+"""Backlash of the published finite-element model [rad]."""
+
+
+def proof_table() -> str:
+    """Return the README's table of B3-160 by formula, meridian integral, elasticity and published finite elements."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "proof.xlsx"
+        path.write_bytes(template_bytes(proof()))
+        rows = run(path, elasticity=True, method="random", samples=16, jobs=1).results.iter_rows(named=True)
+        published = PUBLISHED / ARCMIN
+        lines = [
+            "| B3-160 | two-term | meridian | elasticity | published FEA |",
+            "|---|---|---|---|---|",
+        ]
+        for row in rows:
+            elastic = row["backlash_arcmin"] / (1 + row["elasticity_difference_percent"] / 100)
+            cells = (row["two_term_backlash_arcmin"], row["backlash_arcmin"], elastic)
+            shown = " | ".join(f"{value:.3f}′ ({100 * (value / published - 1):+.1f} %)" for value in cells)
+            lines.append(f"| {row['variant']} | {shown} | {published:.3f}′ |")
+    return "\n".join(lines)
+
+
 def readme() -> bytes:
     """Return the README with its generated tables."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    for name, table in (("columns", column_table()), ("settings", settings_table())):
+    for name, table in (("columns", column_table()), ("settings", settings_table()), ("proof", proof_table())):
         pattern = rf"(<!-- {name}: generated -->\n).*?(\n<!-- end -->)"
         text, found = re.subn(pattern, lambda match, table=table: match[1] + table + match[2], text, flags=re.DOTALL)
         if found != 1:
@@ -141,6 +225,8 @@ def generated() -> dict[str, bytes]:
         "data/b3-160-study.xlsx": template_bytes(study()),
         "data/catalogue-sizes.xlsx": template_bytes(catalogue_sizes()),
         "data/needs-fixing.xlsx": template_bytes(needs_fixing()),
+        "data/b3-160-proof.xlsx": template_bytes(proof()),
+        "data/b3-160-calibrated.xlsx": template_bytes(calibrated()),
         "README.md": readme(),
     }
 

@@ -12,19 +12,43 @@ import pytest
 SOURCE = Path(__file__).resolve().parent.parent / "src" / "flexlash"
 MODULES = sorted(SOURCE.rglob("*.py"))
 
-CORE = {"arrays", "catalogue", "column", "columns", "findings", "result_columns", "tables", "units", "variant"}
+CORE = {
+    "arrays",
+    "catalogue",
+    "column",
+    "columns",
+    "findings",
+    "result_columns",
+    "tables",
+    "units",
+    "variant",
+    "workers",
+}
 ALLOWED = {
     "mechanics": CORE,
     "elasticity": CORE | {"mechanics"},
     "tolerance": CORE,
     "submission": CORE | {"tolerance.grades"},
     "assessment": CORE | {"mechanics", "submission", "tolerance"},
+    "verification": CORE | {"assessment", "elasticity", "submission"},
     "results": CORE | {"tolerance"},
-    "outcome": CORE | {"assessment", "submission"},
+    "outcome": CORE | {"assessment", "elasticity", "submission"},
     "summary": CORE | {"outcome"},
-    "report": CORE | {"assessment", "outcome", "summary", "submission", "tolerance"},
-    "pipeline": CORE | {"assessment", "mechanics", "outcome", "report", "results", "submission", "tolerance"},
-    "cli": CORE | {"outcome", "pipeline", "report", "submission", "summary"},
+    "report": CORE | {"assessment", "elasticity", "outcome", "summary", "submission", "tolerance"},
+    "pipeline": CORE
+    | {
+        "assessment",
+        "elasticity",
+        "mechanics",
+        "outcome",
+        "report",
+        "results",
+        "submission",
+        "summary",
+        "tolerance",
+        "verification",
+    },
+    "cli": CORE | {"elasticity", "outcome", "pipeline", "report", "submission", "summary"},
     "__main__": {"cli"},
     "__init__": {"outcome", "pipeline"},
 }

@@ -30,11 +30,14 @@ VARIANT_LABELS = {
     "disk_inner_radius_mm": "Disk inner radius r_ci [mm]",
     "disk_outer_radius_mm": "Disk outer radius r_co [mm]",
     "disk_hub_thickness_mm": "Disk thickness at hub [mm]",
+    "disk_thickness_exponent": "Disk thickness exponent n [-]",
+    "disk_cone_angle_deg": "Disk cone angle [°]",
     "hub_fillet_radius_mm": "Hub fillet radius [mm]",
     "junction_fillet_radius_mm": "Junction fillet radius [mm]",
     "rim_length_mm": "Tooth rim length [mm]",
     "rim_thickness_mm": "Tooth rim thickness [mm]",
     "rated_torque_Nm": "Rated torque [N·m]",
+    "load_inertia_kg_m2": "Load inertia J [kg·m²]",
     "backlash_limit_arcmin": "Backlash limit [arcmin]",
     "tolerance_class": "Tolerance class",
     "notes": "Notes",
@@ -77,6 +80,8 @@ DIMENSION_NAMES = [
     "disk_inner_radius",
     "disk_outer_radius",
     "disk_hub_thickness",
+    "disk_thickness_exponent",
+    "disk_cone_angle",
     "hub_fillet_radius",
     "junction_fillet_radius",
     "rim_length",
@@ -136,6 +141,18 @@ FURTHER_KEYS = [
     "disk_body_windup_rad",
     "hub_fillet_windup_rad",
     "von_mises_MPa",
+    "two_term_backlash_arcmin",
+    "rim_shear_MPa",
+    "hub_shear_radius_mm",
+    "governing_section",
+    "elastic_limit_torque_Nm",
+    "buckling_shear_MPa",
+    "buckling_range",
+    "wall_ratio",
+    "natural_frequency_Hz",
+    "resonance_speed_rpm",
+    "catalogue_size",
+    "catalogue_stiffness_Nm_per_rad",
     "skewness",
     "skewness_standard_error",
     "ppm_over_limit_low",
@@ -170,6 +187,9 @@ REQUIREMENTS = {
     ("Variants", "mean_radius_mm"): POSITIVE_LENGTH,
     ("Variants", "wall_thickness_mm"): POSITIVE_LENGTH,
     ("Variants", "disk_hub_thickness_mm"): POSITIVE_LENGTH,
+    ("Variants", "disk_thickness_exponent"): "a number of at least 0 and at most 10",
+    ("Variants", "disk_cone_angle_deg"): "a number in ° of at least 30 and at most 90",
+    ("Variants", "load_inertia_kg_m2"): "a number in kg·m² greater than 0",
     ("Variants", "hub_fillet_radius_mm"): "a number in mm of at least 0",
     ("Variants", "junction_fillet_radius_mm"): "a number in mm of at least 0",
     ("Variants", "backlash_limit_arcmin"): "a number in arcmin greater than 0",
@@ -248,6 +268,7 @@ def test_a_cross_check_adds_columns_behind_the_others():
         ("status", ("error", "warning", "ok")),
         ("first_order_valid", ("yes", "no")),
         ("cross_check", ("agrees", "differs")),
+        ("buckling_range", ("yes", "shorter", "longer")),
     ],
 )
 def test_result_choices(key, choices):
@@ -257,13 +278,19 @@ def test_result_choices(key, choices):
     assert choices[0] in column.help
 
 
+def test_governing_sections():
+    """The governing section is wall, tooth rim or disk."""
+    (column,) = (column for column in RESULTS if column.key == "governing_section")
+    assert (column.type, column.choices, column.is_number) == ("choice", ("wall", "tooth rim", "disk"), False)
+
+
 def test_findings_keep_their_order():
     """Findings has the contract's columns in its order."""
     assert [column.key for column in FINDINGS] == FINDING_KEYS
 
 
 def test_dimensions():
-    """A tolerance may be given for every dimension but rated torque and backlash limit, elastic constants included."""
+    """Every dimension may have a tolerance, elastic constants too, but not the three requirements on a variant."""
     assert list(DIMENSIONS) == DIMENSION_NAMES
     assert columns_of("Tolerances")["dimension"].choices == tuple(DIMENSION_NAMES)
 
@@ -321,8 +348,10 @@ def test_a_label_names_its_unit(column):
     bracketed = column.label.rpartition(" [")[2].removesuffix("]") if column.label.endswith("]") else ""
     if column.sheet != "Settings":
         assert bracketed == column.unit
-    if column.quantity not in {"", "ratio", "density"}:
+    if column.quantity not in {"", "ratio"}:
         assert column.si_unit == find_unit(column.unit, column.quantity)
+    # A unit of several words stays in the key: density_kg_m3, load_inertia_kg_m2.
+    if column.quantity not in {"", "ratio", "density", "inertia"}:
         assert column.dimension != column.key
         assert column.key.startswith(column.dimension)
 
@@ -351,6 +380,14 @@ def test_no_two_columns_answer_to_one_name(sheet):
         ("Variants", "wall_thickness_mm", "Wall thickness Δ", "Wall thickness", "wall_thickness"),
         ("Variants", "disk_inner_radius_mm", "Disk inner radius r_ci", "Disk inner radius", "disk_inner_radius"),
         ("Variants", "backlash_limit_arcmin", "Backlash limit", "Backlash limit", "backlash_limit"),
+        ("Variants", "disk_cone_angle_deg", "Disk cone angle", "Disk cone angle", "disk_cone_angle"),
+        (
+            "Variants",
+            "disk_thickness_exponent",
+            "Disk thickness exponent n",
+            "Disk thickness exponent",
+            "disk_thickness_exponent",
+        ),
         ("Materials", "youngs_modulus_GPa", "Young's modulus E", "Young's modulus", "youngs_modulus"),
         ("Materials", "poisson_ratio", "Poisson's ratio ν", "Poisson's ratio", "poisson_ratio"),
         ("Tolerances", "lower_deviation", "Lower deviation", "Lower deviation", "lower_deviation"),

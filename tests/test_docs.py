@@ -83,7 +83,8 @@ def test_the_readme_counts_right():
     assert "known to a thousandth of the standard deviation" in words
     assert "39 variants" in (ROOT / "data" / "README.md").read_text(encoding="utf-8")
     assert len(regenerate.catalogue_sizes().variants) == 39
-    assert len(regenerate.FAULTS) == 20
+    assert len(regenerate.FAULTS) == 24
+    assert "twenty-four rows with a different fault" in (ROOT / "data" / "README.md").read_text(encoding="utf-8")
     assert len(study().variants) == 11
 
 

@@ -14,10 +14,14 @@ from scipy.integrate import quad
 
 import flexlash.mechanics
 from flexlash.mechanics import flexspline
-from flexlash.mechanics.nominal import nominal_numbers
-from flexlash.variant import Variant
 
 thorough = settings(deadline=None, max_examples=80, derandomize=True)
+
+
+def without(dimensions, *names):
+    """Return dimensions without some of them."""
+    return {name: size for name, size in dimensions.items() if name not in names}
+
 
 REFINEMENTS = (
     "disk_hub_thickness",
@@ -45,6 +49,8 @@ REFINED = B3_160 | {
     "rim_length": 0.02,
     "rim_thickness": 0.0032,
 }
+POWER_LAW = without(REFINED, "disk_thickness") | {"disk_thickness_exponent": 1.7}
+CONE = B3_160 | {"disk_thickness": 0.0018, "disk_hub_thickness": 0.003, "disk_cone_angle": math.radians(60)}
 HAT = {name: size for name, size in B3_160.items() if name != "disk_inner_radius"} | {"disk_outer_radius": 0.12}
 CYLINDER = {name: size for name, size in B3_160.items() if name != "disk_inner_radius"}
 FROM_BORE = {name: size for name, size in REFINED.items() if name != "mean_radius"} | {"bore_diameter": 0.16}
@@ -55,6 +61,11 @@ SHAPES = {
     "cup from bore": ("cup", FROM_BORE),
     "hat": ("hat", HAT),
     "hat with own flange": ("hat", HAT | {"disk_thickness": 0.002, "disk_inner_radius": 0.0795}),
+    "power-law cup": ("cup", POWER_LAW),
+    "constant shear cup": ("cup", B3_160 | {"disk_hub_thickness": 0.004, "disk_thickness_exponent": 2.0}),
+    "conical cup": ("cup", CONE),
+    "conical power-law cup": ("cup", without(CONE, "disk_thickness") | {"disk_thickness_exponent": 1.2}),
+    "conical hat": ("hat", HAT | {"disk_thickness": 0.002, "disk_cone_angle": math.radians(60)}),
     "cylinder": ("cylinder", CYLINDER),
     "cylinder with rim": ("cylinder", CYLINDER | {"rim_length": 0.02, "rim_thickness": 0.0032}),
 }
@@ -93,11 +104,6 @@ def cups(draw, *, refined=True):
 def windup(kind, dimensions):
     """Return the wind-up of the whole flexspline [rad]."""
     return float(flexspline.backlash(kind, dimensions)) / 2
-
-
-def without(dimensions, *names):
-    """Return dimensions without some of them."""
-    return {name: size for name, size in dimensions.items() if name not in names}
 
 
 def two_term(dimensions):
@@ -162,9 +168,9 @@ PUBLIC = public_functions()
 
 
 def test_public_functions_are_found():
-    """The mechanics offer functions in windup, flexspline and strength."""
-    assert {name.partition(".")[0] for name in PUBLIC} >= {"windup", "flexspline", "strength"}
-    assert len(PUBLIC) >= 16
+    """The mechanics offer functions in windup, flexspline, strength and stiffness."""
+    assert {name.partition(".")[0] for name in PUBLIC} >= {"windup", "flexspline", "strength", "stiffness"}
+    assert len(PUBLIC) >= 25
 
 
 @pytest.mark.parametrize("name", PUBLIC)
@@ -183,6 +189,9 @@ def test_docstring_has_five_parts(name):
     [
         ("cup", ["wall", "disk_body"]),
         ("refined cup", ["rim", "wall", "junction_fillet", "disk_body", "hub_fillet"]),
+        ("power-law cup", ["rim", "wall", "junction_fillet", "disk_body", "hub_fillet"]),
+        ("conical cup", ["wall", "disk_body"]),
+        ("conical hat", ["wall", "disk_body"]),
         ("hat", ["wall", "disk_body"]),
         ("cylinder", ["wall"]),
         ("cylinder with rim", ["rim", "wall"]),
@@ -239,8 +248,9 @@ def test_without_refinements_it_is_the_two_term_formula(cup):
 @thorough
 @given(cup=cups(refined=False), rim=st.floats(0.01, 0.99))
 def test_neutral_refinements_change_nothing(cup, rim):
-    """Even hub thickness, fillets of 0 and a rim as thick as the wall leave the two-term wind-up to 1e-12."""
+    """Even hub, fillets of 0, a cone of 90° and a rim as thick as the wall leave the two-term wind-up to 1e-12."""
     neutral = {
+        "disk_cone_angle": math.pi / 2,
         "disk_hub_thickness": cup.get("disk_thickness", cup["wall_thickness"]),
         "hub_fillet_radius": 0.0,
         "junction_fillet_radius": 0.0,
@@ -248,6 +258,121 @@ def test_neutral_refinements_change_nothing(cup, rim):
         "rim_thickness": cup["wall_thickness"],
     }
     assert windup("cup", cup | neutral) == pytest.approx(two_term(cup), rel=1e-12)
+
+
+@thorough
+@given(cup=cups(refined=False))
+def test_exponent_of_zero_is_an_even_disk(cup):
+    """A disk that thins with the power 0 has the two-term wind-up of its thickness at the hub to 1e-12."""
+    even = {"disk_hub_thickness": cup.pop("disk_thickness", cup["wall_thickness"]), "disk_thickness_exponent": 0.0}
+    assert windup("cup", cup | even) == pytest.approx(
+        two_term(cup | {"disk_thickness": even["disk_hub_thickness"]}), rel=1e-12
+    )
+
+
+@thorough
+@given(cup=cups(refined=False), exponent=st.floats(0.0, 10.0), factor=st.floats(1.0, 3.0))
+def test_disk_that_thins_faster_never_winds_up_less(cup, exponent, factor):
+    """From the same thickness at the hub a higher power leaves less material and winds up more."""
+    cup = without(cup, "disk_thickness") | {"disk_hub_thickness": 2 * cup["wall_thickness"]}
+    slower, faster = (cup | {"disk_thickness_exponent": exponent * times} for times in (1.0, factor))
+    assert windup("cup", slower) <= windup("cup", faster) * (1 + 1e-14)
+
+
+@thorough
+@given(cup=cups(refined=False), angle=st.floats(0.5, math.pi / 2), factor=st.floats(0.5, 1.0))
+def test_steeper_cone_never_winds_up_less(cup, angle, factor):
+    """A disk at a smaller angle to the axis is longer and winds up more; its cylinder is the same."""
+    wide, steep = (cup | {"disk_cone_angle": angle * times} for times in (1.0, factor))
+    assert windup("cup", wide) <= windup("cup", steep) * (1 + 1e-14)
+    assert flexspline.windups("cup", wide)["wall"] == flexspline.windups("cup", cup)["wall"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "dimensions"), [("cup", CONE), ("hat", HAT | {"disk_cone_angle": math.radians(60)})], ids=["cup", "hat"]
+)
+def test_cone_divides_the_disk_by_its_sine(kind, dimensions):
+    """A cone at 60° to the axis winds up as the flat disk or flange over sin 60°."""
+    flat = flexspline.windups(kind, without(dimensions, "disk_cone_angle"))
+    cone = flexspline.windups(kind, dimensions)
+    assert cone["disk_body"] == pytest.approx(float(flat["disk_body"]) / math.sin(math.radians(60)), rel=1e-15)
+
+
+def test_power_law_disk_starts_behind_its_hub_fillet():
+    """A power-law disk with a hub fillet winds up as quadrature over ring and body says."""
+    found = flexspline.windups("cup", POWER_LAW)
+    inner, fillet = POWER_LAW["disk_inner_radius"], POWER_LAW["hub_fillet_radius"]
+
+    def integrand(radius):
+        even = POWER_LAW["disk_hub_thickness"] * (inner / radius) ** POWER_LAW["disk_thickness_exponent"]
+        return 1 / (radius**3 * (even + drawn_arc(fillet, radius - inner)))
+
+    scale = 800 / (2 * math.pi * 211e9 / 2.6)
+    for segment, start, end in (
+        ("hub_fillet", inner, inner + fillet),
+        ("disk_body", inner + fillet, POWER_LAW["disk_outer_radius"]),
+    ):
+        exact = quad(integrand, start, end, epsabs=0, epsrel=1e-11, limit=500)[0]
+        assert found[segment] == pytest.approx(scale * exact, rel=1e-9)
+
+
+DISKS = {
+    "as the wall": (B3_160, [0.0016, 0.0016, 0.0016]),
+    "even": (B3_160 | {"disk_thickness": 0.002}, [0.002, 0.002, 0.002]),
+    "taper to the wall": (B3_160 | {"disk_hub_thickness": 0.004}, [0.004, 0.0028, 0.0016]),
+    "taper": (B3_160 | {"disk_hub_thickness": 0.004, "disk_thickness": 0.002}, [0.004, 0.003, 0.002]),
+    "taper to its own radius": (
+        B3_160 | {"disk_hub_thickness": 0.004, "disk_outer_radius": 0.08, "mean_radius": 0.0801},
+        [0.004, 0.0028, 0.0016],
+    ),
+    "constant shear": (
+        B3_160 | {"disk_hub_thickness": 0.004, "disk_thickness_exponent": 2.0},
+        [0.004, 0.004 * 4 / 9, 0.001],
+    ),
+    "power of 0": (B3_160 | {"disk_hub_thickness": 0.004, "disk_thickness_exponent": 0.0}, [0.004, 0.004, 0.004]),
+    "cone": (B3_160 | {"disk_cone_angle": 1.0}, [0.0016, 0.0016, 0.0016]),
+    "fillet left out": (B3_160 | {"hub_fillet_radius": 0.0035}, [0.0016, 0.0016, 0.0016]),
+}
+
+
+@pytest.mark.parametrize(("dimensions", "expected"), DISKS.values(), ids=list(DISKS))
+def test_disk_thickness(dimensions, expected):
+    """The disk is even, a straight taper or a power of the radius at 40, 60 and 80 mm, normal to it, without fillet."""
+    found = [float(flexspline.disk_thickness(dimensions, radius)) for radius in (0.04, 0.06, 0.08)]
+    assert found == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize("name", DISKS)
+def test_disk_thickness_of_arrays_equals_scalars_bit_for_bit(name):
+    """Thicknesses at radii of shape (stations, variants) equal scalar calls bit for bit."""
+    generator = np.random.default_rng(6)
+    table = {key: size * (1 + 0.01 * generator.random(7)) for key, size in DISKS[name][0].items()}
+    radii = np.linspace(0.041, 0.079, 5)[:, None] * (1 + 0.01 * generator.random(7))
+    together = np.broadcast_to(flexspline.disk_thickness(table, radii), radii.shape)
+    for station, place in np.ndindex(radii.shape):
+        own = {key: float(column[place]) for key, column in table.items()}
+        assert float(flexspline.disk_thickness(own, float(radii[station, place]))) == together[station, place]
+
+
+@pytest.mark.parametrize(
+    ("shape", "expected"),
+    [
+        ("cup", (0.04, 0.08)),
+        ("refined cup", (0.04, 0.081)),
+        ("cup from bore", (0.04, 0.081)),
+        ("hat", (0.08, 0.12)),
+        ("hat with own flange", (0.0795, 0.12)),
+    ],
+)
+def test_disk_radii(shape, expected):
+    """A blank inner or outer radius of the disk is the mean radius."""
+    assert tuple(map(float, flexspline.disk_radii(SHAPES[shape][1]))) == expected
+
+
+def test_disk_radius_from_the_bore():
+    """The blank outer radius of a cup's disk follows bore and wall."""
+    dimensions = without(FROM_BORE, "disk_outer_radius")
+    assert flexspline.disk_radii(dimensions) == (0.04, flexspline.radius_of(dimensions))
 
 
 @thorough
@@ -385,78 +510,3 @@ def test_calibrations_scale_cylinder_and_disk_apart():
     for segment, angle in plain.items():
         factor = 0.907 if segment in flexspline.CYLINDER_SEGMENTS else 0.936
         assert calibrated[segment] == pytest.approx(float(angle) * factor, rel=1e-15)
-
-
-def variant(row, kind="cup", dimensions=B3_160, **rest):
-    """Return a variant of these dimensions."""
-    return Variant(
-        row=row,
-        name=f"variant {row}",
-        flexspline_type=kind,
-        material="20Cr2Ni4",
-        tolerance_class="standard",
-        dimensions=dict(dimensions),
-        **rest,
-    )
-
-
-def test_nominal_numbers_of_the_baseline():
-    """The nominal numbers of B3-160 hold its wind-ups, stiffness, stresses and the cylinder alone."""
-    (numbers,) = nominal_numbers([variant(2)], 0.04)
-    assert numbers["cylinder_windup"] == pytest.approx(3.0642983711e-4, rel=5e-11)
-    assert numbers["disk_windup"] == pytest.approx(2.2982237784e-4, rel=5e-11)
-    assert numbers["windup"] == pytest.approx(1.0725044299e-3 / 2, rel=5e-11)
-    assert numbers["backlash"] == pytest.approx(1.0725044299e-3, rel=5e-11)
-    assert numbers["disk_share"] == pytest.approx(3 / 7, rel=1e-14)
-    assert numbers["cylinder_only_backlash"] == pytest.approx(2 * 3.0642983711e-4, rel=5e-11)
-    assert numbers["stiffness"] == pytest.approx(1.491835e6, rel=4e-7)
-    assert numbers["wall_shear"] == pytest.approx(12.434e6, rel=5e-5)
-    assert numbers["hub_shear"] == pytest.approx(49.736e6, rel=5e-5)
-    assert numbers["von_mises"] == pytest.approx(86.145e6, rel=5e-5)
-    assert "lost_motion" not in numbers
-
-
-def test_cylinder_only_backlash_leaves_refinements_out():
-    """The classical formula's backlash counts the plain wall alone, whatever rim and fillet the cup has."""
-    plain, refined = nominal_numbers(
-        [variant(2, dimensions=without(REFINED, *REFINEMENTS)), variant(3, dimensions=REFINED)], 0.04
-    )
-    assert refined["cylinder_only_backlash"] == plain["cylinder_only_backlash"]
-    assert refined["cylinder_only_backlash"] == pytest.approx(2 * plain["cylinder_windup"], rel=1e-14)
-    assert refined["cylinder_windup"] < plain["cylinder_windup"]
-
-
-def test_cylinder_without_disk_has_no_hub_shear():
-    """A pin, tooth or jaw connection has no disk wind-up, no disk share and no hub shear."""
-    (numbers,) = nominal_numbers([variant(2, "cylinder", CYLINDER)], 0.04)
-    assert numbers["disk_windup"] == numbers["disk_share"] == 0
-    assert "hub_shear" not in numbers
-    assert numbers["von_mises"] == pytest.approx(math.sqrt(3) * numbers["wall_shear"], rel=1e-15)
-    assert numbers["backlash"] == pytest.approx(numbers["cylinder_only_backlash"], rel=1e-15)
-
-
-def test_hub_shear_counts_taper_and_fillet():
-    """The hub's shear stress falls with a thicker hub; in a hat it is the flange's at the mean radius."""
-    even, tapered, hat = nominal_numbers(
-        [variant(2), variant(3, dimensions=B3_160 | {"disk_hub_thickness": 0.0032}), variant(4, "hat", HAT)], 0.04
-    )
-    assert tapered["hub_shear"] == pytest.approx(even["hub_shear"] / 2, rel=1e-12)
-    assert hat["hub_shear"] == pytest.approx(hat["wall_shear"], rel=1e-12)
-
-
-@pytest.mark.parametrize("share", [0.04, 0.03])
-def test_lost_motion_at_a_share_of_the_rated_torque(share):
-    """Lost motion is 2U at a few per cent of the rated torque, and absent without a rated torque."""
-    without_rated, with_rated = nominal_numbers([variant(2), variant(3, rated_torque=1600.0)], share)
-    assert "lost_motion" not in without_rated
-    assert with_rated["lost_motion"] == pytest.approx(1.0725044299e-3 * 2 * share, rel=5e-11)
-
-
-def test_other_rows_do_not_matter():
-    """A variant's nominal numbers are the same bits alone, among others and in any order."""
-    rows = [variant(place, kind, dimensions) for place, (kind, dimensions) in enumerate(SHAPES.values())]
-    rows += [variant(20, dimensions=REFINED | {"torque": 900.0}), variant(21, dimensions=B3_160 | {"torque": 700.0})]
-    together = nominal_numbers(rows, 0.04)
-    assert nominal_numbers(rows[::-1], 0.04) == together[::-1]
-    assert [nominal_numbers([row], 0.04)[0] for row in rows] == together
-    assert nominal_numbers([], 0.04) == []

@@ -14,8 +14,8 @@ def test_no_generated_file_is_stale(name):
     assert (regenerate.ROOT / name).read_bytes() == regenerate.generated()[name]
 
 
-def test_needs_fixing_gives_exactly_its_twenty_findings():
-    """The submission with twenty faults gives twenty findings, each with its code at its cell."""
+def test_needs_fixing_gives_exactly_its_findings():
+    """The submission with twenty-four faults gives twenty-four findings, each with its code at its cell."""
     outcome = check(regenerate.ROOT / "data" / "needs-fixing.xlsx")
     columns = {column.key: place for place, column in enumerate(regenerate.VARIANTS)}
     expected = [
@@ -27,7 +27,7 @@ def test_needs_fixing_gives_exactly_its_twenty_findings():
 
 
 def test_needs_fixing_computes_its_sound_rows():
-    """Rows without a fault are computed beside twenty that are not."""
+    """Rows without a fault are computed beside twenty-four that are not."""
     outcome = run(regenerate.ROOT / "data" / "needs-fixing.xlsx", samples=1024)
     status = dict(outcome.results.select("variant", "status").iter_rows())
     assert [name for name, one in status.items() if one != "error"] == ["sound cup", "sound bore", "sound cylinder"]

@@ -265,16 +265,47 @@ def test_sound_limits_pass():
         ("disk_calibration", -1.0, 0.0, "0"),
         ("youngs_modulus", -300e9, 0.0, "0"),
         ("poisson_ratio", 0.0, 0.201, "0.5"),
+        ("disk_cone_angle", -math.radians(60), 0.0, "0"),
+        ("disk_cone_angle", -math.radians(61), math.radians(1), "0"),
+        ("disk_cone_angle", 0.0, math.radians(121), "180°"),
     ],
 )
 @pytest.mark.parametrize("distribution", ["normal", "uniform"])
 def test_limits_beyond_the_possible_are_impossible(dimension, lower, upper, detail, distribution):
-    """Limits that reach zero thickness, or more than ν = 0.5, are impossible whatever scatters between them."""
-    one = variant()
+    """Limits that reach no thickness, a cone along the axis, or more than ν = 0.5 are impossible in any way."""
+    one = variant(disk_cone_angle=math.radians(60))
     limits = limits_for(one, row(dimension, lower, upper, distribution=distribution))
     kept, (problem,) = shape_problems(one, limits)
     assert (problem.kind, problem.dimension, problem.detail) == ("impossible", dimension, detail)
     assert kept == limits
+
+
+@pytest.mark.parametrize("distribution", ["normal", "uniform", "triangular", "truncated normal"])
+@pytest.mark.parametrize(
+    ("size", "lower", "upper"), [(0.0, -0.5, 0.5), (2.0, -3.0, 1.0), (2.0, 0.0, 100.0), (0.1, -0.1, -0.1)]
+)
+def test_thickness_exponents_have_no_bound(size, lower, upper, distribution):
+    """A disk may thin with any power of the radius, negative ones too, so that no tail is cut either."""
+    one = variant(disk_hub_thickness=0.004, disk_thickness_exponent=size)
+    limits = limits_for(one, row("disk_thickness_exponent", lower, upper, distribution=distribution))
+    assert limits["disk_thickness_exponent"].cut is None
+    assert shape_problems(one, limits) == (limits, ())
+
+
+@pytest.mark.parametrize("degrees", [30, 89, 90])
+def test_cone_angles_scatter_about_flat_too(degrees):
+    """A cone or a flat disk scatters by some degrees to either side, beyond 90° as well, uncut."""
+    one = variant(disk_cone_angle=math.radians(degrees))
+    half = math.radians(2)
+    limits = limits_for(one, row("disk_cone_angle", -half, half))
+    assert limits["disk_cone_angle"].high == pytest.approx(math.radians(degrees + 2), rel=1e-12)
+    assert shape_problems(one, limits) == (limits, ())
+
+
+def test_exponent_and_cone_angle_of_other_disks_are_silent():
+    """Rows for exponent and cone angle set no limits on a variant without them."""
+    rows = [row("disk_thickness_exponent", -0.1, 0.1), row("disk_cone_angle", -0.01, 0.01)]
+    assert limits_of(variant(), rows) == ({}, ())
 
 
 def test_every_impossible_dimension_is_named():
@@ -306,11 +337,12 @@ def test_poisson_ratio_of_just_a_half_is_possible():
         ("cylinder_length", 0.1, (0.0, math.inf)),
         ("cylinder_calibration", 0.9, (0.0, math.inf)),
         ("poisson_ratio", 0.1, (-1.0, 0.5)),
+        ("disk_cone_angle", math.radians(34), (0.0, math.pi)),
     ],
 )
 def test_far_tails_of_a_normal_are_cut(dimension, half, bounds):
     """A normal whose 8.3σ would reach an impossible size is cut there, and just there, with a problem told."""
-    one = variant()
+    one = variant(disk_cone_angle=math.pi / 2)
     limits = limits_for(one, row(dimension, -half, half))
     kept, (problem,) = shape_problems(one, limits)
     assert (problem.kind, problem.dimension) == ("cut", dimension)
@@ -318,7 +350,7 @@ def test_far_tails_of_a_normal_are_cut(dimension, half, bounds):
     assert bounds[0] <= low
     assert high <= bounds[1]
     assert (kept[dimension].low, kept[dimension].high) == (limits[dimension].low, limits[dimension].high)
-    assert kept[dimension].as_distribution().expectation == pytest.approx(CUP[dimension], rel=1e-3)
+    assert kept[dimension].as_distribution().expectation == pytest.approx(one.dimensions[dimension], rel=1e-3)
 
 
 @pytest.mark.parametrize("distribution", ["uniform", "triangular", "truncated normal"])

@@ -12,6 +12,7 @@ import pytest
 
 import flexlash
 import regenerate
+from flexlash import workers
 from flexlash.pipeline import Options, check, run
 from flexlash.result_columns import CROSS_CHECK, RESULTS
 from flexlash.tolerance import spreading
@@ -85,14 +86,14 @@ def test_worker_processes_change_no_bit(table, sound, monkeypatch, how):
     path = table(_many(sound))
     here = run(path, **HOW[how]).results
     asked = []
-    started = spreading._in_workers
 
-    def in_workers(*arguments):
-        asked.append(arguments[-1])
-        yield from started(*arguments)
+    class Pool(workers.ProcessPoolExecutor):
+        def __init__(self, count, **options):
+            asked.append(count)
+            super().__init__(count, **options)
 
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
-    monkeypatch.setattr(spreading, "_in_workers", in_workers)
+    monkeypatch.setattr(workers, "ProcessPoolExecutor", Pool)
     assert run(path, **HOW[how], jobs=2).results.equals(here)
     assert asked == [2]
 

@@ -23,6 +23,10 @@ HAT = CUP | {"flexspline_type": "hat", "disk_inner_radius_mm": None, "disk_outer
 TUBE = CUP | {"flexspline_type": "cylinder", "disk_inner_radius_mm": None}
 BORE = CUP | {"mean_radius_mm": None, "bore_diameter_mm": 158.4}
 RIM = CUP | {"rim_length_mm": 25, "rim_thickness_mm": 3.2}
+SHORT = CUP | {"cylinder_length_mm": 30}
+SHORT_RIM = SHORT | {"rim_length_mm": 10, "rim_thickness_mm": 3.2}
+POWER = CUP | {"disk_hub_thickness_mm": 4, "disk_thickness_exponent": 2}
+CONE = CUP | {"disk_cone_angle_deg": 60}
 KEYS = list(columns_of("Variants"))
 
 
@@ -39,11 +43,11 @@ def _found(row):
 
 @pytest.mark.parametrize(
     "row",
-    [CUP, HAT, TUBE, BORE, RIM, {key: value for key, value in CUP.items() if key != "flexspline_type"}],
-    ids=["cup", "hat", "cylinder", "bore", "rim", "blank type"],
+    [CUP, HAT, TUBE, BORE, RIM, POWER, CONE, {key: value for key, value in CUP.items() if key != "flexspline_type"}],
+    ids=["cup", "hat", "cylinder", "bore", "rim", "power-law disk", "cone", "blank type"],
 )
 def test_sound_rows_break_nothing(row):
-    """A sound cup, hat, cylinder, cup with bore, cup with rim, and a blank type, which means cup, break no rule."""
+    """A sound cup, hat, cylinder, cup with bore, rim, power law or cone, and a blank type, a cup, break no rule."""
     assert _found(row) == {}
 
 
@@ -54,9 +58,12 @@ BROKEN = [
     ("E310", "disk_inner_radius_mm", TUBE | {"disk_inner_radius_mm": 40}),
     ("E310", "disk_outer_radius_mm", TUBE | {"disk_outer_radius_mm": 80}),
     ("E310", "disk_hub_thickness_mm", TUBE | {"disk_hub_thickness_mm": 2}),
+    ("E310", "disk_thickness_exponent", TUBE | {"disk_thickness_exponent": 2}),
+    ("E310", "disk_cone_angle_deg", TUBE | {"disk_cone_angle_deg": 90}),
     ("E310", "hub_fillet_radius_mm", TUBE | {"hub_fillet_radius_mm": 1}),
     ("E310", "junction_fillet_radius_mm", TUBE | {"junction_fillet_radius_mm": 1}),
     ("E310", "disk_hub_thickness_mm", HAT | {"disk_hub_thickness_mm": 2}),
+    ("E310", "disk_thickness_exponent", HAT | {"disk_thickness_exponent": 0.5}),
     ("E310", "hub_fillet_radius_mm", HAT | {"hub_fillet_radius_mm": 1}),
     ("E310", "junction_fillet_radius_mm", HAT | {"junction_fillet_radius_mm": 1}),
     ("E311", "disk_inner_radius_mm", CUP | {"disk_inner_radius_mm": None}),
@@ -76,8 +83,25 @@ BROKEN = [
     ("E312", "hub_fillet_radius_mm", CUP | {"hub_fillet_radius_mm": 40.001}),
     ("E312", "hub_fillet_radius_mm", BORE | {"hub_fillet_radius_mm": 40.001}),
     ("E312", "hub_fillet_radius_mm", CUP | {"hub_fillet_radius_mm": 41, "disk_outer_radius_mm": 80}),
-    ("E313", "junction_fillet_radius_mm", CUP | {"junction_fillet_radius_mm": 160.001}),
-    ("E313", "junction_fillet_radius_mm", RIM | {"junction_fillet_radius_mm": 135.001}),
+    ("E313", "junction_fillet_radius_mm", SHORT | {"junction_fillet_radius_mm": 30.001}),
+    ("E313", "junction_fillet_radius_mm", SHORT_RIM | {"junction_fillet_radius_mm": 20.001}),
+    ("E325", "disk_hub_thickness_mm", CUP | {"disk_thickness_exponent": 2}),
+    ("E325", "disk_hub_thickness_mm", CUP | {"disk_thickness_exponent": 0, "flexspline_type": None}),
+    ("E325", "disk_hub_thickness_mm", CUP | {"disk_thickness_exponent": 2, "disk_thickness_mm": 1.6}),
+    ("E326", "disk_thickness_mm", POWER | {"disk_thickness_mm": 1.6}),
+    ("E326", "disk_thickness_mm", POWER | {"disk_thickness_mm": 1.6, "disk_thickness_exponent": 0}),
+    ("E327", "hub_fillet_radius_mm", CONE | {"hub_fillet_radius_mm": 1}),
+    ("E327", "junction_fillet_radius_mm", CONE | {"junction_fillet_radius_mm": 1}),
+    ("E327", "junction_fillet_radius_mm", CONE | {"junction_fillet_radius_mm": 1, "disk_cone_angle_deg": 89.999}),
+    ("E328", "junction_fillet_radius_mm", CUP | {"junction_fillet_radius_mm": 79.201}),
+    ("E328", "junction_fillet_radius_mm", BORE | {"junction_fillet_radius_mm": 79.201}),
+    ("W416", "junction_fillet_radius_mm", CUP | {"junction_fillet_radius_mm": 39.201}),
+    ("W416", "junction_fillet_radius_mm", BORE | {"junction_fillet_radius_mm": 39.201}),
+    (
+        "W416",
+        "junction_fillet_radius_mm",
+        CUP | {"junction_fillet_radius_mm": 20, "hub_fillet_radius_mm": 19.201},
+    ),
     ("W401", "disk_outer_radius_mm", CUP | {"disk_outer_radius_mm": 80.001}),
     ("W401", "disk_outer_radius_mm", BORE | {"disk_outer_radius_mm": 79}),
     ("W403", "wall_thickness_mm", CUP | {"wall_thickness_mm": 16.001}),
@@ -104,9 +128,25 @@ KEPT = [
     ("E312", CUP | {"hub_fillet_radius_mm": 40}),
     ("E312", CUP | {"hub_fillet_radius_mm": 0}),
     ("E312", CUP | {"hub_fillet_radius_mm": 5}),
-    ("E313", CUP | {"junction_fillet_radius_mm": 160}),
-    ("E313", RIM | {"junction_fillet_radius_mm": 135}),
-    ("E313", RIM | {"junction_fillet_radius_mm": 0}),
+    ("E313", SHORT | {"junction_fillet_radius_mm": 30}),
+    ("E313", SHORT_RIM | {"junction_fillet_radius_mm": 20}),
+    ("E313", SHORT_RIM | {"junction_fillet_radius_mm": 0}),
+    ("E325", POWER),
+    ("E325", CUP | {"disk_hub_thickness_mm": 4}),
+    ("E325", HAT | {"disk_thickness_exponent": 2}),
+    ("E326", POWER),
+    ("E326", CUP | {"disk_hub_thickness_mm": 4, "disk_thickness_mm": 1.6}),
+    ("E327", CONE | {"hub_fillet_radius_mm": 0, "junction_fillet_radius_mm": 0}),
+    ("E327", CONE | {"disk_cone_angle_deg": 90, "hub_fillet_radius_mm": 1, "junction_fillet_radius_mm": 1}),
+    ("E327", CUP | {"hub_fillet_radius_mm": 1, "junction_fillet_radius_mm": 1}),
+    ("E328", CUP | {"junction_fillet_radius_mm": 79.2}),
+    ("E328", BORE | {"junction_fillet_radius_mm": 79.2}),
+    ("E328", CUP | {"junction_fillet_radius_mm": 0}),
+    ("W416", CUP | {"junction_fillet_radius_mm": 39.2}),
+    ("W416", BORE | {"junction_fillet_radius_mm": 39.2}),
+    ("W416", CUP | {"junction_fillet_radius_mm": 20, "hub_fillet_radius_mm": 19.2}),
+    ("W416", CUP | {"junction_fillet_radius_mm": 0, "hub_fillet_radius_mm": 40}),
+    ("W416", CUP | {"hub_fillet_radius_mm": 40}),
     ("W401", CUP | {"disk_outer_radius_mm": 80}),
     ("W401", BORE | {"disk_outer_radius_mm": 80}),
     ("W401", HAT),
@@ -150,8 +190,23 @@ def test_every_rule_is_tried():
         (RIM | {"rim_thickness_mm": 1.2}, "= 1.2 mm: at least the wall thickness 1.6 mm is required"),
         (CUP | {"hub_fillet_radius_mm": 45}, "= 45 mm: at most the width of the disk, 40 mm, is required"),
         (
-            RIM | {"junction_fillet_radius_mm": 150},
-            "= 150 mm: with the tooth rim it exceeds the cylinder length 160 mm",
+            SHORT_RIM | {"junction_fillet_radius_mm": 25},
+            "= 25 mm: with the tooth rim it exceeds the cylinder length 30 mm",
+        ),
+        (TUBE | {"disk_cone_angle_deg": 60}, "= 60: a cylinder has no such dimension"),
+        (HAT | {"disk_thickness_exponent": 2}, "= 2: a hat has no such dimension"),
+        (CUP | {"disk_thickness_exponent": 2}, "is empty; a disk with a thickness exponent requires it"),
+        (
+            POWER | {"disk_thickness_mm": 1.6},
+            "= 1.6 mm: the exponent 2 gives the thickness at every radius already",
+        ),
+        (CONE | {"hub_fillet_radius_mm": 2}, "= 2 mm: a disk at 60° to the axis takes no fillet"),
+        (CONE | {"junction_fillet_radius_mm": 3}, "= 3 mm: a disk at 60° to the axis takes no fillet"),
+        (CUP | {"junction_fillet_radius_mm": 90}, "= 90 mm: at most the radius of the bore, 79.2 mm, is required"),
+        (BORE | {"junction_fillet_radius_mm": 90}, "= 90 mm: at most the radius of the bore, 79.2 mm, is required"),
+        (
+            CUP | {"junction_fillet_radius_mm": 30, "hub_fillet_radius_mm": 10},
+            "= 30 mm: with the hub fillet it exceeds the width of the disk inside, 39.2 mm",
         ),
         (TUBE | {"disk_thickness_mm": 2}, "= 2: a cylinder has no such dimension"),
         (HAT | {"hub_fillet_radius_mm": 2}, "= 2: a hat has no such dimension"),
@@ -201,15 +256,43 @@ def test_a_follow_up_is_not_told_as_well():
         assert list(_found(row)) == [("E303", "disk_inner_radius_mm")]
 
 
+def test_overlapping_fillets_are_not_told_where_one_alone_is_too_wide():
+    """A fillet wider than disk or bore, or a hub as wide as the disk, is not also told as fillets that overlap."""
+    hub = CUP | {"hub_fillet_radius_mm": 45, "junction_fillet_radius_mm": 3}
+    assert list(_found(hub)) == [("E312", "hub_fillet_radius_mm")]
+    junction = CUP | {"hub_fillet_radius_mm": 3, "junction_fillet_radius_mm": 90}
+    assert list(_found(junction)) == [("E328", "junction_fillet_radius_mm")]
+    for radius in (80, 90):
+        row = CUP | {"disk_inner_radius_mm": radius, "junction_fillet_radius_mm": 3}
+        assert list(_found(row)) == [("E303", "disk_inner_radius_mm")]
+
+
+def test_both_fillets_on_a_cone_are_told():
+    """A cone with two fillets has a finding at each of them; a hat's cone, which has none by its type, has neither."""
+    row = CONE | {"hub_fillet_radius_mm": 1, "junction_fillet_radius_mm": 1}
+    assert set(_found(row)) == {("E327", "hub_fillet_radius_mm"), ("E327", "junction_fillet_radius_mm")}
+    hat = HAT | {"disk_cone_angle_deg": 60, "hub_fillet_radius_mm": 1}
+    assert list(_found(hat)) == [("E310", "hub_fillet_radius_mm")]
+
+
 @pytest.mark.parametrize(
     "row",
     [
         CUP
         | {"cylinder_length_mm": 0.3, "rim_length_mm": 0.2, "rim_thickness_mm": 1.6, "junction_fillet_radius_mm": 0.1},
         CUP | {"mean_radius_mm": 80.3, "disk_inner_radius_mm": 40.2, "hub_fillet_radius_mm": 40.1},
+        CUP | {"mean_radius_mm": 40.3, "wall_thickness_mm": 1.2, "junction_fillet_radius_mm": 39.7},
     ],
-    ids=["0.1 + 0.2 > 0.3", "80.3 - 40.2 < 40.1"],
+    ids=["0.1 + 0.2 > 0.3", "80.3 - 40.2 < 40.1", "40.3 - 0.6 < 39.7"],
 )
 def test_the_edge_in_decimals(row):
     """What lies exactly at an edge as typed in decimals is not blamed for the computer's binary rounding."""
-    assert {code for code, _ in _found(row)} & {"E312", "E313"} == set()
+    assert {code for code, _ in _found(row)} & {"E312", "E313", "E328"} == set()
+
+
+def test_the_edge_of_overlapping_fillets_in_decimals():
+    """Fillets that touch as typed in decimals are not blamed for the computer's binary rounding."""
+    row = CUP | {"mean_radius_mm": 80.3, "disk_inner_radius_mm": 20.1}
+    row |= {"hub_fillet_radius_mm": 1.7, "junction_fillet_radius_mm": 57.7}
+    assert 57.7 + 1.7 > 80.3 - 0.8 - 20.1
+    assert _found(row) == {}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from b3_160 import CUP, NOMINAL, TUBE
+from flexlash import workers
 from flexlash.tolerance import spreading
 from flexlash.tolerance.limits import Limits
 from flexlash.tolerance.spreading import spread_batch, spread_rows, variations_of
@@ -21,6 +22,19 @@ WIDE_CUT = {"wall_thickness": Limits(low=0.00155, high=0.00165, distribution="tr
 NARROW_CUT = {"wall_thickness": Limits(low=0.00155, high=0.00165, distribution="truncated normal", sigma=2.0)}
 SHIFTED = {"disk_inner_radius": Limits(low=0.0402, high=0.0402)}
 LINES = Draws("line", None, 3)
+
+
+class _Pool:
+    """A pool of two workers that are this process."""
+
+    def __init__(self, count, **_):
+        assert count == 2
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        return False
 
 
 def _row(model, limits, number=0, limit=None):
@@ -94,13 +108,13 @@ def test_a_batch_has_no_more_rows_than_a_batch_may(monkeypatch, here):
 
 def test_few_rows_start_no_worker(here, monkeypatch):
     """Where rows are fewer than a worker is worth, none is started whatever jobs says."""
-    monkeypatch.setattr(spreading, "_in_workers", None)
+    monkeypatch.setattr(workers, "ProcessPoolExecutor", None)
     assert _spread(TASKS, jobs=8) == here
 
 
 def test_one_job_starts_no_worker(here, monkeypatch):
     """With one job the rows are computed here however many they are."""
-    monkeypatch.setattr(spreading, "_in_workers", None)
+    monkeypatch.setattr(workers, "ProcessPoolExecutor", None)
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
     assert _spread(TASKS, jobs=1) == here
 
@@ -111,12 +125,12 @@ def test_worker_processes_give_the_same_bits(monkeypatch, draws):
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
     started = []
 
-    class Pool(spreading.ProcessPoolExecutor):
+    class Pool(workers.ProcessPoolExecutor):
         def __init__(self, workers, **options):
             started.append(workers)
             super().__init__(workers, **options)
 
-    monkeypatch.setattr(spreading, "ProcessPoolExecutor", Pool)
+    monkeypatch.setattr(workers, "ProcessPoolExecutor", Pool)
     elsewhere = _spread(TASKS, draws, jobs=2)
     assert started == [2]
     assert elsewhere == _spread(TASKS, draws, jobs=1)
@@ -134,19 +148,18 @@ def test_a_batch_is_what_its_rows_are(here):
     assert [told(one) for one in spread_batch(TASKS[:7], LINES)] == here[:7]
 
 
-@pytest.mark.parametrize("fault", [spreading.BrokenProcessPool, OSError])
+@pytest.mark.parametrize("fault", [workers.BrokenProcessPool, OSError])
 @pytest.mark.parametrize("delivered", [0, 1, 3])
 def test_rows_of_a_lost_worker_are_computed_here(here, monkeypatch, fault, delivered):
     """When workers cannot be started, or are lost on the way, the rows they leave are computed here, once each."""
 
-    def lose(tasks, batches, draws, workers):
-        assert workers == 2
-        for places in batches[:delivered]:
-            yield spread_batch([tasks[place] for place in places], draws)
-        raise fault
+    class Pool(_Pool):
+        def map(self, function, items):
+            yield from map(function, items[:delivered])
+            raise fault
 
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
-    monkeypatch.setattr(spreading, "_in_workers", lose)
+    monkeypatch.setattr(workers, "ProcessPoolExecutor", Pool)
     assert [place for place, _ in spread_rows(TASKS, LINES, jobs=2)] == [
         place for batch in spreading._batches(TASKS) for place in batch
     ]
@@ -157,12 +170,12 @@ def test_workers_are_no_more_than_are_worth_it(monkeypatch):
     """There are as many workers as jobs allow and rows are worth, and no more."""
     asked = []
 
-    def count(tasks, batches, draws, workers):  # noqa: ARG001
-        asked.append(workers)
-        raise OSError
-        yield
+    class Pool:
+        def __init__(self, count, **_):
+            asked.append(count)
+            raise OSError
 
-    monkeypatch.setattr(spreading, "_in_workers", count)
+    monkeypatch.setattr(workers, "ProcessPoolExecutor", Pool)
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 7)
     for jobs in (2, 3, 8):
         list(spread_rows(TASKS, Draws("sobol", 16, 0), jobs=jobs))
@@ -172,12 +185,12 @@ def test_workers_are_no_more_than_are_worth_it(monkeypatch):
 def test_any_other_fault_of_a_worker_is_told(monkeypatch):
     """A defect of the model in a worker is raised, not computed again."""
 
-    def fail(*_):
-        raise ValueError("the model failed")
-        yield
+    class Pool(_Pool):
+        def map(self, *_):
+            raise ValueError("the model failed")
 
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
-    monkeypatch.setattr(spreading, "_in_workers", fail)
+    monkeypatch.setattr(workers, "ProcessPoolExecutor", Pool)
     with pytest.raises(ValueError, match="the model failed"):
         list(spread_rows(TASKS, LINES, jobs=2))
 

@@ -45,7 +45,7 @@ def test_rows_keep_their_numbers():
 def test_every_column_is_there_with_its_type():
     """The table has a column for every key, of numbers or of texts, also where the sheet has none."""
     table, _ = _tabulate({1: HEADERS, 2: ROW})
-    assert table.frame.width == 21
+    assert table.frame.width == 24
     assert table.frame.schema["torque_Nm"] == table.frame.schema["bore_diameter_mm"] == pl.Float64
     assert table.frame.schema["notes"] == pl.String
     assert table.frame["torque_Nm"].to_list() == [800.0]
@@ -94,10 +94,15 @@ def test_lengths_are_converted_to_mm(header, value, number):
         ("Backlash limit [arcsec]", 225, "backlash_limit_arcmin", 3.75),
         ("Backlash limit [mrad]", 1, "backlash_limit_arcmin", 3.437746770784939),
         ("Backlash limit [°]", 0.0625, "backlash_limit_arcmin", 3.75),
+        ("Disk cone angle [rad]", 1.0, "disk_cone_angle_deg", 57.29577951308232),
+        ("Disk cone angle [arcmin]", 3600, "disk_cone_angle_deg", 60),
+        ("Load inertia J [kg·cm²]", 5000, "load_inertia_kg_m2", 0.5),
+        ("Load inertia J [lb·in²]", 1000, "load_inertia_kg_m2", 0.2926396534292),
+        ("Disk thickness exponent n [%]", 150, "disk_thickness_exponent", 1.5),
     ],
 )
 def test_other_quantities_are_converted(header, value, key, number):
-    """Torques become N·m and angles arcmin."""
+    """Torques become N·m, angles arcmin or degrees, inertias kg·m² and ratios plain numbers."""
     table, ledger = _tabulate({1: ["Variant", "Material", header], 2: ["A", "20Cr2Ni4", value]})
     assert table.frame[key][0] == pytest.approx(number, rel=1e-14)
     assert [code for code, _ in _told(ledger, "info")] == ["I501"]

@@ -26,6 +26,26 @@ STATUS_ROWS = [
     ({"disk_inner_radius_mm": None}, "disk inner radius missing"),
     ({"flexspline_type": "hat", "disk_inner_radius_mm": None}, "disk outer radius missing"),
     ({"flexspline_type": "cylinder"}, "a cylinder has no disk"),
+    (
+        {"flexspline_type": "cylinder", "disk_inner_radius_mm": None, "disk_cone_angle_deg": 60.0},
+        "a cylinder has no disk",
+    ),
+    (
+        {"flexspline_type": "cylinder", "disk_inner_radius_mm": None, "disk_thickness_exponent": 2.0},
+        "a cylinder has no disk",
+    ),
+    ({"flexspline_type": "cylinder", "disk_inner_radius_mm": None, "load_inertia_kg_m2": 1.0}, "complete"),
+    ({"disk_thickness_exponent": 2.0}, "exponent needs the thickness at hub"),
+    ({"disk_thickness_exponent": 0}, "exponent needs the thickness at hub"),
+    (
+        {"disk_thickness_exponent": 2.0, "disk_hub_thickness_mm": 4.0, "disk_thickness_mm": 1.6},
+        "exponent and disk thickness both given",
+    ),
+    ({"disk_thickness_exponent": 2.0, "disk_hub_thickness_mm": 4.0}, "complete"),
+    ({"disk_hub_thickness_mm": 4.0, "disk_thickness_mm": 1.6}, "complete"),
+    ({"disk_cone_angle_deg": 60.0, "load_inertia_kg_m2": 0.5}, "complete"),
+    ({"load_inertia_kg_m2": "0,5"}, "a number is text"),
+    ({"load_inertia_kg_m2": -0.5}, "a number is negative"),
     ({"disk_inner_radius_mm": 81.0}, "hub larger than the disk"),
     ({"disk_inner_radius_mm": 60.0, "disk_outer_radius_mm": 50.0}, "hub larger than the disk"),
     ({"mean_radius_mm": None, "bore_diameter_mm": 78.0}, "hub larger than the disk"),
@@ -122,7 +142,7 @@ def test_variants_is_not_protected_and_the_header_is_guarded(empty):
     sheet = empty["Variants"]
     assert not sheet.protection.sheet
     guards = [rule for rule in sheet.data_validations.dataValidation if rule.formula1 == "FALSE"]
-    assert [str(rule.sqref) for rule in guards] == [f"A{HEADER_ROW + 1}:U{HEADER_ROW + 1}"]
+    assert [str(rule.sqref) for rule in guards] == [f"A{HEADER_ROW + 1}:X{HEADER_ROW + 1}"]
     assert sheet.freeze_panes == f"B{FIRST_ROW + 1}"
 
 
@@ -133,7 +153,7 @@ def test_nothing_is_merged_in_entry_tables(empty):
 
 def test_the_version_is_stamped_twice(empty):
     """The template's version stands in a visible cell and in a document property."""
-    texts = [cell.value for row in empty["Variants"]["A1:T2"] for cell in row]
+    texts = [cell.value for row in empty["Variants"]["A1:W2"] for cell in row]
     assert "Template version 1" in texts
     properties = {one.name: one.value for one in empty.custom_doc_props.props}
     assert properties == {"flexlash": "template", "flexlash_template_version": 1}
@@ -163,9 +183,10 @@ def test_the_status_formula_calculates_what_is_stored(filled, tmp_path):
 @needs_libreoffice
 def test_the_live_sentence_counts_complete_rows(filled, tmp_path):
     """The sentence above the table counts the complete rows, stored and recalculated."""
+    complete = [text for _, text in STATUS_ROWS].count("complete")
     for path in (filled, convert(filled, "xlsx", tmp_path)):
         sheet = openpyxl.load_workbook(path, data_only=True)["Variants"]
-        assert sheet.cell(2, 10).value == "2 of 19 rows complete"
+        assert sheet.cell(2, 10).value == f"{complete} of {len(STATUS_ROWS) + 2} rows complete"
 
 
 @needs_libreoffice

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from flexlash.units import ARCMIN, ARCSEC, find_unit
+from flexlash.units import ARCMIN, ARCSEC, RPM, find_unit
 
 SIZES = [
     ("length", "m", 1.0),
@@ -41,6 +41,12 @@ SIZES = [
     ("density", "g/cm³", 1000.0),
     ("density", "kg/dm³", 1000.0),
     ("density", "lb/in³", 27679.904710203125),
+    ("inertia", "kg·m²", 1.0),
+    ("inertia", "kg·cm²", 1e-4),
+    ("inertia", "kg·mm²", 1e-6),
+    ("inertia", "g·cm²", 1e-7),
+    ("inertia", "lb·in²", 2.926396534292e-4),
+    ("inertia", "lb·ft²", 0.04214011009380048),
     ("ratio", "-", 1.0),
     ("ratio", "%", 0.01),
 ]
@@ -85,6 +91,24 @@ SPELLINGS = [
     ("angle", "urad", "µrad"),
     ("density", "kg/m3", "kg/m³"),
     ("density", "g/cm3", "g/cm³"),
+    ("inertia", "kg m2", "kg·m²"),
+    ("inertia", "kg m²", "kg·m²"),
+    ("inertia", "kgm²", "kg·m²"),
+    ("inertia", "kg*m^2", "kg·m²"),
+    ("inertia", "kg-m2", "kg·m²"),
+    ("inertia", "kg.m2", "kg·m²"),
+    ("inertia", "kgcm2", "kg·cm²"),
+    ("inertia", "kg mm2", "kg·mm²"),
+    ("inertia", "g cm²", "g·cm²"),
+    ("inertia", "lb-in2", "lb·in²"),
+    ("inertia", "lb ft²", "lb·ft²"),
+    ("inertia", "kg·m", None),
+    ("inertia", "kg", None),
+    ("inertia", "kg/m³", None),
+    ("inertia", "lbf·in", None),
+    ("inertia", "m²", None),
+    ("inertia", "", None),
+    ("torque", "kg·m²", None),
     ("ratio", "", "-"),
     ("ratio", "1", "-"),
     ("ratio", "–", "-"),
@@ -115,7 +139,7 @@ def test_spellings(quantity, text, name):
     assert (unit.name if unit else None) == name
 
 
-@pytest.mark.parametrize("quantity", ["length", "torque", "stress", "angle", "density", "ratio"])
+@pytest.mark.parametrize("quantity", ["length", "torque", "stress", "angle", "inertia", "density", "ratio"])
 def test_no_unit_measures_two_things(quantity):
     """A unit of one quantity is unknown to every other, so that a header copied to a wrong column is caught."""
     foreign = [name for other, name, _ in SIZES if other != quantity]
@@ -132,6 +156,11 @@ def test_minutes_and_seconds_of_arc():
     """Sixty minutes of arc are a degree, and sixty seconds a minute."""
     assert pytest.approx(math.radians(1), rel=1e-15) == 60 * ARCMIN
     assert pytest.approx(ARCMIN, rel=1e-15) == 60 * ARCSEC
+
+
+def test_turns_per_minute():
+    """Sixty turns per minute are a turn per second."""
+    assert pytest.approx(math.tau, rel=1e-15) == 60 * RPM
 
 
 def test_a_quantity_that_nobody_measures_is_a_fault_of_the_program():

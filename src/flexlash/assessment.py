@@ -14,7 +14,7 @@ from flexlash.tolerance.variation import Variation
 from flexlash.units import RPM
 from flexlash.variant import Settings, Variant
 
-__all__ = ["Computed", "assess"]
+__all__ = ["Computed", "assess", "blame"]
 
 _REFINEMENTS = {column.dimension: column.key for column in VARIANTS if column.group == "Refinements"}
 _LEAST, _GREATEST = 1e-12, 10.0
@@ -50,7 +50,7 @@ def assess(validated: Validated, settings: Settings) -> dict[int, Computed]:
     numbers = nominal_numbers(sound, settings.lost_motion_percent / 100)
     for variant, nominal in zip(sound, numbers, strict=True):
         if not _LEAST < nominal["backlash"] < _GREATEST:  # type: ignore[operator]
-            _add(validated, "E324", variant, "torque_Nm", value=f"{nominal['backlash']:.3g}")
+            blame(validated, "E324", variant, "torque_Nm", value=f"{nominal['backlash']:.3g}")
             continue
         _warn_strength(validated, variant, nominal)
         _warn_stiffness(validated, variant, nominal)
@@ -68,7 +68,7 @@ def _blame_limits(validated: Validated, variant: Variant, problem: LimitsProblem
     key = column.key if column.sheet == "Variants" else "material"
     value = variant.dimensions[problem.dimension] / column.si_unit.si
     details = dict(_details(problem))
-    _add(
+    blame(
         validated,
         _CODES[problem.kind],
         variant,
@@ -94,10 +94,10 @@ def _warn_strength(validated: Validated, variant: Variant, nominal: Numbers) -> 
     if strength is not None and _exceeds(stress, strength):
         facts = {"value": _megapascals(stress), "other": strength / 1e6, "detail": nominal["governing_section"]}
         limit = f"{nominal['elastic_limit_torque']:.4g}"
-        _add(validated, "W402", variant, "torque_Nm", limit=limit, **facts)
+        blame(validated, "W402", variant, "torque_Nm", limit=limit, **facts)
     shear, buckling = nominal["wall_shear"], nominal.get("buckling_shear")
     if _exceeds(shear, buckling):
-        _add(validated, "W411", variant, "torque_Nm", value=_megapascals(shear), other=_megapascals(buckling))
+        blame(validated, "W411", variant, "torque_Nm", value=_megapascals(shear), other=_megapascals(buckling))
 
 
 def _warn_stiffness(validated: Validated, variant: Variant, nominal: Numbers) -> None:
@@ -106,11 +106,11 @@ def _warn_stiffness(validated: Validated, variant: Variant, nominal: Numbers) ->
     if _exceeds(listed, stiffness):
         key = "mean_radius_mm" if "mean_radius" in variant.dimensions else "bore_diameter_mm"
         size = f"{nominal['catalogue_size']:.0f}"
-        _add(validated, "W412", variant, key, value=f"{stiffness:.4g}", other=listed, detail=size)
+        blame(validated, "W412", variant, key, value=f"{stiffness:.4g}", other=listed, detail=size)
     speed = nominal.get("resonance_speed")
     if _exceeds(_USUAL_SPEED, speed):
         facts = {"value": f"{nominal['natural_frequency']:.4g}", "other": f"{float(speed or 0) / RPM:.0f}"}
-        _add(validated, "W415", variant, "load_inertia_kg_m2", **facts)
+        blame(validated, "W415", variant, "load_inertia_kg_m2", **facts)
 
 
 def _exceeds(one: float | str | None, other: float | str | None) -> bool:
@@ -127,10 +127,10 @@ def _warn_calibration(validated: Validated, variant: Variant) -> None:
     used = [key for name, key in _REFINEMENTS.items() if name in variant.dimensions]
     factors = (variant.dimensions["cylinder_calibration"], variant.dimensions["disk_calibration"])
     if used and factors != (1.0, 1.0):
-        _add(validated, "W407", variant, used[0])
+        blame(validated, "W407", variant, used[0])
 
 
-def _add(validated: Validated, code: str, variant: Variant, key: str, **facts: object) -> None:
+def blame(validated: Validated, code: str, variant: Variant, key: str, **facts: object) -> None:
     """Record a finding at a cell of a variant."""
     if validated.table is None:
         raise LookupError("a variant without its table")

@@ -148,6 +148,7 @@ def check(submissions: tuple[Path, ...], *, as_json: bool, **options: Any) -> No
 @click.option("--method", type=click.Choice(["line", "sobol", "random"]), help="How the spread is sampled.")
 @click.option("--samples", type=click.IntRange(1, 2**22), help="Lines or points per variant.")
 @click.option("--cross-check", is_flag=True, help="Put plain Monte Carlo beside the spread and say whether they agree.")
+@click.option("--elasticity", is_flag=True, help="Check each variant by two-dimensional elasticity.")
 @click.option(
     "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default="all cores", help="Processes."
 )
@@ -158,8 +159,11 @@ def check(submissions: tuple[Path, ...], *, as_json: bool, **options: Any) -> No
 @_table_option("materials")
 def run(submissions: tuple[Path, ...], output: Path | None, *, as_json: bool, quiet: bool, **options: Any) -> None:
     """Validate, compute the tolerance spread, write the report."""
+    from flexlash.elasticity import MISSING, is_available
     from flexlash.pipeline import run as run_one
 
+    if options["elasticity"] and not is_available():
+        raise click.UsageError(MISSING)
     targets = _targets(submissions, output)
     codes: list[int] = []
     for path, target in zip(submissions, targets, strict=True):
@@ -201,7 +205,7 @@ def _progress(*, quiet: bool) -> Iterator[Progress | None]:
     if quiet or not sys.stderr.isatty():
         yield None
         return
-    with click.progressbar(length=1, label="Tolerance spread", file=sys.stderr, show_pos=True) as bar:
+    with click.progressbar(length=1, label="Computing", file=sys.stderr, show_pos=True) as bar:
 
         def advance(done: int, total: int) -> None:
             bar.length = total

@@ -17,6 +17,8 @@ from flexlash.variant import Settings
 if TYPE_CHECKING:
     import polars as pl
 
+    from flexlash.elasticity.twist import ElasticityCheck
+
 __all__ = ["Outcome"]
 
 
@@ -26,6 +28,7 @@ class Outcome:
 
     `results` is the Results table; `findings` all findings in the order of the submission; `outputs` the
     files written. `computed` holds, by row number, what the report draws on.
+    `pictured` holds, by variant, the elasticity checks that the report draws.
     `skipped` says that the file is a report or a marked copy, not a submission.
     """
 
@@ -36,6 +39,7 @@ class Outcome:
     validated: Validated | None = None
     computed: dict[int, Computed] = field(default_factory=dict)
     outputs: list[Path] = field(default_factory=list)
+    pictured: dict[str, ElasticityCheck] = field(default_factory=dict)
     skipped: bool = False
 
     @property

@@ -9,13 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexlash.assessment import assess
+from flexlash.elasticity import MISSING, is_available
 from flexlash.findings import Finding, finding
 from flexlash.mechanics.flexspline import backlash
 from flexlash.outcome import Outcome
 from flexlash.results import result_record, results_frame
 from flexlash.submission.gate import Refusal, admit, read_bytes
 from flexlash.submission.read import RawSheet, Submission, read_submission, read_table
-from flexlash.submission.validate import validate
+from flexlash.submission.validate import Validated, validate
+from flexlash.summary import worst_first
 from flexlash.tolerance.spreading import spread_rows
 from flexlash.tolerance.variation import Draws
 from flexlash.variant import Settings
@@ -26,6 +28,9 @@ if TYPE_CHECKING:
 __all__ = ["Options", "Outcome", "check", "run"]
 
 Progress = Callable[[int, int], None]
+
+PICTURED = 6
+"""Most variants of which the report shows the half-section."""
 
 _ELSEWHERE = "stopped by an error of another row or sheet, see Findings"
 
@@ -39,6 +44,7 @@ class Options:
     samples: int | None = None
     strict: bool = False
     cross_check: bool = False
+    elasticity: bool = False
     jobs: int = 1
     tolerances: str | Path | None = None
     materials: str | Path | None = None
@@ -57,14 +63,21 @@ def check(submission: str | Path, **options: Any) -> Outcome:
 def run(submission: str | Path, output: str | Path | None = None, **options: Any) -> Outcome:
     """Return the outcome of a submission and write it to `output`, unless that is None.
 
-    Options are those of the command line: seed, method, samples, cross_check, strict, jobs, tolerances,
-    materials. The output's ending decides its form: .xlsx, .csv, .parquet or .json.
+    Options are those of the command line: seed, method, samples, cross_check, elasticity, strict, jobs,
+    tolerances, materials. The output's ending decides its form: .xlsx, .csv, .parquet or .json.
 
-    Raises OSError when a file cannot be opened or written, ValueError for an unknown ending.
+    Raises OSError when a file cannot be opened or written, ValueError for an unknown ending, ModuleNotFoundError
+    for elasticity without its libraries.
     """
     chosen = Options(**options)
+    if chosen.elasticity and not is_available():
+        raise ModuleNotFoundError(MISSING)
     outcome = _examine(Path(submission), chosen)
     _spread(outcome, chosen)
+    if chosen.elasticity:
+        _verify(outcome, chosen)
+        if str(output).lower().endswith(".xlsx"):
+            _picture(outcome)
     if output is not None and outcome.computed:
         from flexlash.report.output import write_outcome
 
@@ -122,7 +135,7 @@ def _validated(submission: Submission, options: Options) -> Outcome:
     }
     settings = replace(validated.settings, **overrides)
     computed = assess(validated, settings)
-    findings = sorted(validated.ledger.findings, key=_place_order(submission))
+    findings = _in_order(validated, submission)
     if options.strict and len(computed) < len(validated.submitted):
         computed = {}
     outcome = Outcome(
@@ -173,11 +186,43 @@ def _spread(outcome: Outcome, options: Options) -> None:
         one = rows[place]
         outcome.computed[one.variant.row] = replace(one, variation=variation)
         if options.progress:
-            options.progress(done, len(rows))
+            options.progress(done, len(rows) * (2 if options.elasticity else 1))
     outcome.results = _results(outcome, cross_check=options.cross_check)
 
 
-def _results(outcome: Outcome, *, cross_check: bool = False) -> pl.DataFrame:
+def _verify(outcome: Outcome, options: Options) -> None:
+    """Put the elasticity check into every computed row."""
+    if outcome.validated is None or not outcome.computed:
+        return
+    from flexlash.verification import verified
+
+    rows = len(outcome.computed)
+    progress = options.progress
+    outcome.computed = verified(
+        outcome.validated,
+        outcome.computed,
+        jobs=options.jobs,
+        progress=(lambda done, total: progress(rows + done, rows + total)) if progress else None,
+    )
+    outcome.findings = _in_order(outcome.validated, outcome.submission)
+    outcome.results = _results(outcome, cross_check=options.cross_check, elasticity=True)
+
+
+def _picture(outcome: Outcome) -> None:
+    """Solve the worst few of the checked variants once more, for their stress fields."""
+    from flexlash.verification import pictured
+
+    by_name = {one.variant.name: one for one in outcome.computed.values()}
+    worst = [by_name[row["variant"]] for row in worst_first(outcome)]
+    outcome.pictured = pictured([one for one in worst if "elasticity_windup" in one.nominal][:PICTURED])
+
+
+def _in_order(validated: Validated, submission: Submission) -> list[Finding]:
+    """Return the findings in the order of the submission."""
+    return sorted(validated.ledger.findings, key=_place_order(submission))
+
+
+def _results(outcome: Outcome, *, cross_check: bool = False, elasticity: bool = False) -> pl.DataFrame:
     """Return the Results table, one row per submitted variant in submitted order."""
     if outcome.validated is None:
         return results_frame([])
@@ -199,4 +244,4 @@ def _results(outcome: Outcome, *, cross_check: bool = False) -> pl.DataFrame:
         records.append(
             {**record, "variant": name, "status": status, "notes": notes or None, "findings": listed or None}
         )
-    return results_frame(records, cross_check=cross_check)
+    return results_frame(records, cross_check=cross_check, elasticity=elasticity)

@@ -6,7 +6,7 @@ from typing import Any
 
 from flexlash.columns import Column
 
-__all__ = ["CROSS_CHECK", "FINDINGS", "RESULTS", "result_columns"]
+__all__ = ["CROSS_CHECK", "ELASTICITY", "FINDINGS", "RESULTS", "result_columns"]
 
 
 def _result(key: str, label: str, text: str, unit: str = "", quantity: str = "", **rest: Any) -> Column:
@@ -98,9 +98,6 @@ RESULTS = (
     ),
     _result("rim_shear_MPa", "Rim shear", "Shear stress in the tooth rim.", "MPa", "stress"),
     _result("hub_shear_radius_mm", "Radius of hub shear", "Where in the disk the hub shear acts.", "mm", "length"),
-    _result("wall_von_mises_MPa", "Wall von Mises", "√3 times the wall shear.", "MPa", "stress"),
-    _result("rim_von_mises_MPa", "Rim von Mises", "√3 times the rim shear.", "MPa", "stress"),
-    _result("hub_von_mises_MPa", "Hub von Mises", "√3 times the hub shear.", "MPa", "stress"),
     _result(
         "governing_section",
         "Governing section",
@@ -200,9 +197,36 @@ CROSS_CHECK = (
 """Further columns of a run with --cross-check."""
 
 
-def result_columns(*, cross_check: bool = False) -> tuple[Column, ...]:
+ELASTICITY = (
+    _angle("elasticity_windup", "Wind-up by elasticity", "Wind-up by two-dimensional elasticity.", "rad"),
+    _result(
+        "elasticity_difference_percent",
+        "Difference from elasticity",
+        "Wind-up over that by elasticity, minus one.",
+        "%",
+        "ratio",
+    ),
+    _result(
+        "elasticity_error_percent",
+        "Error of elasticity",
+        "Change of the elasticity result from the mesh before, which is greater than the error that remains.",
+        "%",
+        "ratio",
+    ),
+    _result(
+        "elasticity_hub_fillet_shear_MPa",
+        "Hub fillet shear by elasticity",
+        "Greatest shear stress along the hub fillet; blank without fillet, where a sharp corner has no finite one.",
+        "MPa",
+        "stress",
+    ),
+)
+"""Further columns of a run with --elasticity."""
+
+
+def result_columns(*, cross_check: bool = False, elasticity: bool = False) -> tuple[Column, ...]:
     """Return the columns of the Results of a run."""
-    return (*RESULTS, *CROSS_CHECK) if cross_check else RESULTS
+    return (*RESULTS, *(CROSS_CHECK if cross_check else ()), *(ELASTICITY if elasticity else ()))
 
 
 FINDINGS = tuple(

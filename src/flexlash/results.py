@@ -15,10 +15,12 @@ from flexlash.variant import Variant
 
 __all__ = ["result_record", "results_frame"]
 
-_COLUMNS = result_columns(cross_check=True)
+_COLUMNS = result_columns(cross_check=True, elasticity=True)
 _STEMS = {column.key: (column.dimension, column.si_unit.si) for column in _COLUMNS if column.quantity} | {
     "stiffness_Nm_per_rad": ("stiffness", 1.0),
     "catalogue_stiffness_Nm_per_rad": ("catalogue_stiffness", 1.0),
+    "elasticity_difference_percent": ("elasticity_difference", 0.01),
+    "elasticity_error_percent": ("elasticity_error", 0.01),
     "natural_frequency_Hz": ("natural_frequency", 1.0),
     "resonance_speed_rpm": ("resonance_speed", RPM),
     "stiffness_Nm_per_arcmin": ("stiffness", 1 / ARCMIN),
@@ -49,8 +51,10 @@ def result_record(
     return record
 
 
-def results_frame(records: Sequence[Mapping[str, Any]], *, cross_check: bool = False) -> pl.DataFrame:
+def results_frame(
+    records: Sequence[Mapping[str, Any]], *, cross_check: bool = False, elasticity: bool = False
+) -> pl.DataFrame:
     """Return the Results of all submitted rows; a row with errors keeps its place with empty numbers."""
-    columns = result_columns(cross_check=cross_check)
+    columns = result_columns(cross_check=cross_check, elasticity=elasticity)
     types = {column.key: pl.Float64 if column.is_number else pl.String for column in columns}
     return pl.DataFrame([{key: record.get(key) for key in types} for record in records], schema=types, orient="row")

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -49,8 +49,9 @@ Lines = tuple[float, ...]
 class HalfSection:
     """Nodes of a half-section and what its edges are.
 
-    `radius` and `height` [m] have shape (2 columns + 1, 2 rows + 1) and are NaN where no cell needs them; `cells`
-    (columns, rows) says which exist. `clamped`, `loaded` and `hub_fillet` mark the nodes of these edges.
+        `radius` and `height` [m] have shape (2 columns + 1, 2 rows + 1) and are NaN where no cell needs them; `cells`
+    XX
+        `details` are places worth a closer look: what is there, radius, height, and reach around them [m].
     """
 
     radius: Array
@@ -59,6 +60,7 @@ class HalfSection:
     clamped: Array
     loaded: Array
     hub_fillet: Array
+    details: tuple[tuple[str, float, float, float], ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,23 +126,31 @@ def section_problem(flexspline_type: str, dimensions: Mapping[str, float]) -> tu
     """Return why the dimensions make no closed half-section: the dimension to blame and a clause; None if they do."""
     part = _part(flexspline_type, dimensions)
     edge = _SLACK * part.mean
-    if part.bore <= edge:
-        return "wall_thickness", "the wall fills its bore"
-    if flexspline_type == "cylinder":
-        return None
-    meeting = "disk_outer_radius" if flexspline_type == "cup" else "disk_inner_radius"
-    if abs(dimensions.get(meeting, part.mean) - part.mean) > part.wall / 2 + edge:
-        return meeting, "the disk does not end within the wall"
-    if flexspline_type == "hat":
-        return None if part.clamp > part.outside + edge else ("disk_outer_radius", "the flange ends within the wall")
+    meeting = {"cup": "disk_outer_radius", "hat": "disk_inner_radius"}.get(part.kind, "mean_radius")
     width = part.bore - part.clamp
-    if width <= edge:
-        return "disk_inner_radius", "the hub reaches into the wall"
-    if part.hub_fillet > width + edge:
-        return "hub_fillet_radius", "the hub fillet reaches into the wall"
-    if part.hub_fillet + part.junction_fillet > width + edge:
-        return "junction_fillet_radius", "hub fillet and junction fillet overlap on the disk"
-    return None
+    cup, hat = part.kind == "cup", part.kind == "hat"
+    problems = (
+        (part.bore <= edge, "wall_thickness", "the wall fills its bore"),
+        (
+            abs(dimensions.get(meeting, part.mean) - part.mean) > part.wall / 2 + edge,
+            meeting,
+            "the disk does not end within the wall",
+        ),
+        (hat and part.clamp <= part.outside + edge, "disk_outer_radius", "the flange ends within the wall"),
+        (cup and width <= edge, "disk_inner_radius", "the hub reaches into the wall"),
+        (cup and part.hub_fillet > width + edge, "hub_fillet_radius", "the hub fillet reaches into the wall"),
+        (
+            cup and part.hub_fillet + part.junction_fillet > width + edge,
+            "junction_fillet_radius",
+            "hub fillet and junction fillet overlap on the disk",
+        ),
+        (
+            part.junction_fillet + part.rim_length > part.length * (1 + _SLACK),
+            "rim_length" if part.rim_length else "junction_fillet_radius",
+            "rim and junction fillet are longer than the cylinder",
+        ),
+    )
+    return next(((name, clause) for broken, name, clause in problems if broken), None)
 
 
 def half_section(flexspline_type: str, dimensions: Mapping[str, float], refinement: int = 0) -> HalfSection:
@@ -154,7 +164,23 @@ def half_section(flexspline_type: str, dimensions: Mapping[str, float], refineme
         raise ValueError(problem[1])
     part = _part(flexspline_type, dimensions)
     turned = part.kind == "cylinder" or part.junction_fillet > 0
-    return _along_the_meridian(part, refinement) if turned else _around_the_corner(part, refinement)
+    section = _along_the_meridian(part, refinement) if turned else _around_the_corner(part, refinement)
+    return replace(section, details=tuple(_details(part)))
+
+
+def _details(part: _Part) -> Iterator[tuple[str, float, float, float]]:
+    """Yield where hub, junction and rim step are, and how far around them stress is disturbed."""
+    if part.kind != "cylinder":
+        at_clamp, at_wall = (float(part.thickness(np.array([radius]))[0]) for radius in (part.clamp, part.mean))
+        inwards = 1 if part.kind == "cup" else -1
+        reach = 1.5 * max(2 * at_clamp, part.hub_fillet)
+        drop = abs(part.clamp - part.bore) * part.lean
+        name = "hub" if part.kind == "cup" else "bolt circle"
+        yield name, part.clamp + inwards * 0.7 * reach, part.hub_fillet / 2 - at_clamp / 2 - drop, reach
+        yield "junction", part.mean, 0.0, 2 * max(part.wall, at_wall, part.junction_fillet)
+    if part.has_step:
+        reach = 2 * max(part.wall, part.rim_outside - part.outside)
+        yield "rim step", part.outside, part.length - part.rim_length, reach
 
 
 # Mesh lines

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from functools import partial
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from scipy.special import expm1, xlogy
@@ -89,15 +88,21 @@ def disk_thickness(dimensions: Dimensions, radius: Array | float) -> Array | flo
     >>> round(float(disk_thickness(tapered, 0.06)), 9)
     0.0028
     """
+    return _disk_profile(dimensions)(radius)
+
+
+def _disk_profile(dimensions: Dimensions) -> Callable[[Array | float], Array | float]:
+    """Return the thickness of the disk itself as a function of the radius."""
+    even = dimensions.get("disk_thickness", dimensions["wall_thickness"])
     if "disk_hub_thickness" not in dimensions:
-        return dimensions.get("disk_thickness", dimensions["wall_thickness"])
-    hub_thickness, inner = dimensions["disk_hub_thickness"], dimensions["disk_inner_radius"]
+        return lambda _: even
+    hub_thickness, (inner, outer) = dimensions["disk_hub_thickness"], disk_radii(dimensions)
     if "disk_thickness_exponent" in dimensions:
+        exponent = dimensions["disk_thickness_exponent"]
         # expm1 of SciPy, since NumPy's exp may round otherwise at another place of an array.
-        return hub_thickness * (1 + expm1(-xlogy(dimensions["disk_thickness_exponent"], radius / np.asarray(inner))))
-    thickness = dimensions.get("disk_thickness", dimensions["wall_thickness"])
-    outer = dimensions.get("disk_outer_radius", radius_of(dimensions))
-    return hub_thickness + (thickness - hub_thickness) / (outer - inner) * (radius - inner)
+        return lambda radius: hub_thickness * (1 + expm1(-xlogy(exponent, radius / np.asarray(inner))))
+    slope = (even - hub_thickness) / (outer - inner)
+    return lambda radius: hub_thickness + slope * (radius - inner)
 
 
 def _cylinder_integrals(dimensions: Dimensions, mean_radius: Array) -> dict[str, Array]:
@@ -121,19 +126,19 @@ def _disk_integrals(dimensions: Dimensions) -> dict[str, Array]:
     inner, outer = disk_radii(dimensions)
     integrals = {}
     start = inner
+    thickness_at = _disk_profile(dimensions)
     if "hub_fillet_radius" in dimensions:
         fillet = dimensions["hub_fillet_radius"]
-        thickness_at = partial(disk_thickness, dimensions)
         integrals["hub_fillet"] = windup.hub_fillet_integral(inner, fillet, thickness_at)
         start = inner + fillet
     if "disk_thickness_exponent" in dimensions:
         exponent = dimensions["disk_thickness_exponent"]
-        body = windup.power_law_disk_integral(start, outer, disk_thickness(dimensions, start), exponent)
+        body = windup.power_law_disk_integral(start, outer, thickness_at(start), exponent)
     elif "disk_hub_thickness" in dimensions:
         thickness = dimensions.get("disk_thickness", dimensions["wall_thickness"])
-        body = windup.tapered_disk_integral(start, outer, disk_thickness(dimensions, start), thickness)
+        body = windup.tapered_disk_integral(start, outer, thickness_at(start), thickness)
     else:
-        body = windup.annulus_integral(start, outer, disk_thickness(dimensions, start))
+        body = windup.annulus_integral(start, outer, thickness_at(start))
     if "disk_cone_angle" in dimensions:
         body = windup.cone_integral(body, dimensions["disk_cone_angle"])
     return integrals | {"disk_body": body}

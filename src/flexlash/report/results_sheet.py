@@ -34,7 +34,7 @@ def _number_format(column: Column) -> str:
 def write_results(book: Book, results: pl.DataFrame) -> None:
     """Write the Results sheet."""
     sheet = book.sheet("Results")
-    columns = result_columns(cross_check="cross_check" in results.columns)
+    columns = [column for column in result_columns(cross_check=True, elasticity=True) if column.key in results.columns]
     last = FIRST_ROW + results.height - 1
     for place, column in enumerate(columns):
         number = _number_format(column) if column.is_number else ""

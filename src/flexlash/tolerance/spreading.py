@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import multiprocessing
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -22,6 +19,7 @@ from flexlash.tolerance.sampling import UnitPoints
 from flexlash.tolerance.sensitivity import first_order_sd, first_order_valid, worst_case
 from flexlash.tolerance.statistics import line_variations, point_variation
 from flexlash.tolerance.variation import PERCENTILES, Draws, Task, Variation
+from flexlash.workers import mapped
 
 __all__ = ["spread_rows", "variations_of"]
 
@@ -31,24 +29,17 @@ WORTH_A_WORKER = 1000
 _ROWS_PER_BATCH = 200
 
 _DRAWN: dict[Draws, Draws] = {}
-"""In a worker: the draws that hold their points already."""
+"""Of this process: the draws that hold their points already."""
 
 
 def spread_rows(tasks: Sequence[Task], draws: Draws, *, jobs: int) -> Iterator[tuple[int, Variation]]:
     """Yield each row's place and spread, rows alike together, by up to `jobs` processes where there are rows enough."""
     batches = list(_batches(tasks))
-    workers = min(jobs, len(tasks) // WORTH_A_WORKER)
-    done = 0
-    if workers > 1:
-        try:
-            for places, spreads in zip(batches, _in_workers(tasks, batches, draws, workers), strict=True):
-                yield from zip(places, spreads, strict=True)
-                done += 1
-        except (BrokenProcessPool, OSError):
-            # Where processes cannot be started, or one was stopped, the rest is computed here.
-            pass
-    for places in batches[done:]:
-        yield from zip(places, variations_of([tasks[place] for place in places], draws), strict=True)
+    rows = [[tasks[place] for place in places] for places in batches]
+    # Fresh draws, since these may hold their points already, which are not worth sending.
+    of_batch = partial(spread_batch, draws=replace(draws))
+    for places, spreads in zip(batches, mapped(of_batch, rows, min(jobs, len(tasks) // WORTH_A_WORKER)), strict=True):
+        yield from zip(places, spreads, strict=True)
 
 
 def _batches(tasks: Sequence[Task]) -> Iterator[list[int]]:
@@ -62,19 +53,8 @@ def _batches(tasks: Sequence[Task]) -> Iterator[list[int]]:
             yield places[start : start + _ROWS_PER_BATCH]
 
 
-def _in_workers(
-    tasks: Sequence[Task], batches: Sequence[list[int]], draws: Draws, workers: int
-) -> Iterator[list[Variation]]:
-    """Yield the spreads of batches in order; processes are spawned, since threads may already run here."""
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, mp_context=context) as pool:
-        rows = [[tasks[place] for place in places] for places in batches]
-        # Fresh draws, since these may hold their points already.
-        yield from pool.map(partial(spread_batch, draws=replace(draws)), rows)
-
-
 def spread_batch(tasks: Sequence[Task], draws: Draws) -> list[Variation]:
-    """Return the spreads of a batch in a worker, which draws its points once."""
+    """Return the spreads of a batch; a process draws its points once."""
     return variations_of(tasks, _DRAWN.setdefault(draws, draws))
 
 

@@ -1,0 +1,95 @@
+"""The Elasticity sheet: formula and two-dimensional elasticity side by side, and the stress in pictures."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+
+from flexlash.findings import shown
+from flexlash.outcome import Outcome
+from flexlash.report.section_picture import section_png
+from flexlash.report.selection import Drawn
+from flexlash.report.styles import Book
+
+__all__ = ["NOTES", "write_elasticity", "write_stress"]
+
+NOTES = (
+    "Torsion of a body of revolution, ∇·(G r³ ∇φ) = 0 on the half-section with fillets, taper, cone and rim; the hub "
+    "bore (hat: bolt circle) is held, the torque enters at the open end. Second-order finite elements.",
+    "The error is the change from the mesh before, which is greater than what remains. Calibrations are part of the "
+    "difference. The spread keeps the formula: scale it by the difference where that matters.",
+    "A corner without fillet has no finite peak stress in elasticity; there the hub fillet's columns stay blank.",
+)
+_COLUMNS = (
+    ("two_term_backlash_arcmin", "Two-term formula [arcmin]", "arcmin"),
+    ("backlash_arcmin", "Meridian integral [arcmin]", "arcmin"),
+    ("elasticity_backlash", "Elasticity [arcmin]", "arcmin"),
+    ("elasticity_difference_percent", "Meridian over elasticity [%]", "0.00"),
+    ("elasticity_error_percent", "Error of elasticity [%]", "0.0000"),
+    ("hub_shear_MPa", "Disk shear by formula [MPa]", "stress"),
+    ("elasticity_hub_fillet_shear_MPa", "Peak at hub fillet [MPa]", "stress"),
+)
+_HEADER = len(NOTES) + 2
+_NAME = 30
+_OVER = 1.25
+"""Where the colours of a picture end, over the greatest stress by formula."""
+
+_PER_ROW = 2
+_PICTURE_ROWS = 24
+_PICTURE_COLUMNS = 10
+
+
+def write_elasticity(book: Book, outcome: Outcome) -> None:
+    """Write the comparison of all checked variants, in submitted order."""
+    sheet = book.sheet("Elasticity", landscape=False)
+    sheet.write_string(0, 0, "Check by two-dimensional elasticity", book.format("title"))
+    sheet.set_row(0, 28)
+    sheet.set_column(0, 0, 26)
+    sheet.set_column(1, len(_COLUMNS), 13)
+    for row, note in enumerate(NOTES, start=1):
+        sheet.merge_range(row, 0, row, len(_COLUMNS), note, book.format("wrap"))
+        sheet.set_row(row, 32)
+    for place, heading in enumerate(("Variant", *(heading for _, heading, _ in _COLUMNS))):
+        sheet.write_string(_HEADER, place, heading, book.format("header"))
+    sheet.set_row(_HEADER, 48)
+    row = _HEADER
+    for record in outcome.results.iter_rows(named=True):
+        if record["elasticity_windup_rad"] is None:
+            continue
+        row += 1
+        ratio = record["elasticity_windup_rad"] / record["windup_rad"]
+        values = {**record, "elasticity_backlash": ratio * record["backlash_arcmin"]}
+        sheet.write_string(row, 0, shown(record["variant"], longest=_NAME), book.format("text"))
+        for place, (key, _, number) in enumerate(_COLUMNS, start=1):
+            if values[key] is not None:
+                sheet.write_number(row, place, values[key], book.format("text", number))
+    sheet.freeze_panes(_HEADER + 1, 1)
+    sheet.repeat_rows(_HEADER)
+
+
+def write_stress(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
+    """Write the pictures of the worst variants that were checked."""
+    if not outcome.pictured:
+        return
+    sheet = book.sheet("Stress", landscape=False, pages_tall=1)
+    sheet.write_string(0, 0, "Shear stress in the half-section", book.format("title"))
+    sheet.set_row(0, 28)
+    text = f"The {len(outcome.pictured)} worst of the checked variants; colours end at {_OVER:g} times the formula."
+    sheet.write_string(1, 0, text, book.format("quiet"))
+    by_name = {one.row["variant"]: one for one in drawn}
+    for number, (name, check) in enumerate(outcome.pictured.items()):
+        row, column = (number // _PER_ROW) * _PICTURE_ROWS + 3, (number % _PER_ROW) * _PICTURE_COLUMNS
+        greatest = _OVER * _greatest_shear(by_name[name])
+        title = shown(name, longest=_NAME)
+        data = io.BytesIO(section_png(check, title, greatest))
+        described = f"Half-section of {title}, coloured by shear stress"
+        options = {"image_data": data, "description": described, "object_position": 2}
+        sheet.insert_image(row, column, f"half-section-{number + 1}.png", options)
+    pages = -(-len(outcome.pictured) // _PER_ROW)
+    sheet.print_area(0, 0, pages * _PICTURE_ROWS + 2, _PER_ROW * _PICTURE_COLUMNS - 1)
+
+
+def _greatest_shear(one: Drawn) -> float:
+    """Return the greatest shear stress by formula [Pa]."""
+    found = [one.computed.nominal.get(f"{section}_shear") for section in ("wall", "rim", "hub")]
+    return max(stress for stress in found if isinstance(stress, float))

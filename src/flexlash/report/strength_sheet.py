@@ -1,0 +1,71 @@
+"""The Strength sheet: what each section bears, when the wall buckles, how stiff the part is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from flexlash.findings import shown
+from flexlash.report.selection import Drawn
+from flexlash.report.styles import Book
+
+__all__ = ["write_strength"]
+
+_NAME = 30
+_MEGAPASCAL = 1e6
+_COLUMNS = (
+    ("wall_shear_MPa", "Wall shear [MPa]", "stress"),
+    ("wall_von_mises", "Wall von Mises [MPa]", "stress"),
+    ("rim_shear_MPa", "Rim shear [MPa]", "stress"),
+    ("rim_von_mises", "Rim von Mises [MPa]", "stress"),
+    ("hub_shear_MPa", "Disk shear [MPa]", "stress"),
+    ("hub_von_mises", "Disk von Mises [MPa]", "stress"),
+    ("hub_shear_radius_mm", "at radius [mm]", "plain"),
+    ("governing_section", "Governing section", ""),
+    ("elastic_limit_torque_Nm", "Elastic limit torque [N·m]", "stress"),
+    ("buckling_shear_MPa", "Wall buckles at shear [MPa]", "stress"),
+    ("buckling_range", "Buckling formula applies", ""),
+    ("wall_ratio", "Wall over mean radius", "share"),
+    ("stiffness_Nm_per_rad", "Stiffness [N·m/rad]", "count"),
+    ("catalogue_size", "Nearest catalogue size", "count"),
+    ("catalogue_stiffness_Nm_per_rad", "Whole drives [N·m/rad]", "count"),
+    ("natural_frequency_Hz", "Natural frequency [Hz]", "stress"),
+    ("resonance_speed_rpm", "met at input [rpm]", "count"),
+)
+_NOTES = (
+    "Shear stress T/(2π r² t) of each section; von Mises stress is √3 times it. The governing section yields first, at "
+    "the elastic limit torque. Peaks at corners come on top: --elasticity shows them.",
+    "Buckling: NASA SP-8007 with its knock-down factor; where the cylinder is shorter than that formula is meant for, "
+    "the real stress is higher. The flexspline alone must be stiffer than whole drives of its size.",
+    "The natural frequency is that of the load inertia on the flexspline alone, an upper bound; the input meets it by "
+    "its two torque ripples per turn.",
+)
+_HEADER = len(_NOTES) + 2
+
+
+def write_strength(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
+    """Write stresses, limits and stiffness, worst variants first."""
+    sheet = book.sheet("Strength")
+    sheet.write_string(0, 0, "What the sections bear", book.format("title"))
+    sheet.set_row(0, 28)
+    for row, note in enumerate(_NOTES, start=1):
+        sheet.write_string(row, 0, note, book.format("quiet"))
+    if len(drawn) < computed:
+        text = f"The {len(drawn)} worst of {computed} variants; all are in Results."
+        sheet.write_string(_HEADER - 1, 0, text, book.format("quiet"))
+    sheet.set_column(0, 0, 28)
+    sheet.set_column(1, len(_COLUMNS), 12)
+    for place, heading in enumerate(("Variant", *(heading for _, heading, _ in _COLUMNS))):
+        sheet.write_string(_HEADER, place, heading, book.format("header"))
+    sheet.set_row(_HEADER, 48)
+    for row, one in enumerate(drawn, start=_HEADER + 1):
+        sheet.write_string(row, 0, shown(one.row["variant"], longest=_NAME), book.format("text"))
+        for place, (key, _, number) in enumerate(_COLUMNS, start=1):
+            value = one.row[key] if key in one.row else one.computed.nominal.get(key)
+            if isinstance(value, float) and key.endswith("von_mises"):
+                value /= _MEGAPASCAL
+            if isinstance(value, str):
+                sheet.write_string(row, place, value, book.format("indented"))
+            elif value is not None:
+                sheet.write_number(row, place, value, book.format("text", number))
+    sheet.freeze_panes(_HEADER + 1, 1)
+    sheet.repeat_rows(_HEADER)

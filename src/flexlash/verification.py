@@ -1,0 +1,108 @@
+"""The elasticity check of all computed rows: numbers beside the formula's, findings where they part, pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from flexlash.assessment import Computed, blame
+from flexlash.columns import DIMENSIONS
+from flexlash.elasticity import MISSING, is_available
+from flexlash.elasticity.half_section import section_problem
+from flexlash.elasticity.twist import ElasticityCheck, elasticity_check
+from flexlash.submission.validate import Validated
+from flexlash.variant import Variant
+from flexlash.workers import mapped
+
+__all__ = ["WORTH_A_WORKER", "Checked", "pictured", "verified"]
+
+WORTH_A_WORKER = 25
+"""Rows per worker below which starting it costs more than it saves."""
+
+_FAR = 0.02
+"""Difference between formula and elasticity, as a share, above which a row is flagged."""
+
+Task = tuple[str, Mapping[str, float]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Checked:
+    """What the elasticity check of one variant found: wind-up [rad], its error [-], stress at the hub fillet [Pa]."""
+
+    windup: float
+    error: float
+    hub_fillet_shear: float | None
+
+
+def verified(
+    validated: Validated,
+    computed: Mapping[int, Computed],
+    *,
+    jobs: int,
+    progress: Callable[[int, int], None] | None = None,
+) -> dict[int, Computed]:
+    """Return the computed rows with their elasticity check; findings go to the ledger.
+
+    A row whose dimensions make no closed half-section stays without one. Raises ModuleNotFoundError when the
+    libraries of the check are not installed.
+    """
+    if not is_available():
+        raise ModuleNotFoundError(MISSING)
+    found = dict(computed)
+    rows = list(_closed(validated, computed))
+    tasks = [(computed[row].variant.flexspline_type, computed[row].variant.dimensions) for row in rows]
+    results = mapped(_checked, tasks, min(jobs, len(tasks) // WORTH_A_WORKER))
+    for done, (row, result) in enumerate(zip(rows, results, strict=True), start=1):
+        one = computed[row]
+        found[row] = replace(one, nominal=one.nominal | _numbers(one, result))
+        difference = found[row].nominal["elasticity_difference"]
+        if isinstance(difference, float) and abs(difference) > _FAR:
+            blame(validated, "W414", one.variant, "variant", value=f"{100 * difference:+.1f}")
+        if progress:
+            progress(done, len(rows))
+    return found
+
+
+def _closed(validated: Validated, computed: Mapping[int, Computed]) -> Iterator[int]:
+    """Yield the rows whose dimensions make a half-section; flag the others at the dimension to blame."""
+    for row, one in computed.items():
+        problem = section_problem(one.variant.flexspline_type, one.variant.dimensions)
+        if problem is None:
+            yield row
+        else:
+            _flag(validated, one.variant, *problem)
+
+
+def _flag(validated: Validated, variant: Variant, dimension: str, clause: str) -> None:
+    """Record that a variant cannot be checked, at the dimension to blame."""
+    column = DIMENSIONS[dimension]
+    value = f"{variant.dimensions[dimension] / column.si_unit.si:.10g}"
+    blame(validated, "W413", variant, column.key, name=column.name, value=value, detail=clause)
+
+
+def _checked(task: Task) -> Checked:
+    """Return the check of one variant in numbers alone."""
+    found = elasticity_check(*task)
+    return Checked(windup=found.windup, error=found.error, hub_fillet_shear=found.hub_fillet_shear)
+
+
+def _numbers(one: Computed, result: Checked) -> dict[str, float | str | None]:
+    """Return the check's results [SI] by result key without unit; the difference is relative to elasticity."""
+    windup = one.nominal["windup"]
+    if not isinstance(windup, float):
+        raise TypeError(windup)
+    return {
+        "elasticity_windup": result.windup,
+        "elasticity_difference": windup / result.windup - 1,
+        "elasticity_error": result.error,
+        "elasticity_hub_fillet_shear": result.hub_fillet_shear,
+    }
+
+
+def pictured(computed: Sequence[Computed]) -> dict[str, ElasticityCheck]:
+    """Return the checks of variants with their stress fields, by name; only those that were checked."""
+    return {
+        one.variant.name: elasticity_check(one.variant.flexspline_type, one.variant.dimensions)
+        for one in computed
+        if "elasticity_windup" in one.nominal
+    }
