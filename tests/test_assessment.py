@@ -7,7 +7,7 @@ from flexlash.assessment import assess
 from flexlash.pipeline import check, run
 
 BORE = {"mean_radius_mm": "", "bore_diameter_mm": 128}
-ALONE = {"E314", "E315", "W402", "W403", "W405", "W407", "I506"}
+ALONE = {"E314", "E315", "W402", "W403", "W405", "W407", "W411", "W412", "W415", "I506"}
 
 
 @pytest.fixture
@@ -57,13 +57,80 @@ def test_beyond_yield(judge, torque, told):
         (found,) = outcome.findings
         assert found.place == "Variants!D2"
         assert found.variant == "V1"
-        assert found.message == "Variants!D2: the von Mises stress 1080 MPa exceeds the yield strength 1080 MPa."
+        assert (
+            found.message == "Variants!D2: von Mises stress 1080 MPa in the disk exceeds the yield strength 1080 MPa."
+        )
+
+
+def test_the_governing_section_is_named(judge):
+    """The section that yields first is named: the disk of a cup, the wall of a tube."""
+    tube = {"flexspline_type": "cylinder", "disk_inner_radius_mm": "", "torque_Nm": 45000}
+    for change, section in (({"torque_Nm": 12000}, "disk"), (tube, "wall")):
+        found = next(found for found in judge(change).findings if found.code == "W402")
+        assert f"in the {section} exceeds" in found.message
+
+
+@pytest.mark.parametrize(("wall", "told"), [(0.18, True), (0.2, False)])
+def test_a_wall_that_buckles(judge, wall, told):
+    """A wall shear above the buckling stress of NASA SP-8007 is a warning; both stresses are said."""
+    outcome = judge({"wall_thickness_mm": wall, "disk_thickness_mm": 1.6, "torque_Nm": 300})
+    buckling = [found for found in outcome.findings if found.code == "W411"]
+    assert len(buckling) == told
+    row = outcome.results.row(0, named=True)
+    assert (row["wall_shear_MPa"] > row["buckling_shear_MPa"]) == told
+    if told:
+        assert buckling[0].column == "torque_Nm"
+        assert f"{row['wall_shear_MPa']:.4g} MPa" in buckling[0].message
+        assert f"{row['buckling_shear_MPa']:.4g} MPa" in buckling[0].message
+
+
+def test_buckling_needs_e_and_nu(judge):
+    """Of a material known by its shear modulus alone no buckling stress is given, and none is missed."""
+    materials = "material,shear_modulus_GPa\n20Cr2Ni4,81\n"
+    outcome = judge({"wall_thickness_mm": 0.1, "disk_thickness_mm": 1.6, "torque_Nm": 300}, materials=materials)
+    assert outcome.results["buckling_shear_MPa"].to_list() == [None]
+    assert outcome.results["buckling_range"].to_list() == [None]
+    assert "W411" not in {found.code for found in outcome.findings}
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({}, False),
+        ({"wall_thickness_mm": 0.9, "disk_thickness_mm": 0.9, "disk_inner_radius_mm": 20}, True),
+        ({"wall_thickness_mm": 0.9, "disk_thickness_mm": 0.9, "disk_inner_radius_mm": 20} | BORE, True),
+        ({"wall_thickness_mm": 0.16, "disk_thickness_mm": 0.16, "mean_radius_mm": 130}, False),
+    ],
+)
+def test_softer_than_a_whole_drive(judge, change, told):
+    """A cup softer than drives of its size is a warning at its radius; beyond the catalogue's sizes nothing is said."""
+    outcome = judge(change)
+    row = outcome.results.row(0, named=True)
+    assert [found.code for found in outcome.findings].count("W412") == told
+    if told:
+        found = next(found for found in outcome.findings if found.code == "W412")
+        assert found.column == ("bore_diameter_mm" if "bore_diameter_mm" in change else "mean_radius_mm")
+        assert f"size {row['catalogue_size']:.0f}" in found.message
+        assert row["stiffness_Nm_per_rad"] < row["catalogue_stiffness_Nm_per_rad"]
+    else:
+        listed = row["catalogue_stiffness_Nm_per_rad"]
+        assert listed is None or listed < row["stiffness_Nm_per_rad"]
+
+
+@pytest.mark.parametrize(("inertia", "told"), [(3.7, False), (3.9, True)])
+def test_resonance_within_usual_speeds(judge, inertia, told):
+    """194.39 Hz at 1 kg·m² are met at 5832 rpm; from 3.78 kg·m² on the input meets them below 3000 rpm."""
+    outcome = judge({"load_inertia_kg_m2": inertia})
+    row = outcome.results.row(0, named=True)
+    assert row["natural_frequency_Hz"] == pytest.approx(194.39 / inertia**0.5, rel=1e-4)
+    assert row["resonance_speed_rpm"] == pytest.approx(30 * row["natural_frequency_Hz"], rel=1e-12)
+    assert _found(outcome) == [("W415", "load_inertia_kg_m2")][:told]
 
 
 def test_without_a_yield_strength(judge):
     """Of a material without yield strength nothing is said, whatever the stress."""
     materials = "material,youngs_modulus_GPa,poisson_ratio\n20Cr2Ni4,211,0.3\n"
-    assert judge({"torque_Nm": 1e6}, materials=materials).findings == []
+    assert judge({"torque_Nm": 20000}, materials=materials).findings == []
 
 
 @pytest.mark.parametrize(
@@ -198,7 +265,8 @@ def test_a_grade_without_entry(judge, change, tolerance, told):
     """A grade that the standard does not tabulate for the size stops the row; at the edge of the table it holds."""
     outcome = judge(change, tolerances=[tolerance])
     column = f"{tolerance.split(',')[0]}_mm"
-    assert _found(outcome) == [("E315", column)][: bool(told)]
+    # A cylinder of half a metre is softer than a whole drive, which W412 says as well.
+    assert [found for found in _found(outcome) if found[0] != "W412"] == [("E315", column)][: bool(told)]
     assert outcome.exit_code == (4 if told else 0)
     assert not told or told in outcome.findings[0].message
 

@@ -455,6 +455,12 @@ NO_PROBLEMS = {
     "hub fillet as wide as the disk": ("cup", CUP | {"hub_fillet_radius": 1 - 0.03 / 2 - 0.4}),
     "fillets touch": ("cup", CUP | {"hub_fillet_radius": 0.3, "junction_fillet_radius": 1 - 0.03 / 2 - 0.4 - 0.3}),
     "rim meets the fillet": ("cup", CUP | JUNCTION_FILLET | RIM | {"rim_length": 1.2 - 0.15}),
+    "hub fillet a last digit wider": ("cup", CUP | {"hub_fillet_radius": 0.585 * (1 + 1e-12)}),
+    "fillets a last digit larger": (
+        "cup",
+        CUP | {"hub_fillet_radius": 0.3, "junction_fillet_radius": 0.285 * (1 + 1e-12)},
+    ),
+    "rim a last digit longer": ("cup", CUP | JUNCTION_FILLET | RIM | {"rim_length": 1.05 * (1 + 1e-12)}),
 }
 
 

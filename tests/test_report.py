@@ -14,6 +14,7 @@ import regenerate
 from flexlash.columns import DIMENSIONS
 from flexlash.pipeline import run
 from flexlash.report import selection
+from flexlash.report.about_sheet import PROOF
 from flexlash.report.summary_sheet import light, sentences
 from flexlash.report.workbook import report_bytes
 from flexlash.result_columns import CROSS_CHECK, FINDINGS, RESULTS, result_columns
@@ -22,8 +23,8 @@ from flexlash.units import ARCMIN
 from libreoffice import convert, needs_libreoffice
 
 SHEETS = [
-    "Summary", "Results", "Spread", "Sensitivity", "Findings", "Submission", "Materials", "Tolerances", "Settings",
-    "About", "Curves",
+    "Summary", "Results", "Spread", "Sensitivity", "Sections", "Strength", "Findings", "Submission", "Materials",
+    "Tolerances", "Settings", "About", "Curves",
 ]  # fmt: skip
 
 
@@ -210,6 +211,75 @@ def test_tornado_has_both_indices_of_the_worst_variant(study):
         assert found == [dimension_words(name), *(pytest.approx(value, rel=1e-14) for value in expected)]
 
 
+def _table(sheet, header):
+    """Return the rows below a header row as dictionaries, up to the first empty one."""
+    rows = list(sheet.iter_rows(min_row=header, values_only=True))
+    names = [name for name in rows[0] if name]
+    table = []
+    for row in rows[1:]:
+        if row[0] is None:
+            break
+        table.append(dict(zip(names, row, strict=False)))
+    return table
+
+
+def test_segments_add_up_to_the_backlash(study):
+    """Sections holds every computed variant, whose segments add up to its nominal backlash."""
+    outcome, path = study
+    sheet = _open(path)["Sections"]
+    rows = _table(sheet, 1 + next(cell.row for cell in sheet["A"] if cell.value == "Variant") - 1)
+    results = {row["variant"]: row for row in outcome.results.iter_rows(named=True)}
+    assert {row["Variant"] for row in rows} == set(results)
+    for row in rows:
+        segments = [
+            row[f"{name} [arcmin]"] or 0 for name in ("Tooth rim", "Wall", "Junction fillet", "Disk", "Hub fillet")
+        ]
+        assert sum(segments) == pytest.approx(results[row["Variant"]]["backlash_arcmin"], rel=1e-9)
+        two_term = results[row["Variant"]]["two_term_backlash_arcmin"]
+        assert row["Two-term formula [arcmin]"] == pytest.approx(two_term, rel=1e-15)
+
+
+def test_strength_names_the_governing_section(study):
+    """Strength holds shear and von Mises stress of every section and names the one with the greatest."""
+    outcome, path = study
+    sheet = _open(path)["Strength"]
+    rows = _table(sheet, next(cell.row for cell in sheet["A"] if cell.value == "Variant"))
+    assert len(rows) == len(outcome.computed)
+    for row in rows:
+        stress = {
+            "wall": row["Wall von Mises [MPa]"],
+            "tooth rim": row["Rim von Mises [MPa]"] or 0,
+            "disk": row["Disk von Mises [MPa]"] or 0,
+        }
+        assert row["Wall von Mises [MPa]"] == pytest.approx(3**0.5 * row["Wall shear [MPa]"], rel=1e-12)
+        assert row["Governing section"] == max(stress, key=stress.get)
+
+
+def test_about_repeats_what_the_proof_computes(tmp_path):
+    """The numbers of the proof in About are those of the proof's own run."""
+    pytest.importorskip("skfem", reason="scikit-fem is not installed here")
+    path = regenerate.ROOT / "data" / "b3-160-proof.xlsx"
+    outcome = run(path, tmp_path / "proof.xlsx", elasticity=True, method="random", samples=16)
+    text = " ".join(PROOF)
+    rows = {row["variant"]: row for row in outcome.results.iter_rows(named=True)}
+    elastic = {
+        name: row["backlash_arcmin"] / (1 + row["elasticity_difference_percent"] / 100) for name, row in rows.items()
+    }
+    assert f"as published: {rows['as published']['two_term_backlash_arcmin']:.3f}′" in text
+    plain = rows["true mean radius"]["two_term_backlash_arcmin"]
+    assert f"80.8 mm: {plain:.3f}′, by elasticity {elastic['true mean radius']:.3f}′" in text
+    for name in ("fillets", "fillets, rim 20 mm"):
+        assert f"meridian integral {rows[name]['backlash_arcmin']:.3f}′, elasticity {elastic[name]:.3f}′" in text
+    assert f"{rows['fillets, rim 30 mm']['backlash_arcmin']:.3f}′ and {elastic['fillets, rim 30 mm']:.3f}′" in text
+    sheets = _open(tmp_path / "proof.xlsx")
+    about = [str(row[0]) for row in sheets["About"].iter_rows(values_only=True)]
+    assert all(f"•  {line}" in about for line in PROOF)
+    sheet = sheets["Elasticity"]
+    table = _table(sheet, next(cell.row for cell in sheet["A"] if cell.value == "Variant"))
+    assert {row["Variant"]: row["Elasticity [arcmin]"] for row in table} == pytest.approx(elastic)
+    assert len(sheets["Stress"]._images) == len(rows)
+
+
 def test_findings_link_to_their_cells(faulty):
     """Each finding links to its cell in the submission as read, at the user's own address, coloured there."""
     outcome, path = faulty
@@ -253,12 +323,12 @@ def test_charts_have_cached_points_and_alternative_texts(study):
     with zipfile.ZipFile(study[1]) as archive:
         charts = [name for name in archive.namelist() if name.startswith("xl/charts/chart")]
         drawings = [name for name in archive.namelist() if name.startswith("xl/drawings/drawing")]
-        assert len(charts) == 4
+        assert len(charts) == 5
         for name in charts:
             text = archive.read(name).decode()
             assert text.count("<c:v>") > 10
         texts = "".join(archive.read(name).decode() for name in drawings)
-    assert len(re.findall(r'descr="[^"]+"', texts)) == 4
+    assert len(re.findall(r'descr="[^"]+"', texts)) == 5
 
 
 def test_spread_can_be_picked_for_every_variant(study):
@@ -316,8 +386,8 @@ def test_the_summary_names_what_was_not_computed(faulty):
     """The first sentence names the first variants that were not computed and counts the others."""
     outcome, _ = faulty
     said = next(sentences(outcome, selection.drawn_variants(outcome)))
-    assert said.startswith("3 of 23 variants were computed. Not computed, see Findings: fault E201, fault E202,")
-    assert said.endswith("and 16 more.")
+    assert said.startswith("3 of 27 variants were computed. Not computed, see Findings: fault E201, fault E202,")
+    assert said.endswith("and 20 more.")
 
 
 def test_a_given_shear_modulus_without_tolerance_is_said(table, sound, tmp_path):
@@ -423,4 +493,5 @@ def test_every_sheet_prints_on_whole_pages(name, request, tmp_path):
     assert pages.count("Results") == 4
     assert pages.count("Spread") == 1
     assert pages.count("Findings") == 1
-    assert len(pages) <= 20
+    assert pages.count("Strength") == 1
+    assert len(pages) <= 24

@@ -2,6 +2,7 @@
 
 import csv
 import math
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -86,21 +87,30 @@ def _table():
 TABLE = _table()
 
 
-@pytest.mark.parametrize(("kind", "size", "integral"), TABLE, ids=[f"row{place}" for place in range(2, len(TABLE) + 2)])
-def test_agreement_with_the_triangles(kind, size, integral):
+@cache
+def table_check(place):
+    """Return wind-up and error of a row of the table."""
+    kind, size, _ = TABLE[place]
+    found = check(kind, size)
+    return found.windup, found.error
+
+
+@pytest.mark.parametrize("place", range(len(TABLE)), ids=[f"row{place}" for place in range(2, len(TABLE) + 2)])
+def test_agreement_with_the_triangles(place):
     """Every wind-up lies below the triangles' by at most 1e-5, of cones 4e-5, and by no more than its own error.
 
     The error may miss 5e-7: under the wall the triangles let a disk that thins go on doing so, these cells do not.
     """
-    found = check(kind, size)
-    shortfall = 1 - found.windup / integral
+    _, size, integral = TABLE[place]
+    windup, error = table_check(place)
+    shortfall = 1 - windup / integral
     assert 0 < shortfall < (4e-5 if "disk_cone_angle" in size else 1e-5)
-    assert shortfall <= found.error + 5e-7
+    assert shortfall <= error + 5e-7
 
 
 def test_error_is_no_exaggeration():
     """The own errors of the table's geometries are honest but small: the median is below 2e-5, the greatest 2e-4."""
-    errors = [check(kind, size).error for kind, size, _ in TABLE]
+    errors = [table_check(place)[1] for place in range(len(TABLE))]
     assert len(errors) == 34
     assert np.median(errors) < 2e-5
     assert max(errors) < 2e-4
@@ -115,7 +125,6 @@ SMOOTH = {
 }
 SHARP = {
     "cup": ("cup", CUP),
-    "rim": ("cup", CUP | FILLETS | RIM),
     "thick disk": ("cup", CUP | {"disk_thickness": 0.1}),
     "cone": ("cup", CUP | CONE),
     "hat": ("hat", HAT),
@@ -232,7 +241,7 @@ def test_hub_stress_is_near_that_of_the_thin_disk():
     assert found == pytest.approx(float(thin), rel=0.25)
 
 
-@pytest.mark.parametrize("size", [GENTLE, CUP | FILLETS, CUP | HUB_FILLET], ids=["gentle", "fillets", "no junction"])
+@pytest.mark.parametrize("size", [GENTLE, CUP | FILLETS], ids=["gentle", "fillets"])
 def test_hub_stress_converges(size):
     """The greatest stress along a hub fillet changes by ever less from mesh to mesh, at last by less than 0.3 %."""
     stresses = [unit_twist(half_section("cup", size, refinement)).hub_stress for refinement in range(4)]

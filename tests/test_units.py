@@ -94,7 +94,7 @@ SPELLINGS = [
     ("inertia", "kg m2", "kg·m²"),
     ("inertia", "kg m²", "kg·m²"),
     ("inertia", "kgm²", "kg·m²"),
-    ("inertia", "kg*m^2", "kg·m²"),
+    ("inertia", "kg*m2", "kg·m²"),
     ("inertia", "kg-m2", "kg·m²"),
     ("inertia", "kg.m2", "kg·m²"),
     ("inertia", "kgcm2", "kg·cm²"),

@@ -128,6 +128,50 @@ def test_a_shear_modulus_is_used_instead():
     assert (variant.material, variant.yield_strength) == ("X", None)
 
 
+def test_young_and_poisson_stay_known_beside_a_shear_modulus():
+    """E and ν of the material reach the variant in any case, for what does not follow from G; blank ones do not."""
+    materials = [*MATERIALS, ["X", 200, 0.25, 70, None], ["Y", None, None, 70, None], ["Z", 200, 0.25, None, None]]
+    rows = [ROW | {"variant": name, "material": name} for name in "XYZ"]
+    found = {
+        one.name: (one.youngs_modulus, one.poisson_ratio, "shear_modulus" in one.dimensions)
+        for one in validate(_submission(rows, Materials=materials)).variants
+    }
+    assert found == {"X": (200e9, 0.25, True), "Y": (None, None, True), "Z": (200e9, 0.25, False)}
+
+
+def test_requirements_are_no_dimensions():
+    """Rated torque, load inertia and backlash limit stand beside the dimensions, in SI."""
+    row = ROW | {"rated_torque_Nm": 1600, "load_inertia_kg_m2": 0.5, "backlash_limit_arcmin": 3.75}
+    (variant,) = validate(_submission([row])).variants
+    assert (variant.rated_torque, variant.load_inertia) == (1600, 0.5)
+    assert variant.backlash_limit == pytest.approx(math.radians(3.75 / 60), rel=1e-15)
+    assert not {"rated_torque", "load_inertia", "load_inertia_kg_m2", "backlash_limit"} & set(variant.dimensions)
+    (variant,) = validate(_submission([ROW])).variants
+    assert (variant.rated_torque, variant.load_inertia, variant.backlash_limit) == (None, None, None)
+
+
+def test_exponent_and_cone_angle_reach_the_variant():
+    """The exponent is a plain number, 0 too, and the cone angle becomes radians, 90° too."""
+    rows = [
+        ROW | {"variant": "A", "disk_hub_thickness_mm": 4, "disk_thickness_exponent": 0},
+        ROW | {"variant": "B", "disk_hub_thickness_mm": 4, "disk_thickness_exponent": 2, "disk_cone_angle_deg": 60},
+        ROW | {"variant": "C", "disk_cone_angle_deg": 90},
+    ]
+    keys = ("disk_thickness_exponent", "disk_cone_angle")
+    found = [tuple(one.dimensions.get(key) for key in keys) for one in validate(_submission(rows)).variants]
+    assert found == [(0.0, None), (2.0, pytest.approx(math.pi / 3, rel=1e-15)), (None, math.pi / 2)]
+
+
+@pytest.mark.parametrize("kind", ["hat", "cylinder"])
+def test_an_exponent_of_zero_is_no_dimension_without_a_cups_disk(kind):
+    """A hat's or cylinder's exponent of 0 is refused or left out, so that no tolerance row makes it scatter."""
+    disk = {"disk_inner_radius_mm": None, "disk_outer_radius_mm": 120 if kind == "hat" else None}
+    row = ROW | disk | {"flexspline_type": kind, "disk_thickness_exponent": 0}
+    validated = validate(_submission([row, *_named(1)]))
+    assert "V1" in _kept(validated)
+    assert [one.name for one in validated.variants if "disk_thickness_exponent" in one.dimensions] == []
+
+
 def test_settings_reach_the_variants():
     """Calibrations of Settings are dimensions of every variant."""
     settings = [["Setting", "Value"], ["disk_calibration", 1.2], ["seed", 5]]
@@ -180,9 +224,9 @@ def test_all_errors_of_a_row_at_once():
         ("mean_radius_mm", 0, "E207"),
         ("disk_hub_thickness_mm", 0, "E207"),
         ("disk_thickness_exponent", -0.1, "E207"),
-        ("disk_thickness_exponent", 10.1, "E207"),
+        ("disk_thickness_exponent", 10.1, "E208"),
         ("disk_cone_angle_deg", 29.9, "E207"),
-        ("disk_cone_angle_deg", 90.1, "E207"),
+        ("disk_cone_angle_deg", 90.1, "E208"),
         ("load_inertia_kg_m2", 0, "E207"),
         ("load_inertia_kg_m2", "1 kg·m²", "E202"),
         ("hub_fillet_radius_mm", -0.1, "E207"),

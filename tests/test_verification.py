@@ -54,7 +54,7 @@ def test_the_check_stands_beside_the_formula(proof):
 
 
 def test_fillets_and_rim_explain_the_published_finite_elements(proof):
-    """By elasticity a plain part exceeds the published 9.86e-4 rad by 7 %; fillets and a rim of 20 to 30 mm bracket it."""
+    """A plain part exceeds the published 9.86e-4 rad by 7 %; fillets and rims of 20 and 30 mm bracket it."""
     rows = _rows(proof[0])
     backlash = {name: 2 * row["elasticity_windup_rad"] / 9.86e-4 - 1 for name, row in rows.items()}
     assert backlash["true mean radius"] == pytest.approx(0.0727, abs=5e-4)

@@ -93,8 +93,7 @@ def _warn_strength(validated: Validated, variant: Variant, nominal: Numbers) -> 
     stress, strength = nominal["von_mises"], variant.yield_strength
     if strength is not None and _exceeds(stress, strength):
         facts = {"value": _megapascals(stress), "other": strength / 1e6, "detail": nominal["governing_section"]}
-        limit = f"{nominal['elastic_limit_torque']:.4g}"
-        blame(validated, "W402", variant, "torque_Nm", limit=limit, **facts)
+        blame(validated, "W402", variant, "torque_Nm", **facts)
     shear, buckling = nominal["wall_shear"], nominal.get("buckling_shear")
     if _exceeds(shear, buckling):
         blame(validated, "W411", variant, "torque_Nm", value=_megapascals(shear), other=_megapascals(buckling))

@@ -463,7 +463,7 @@ CATALOGUE = _rules(
         "W402",
         "beyond yield",
         "{place}: von Mises stress {value} MPa in the {detail} exceeds the yield strength {other:g} MPa.",
-        "Keep the torque below {limit} N·m, thicken the {detail}, or choose a stronger material.",
+        "Keep the torque below the elastic limit torque of Results, thicken that section, or take a stronger material.",
         "Linear elasticity no longer holds: the real wind-up is greater and part of it stays.",
     ),
     (

@@ -177,7 +177,7 @@ def test_meridian_against_the_triangles(feature, kind, size, integral):
 
 
 def test_meridian_is_far_from_elasticity_in_four_geometries():
-    """Thick tapered cone, short thick hat with rim, cone of 45° and power law with fillets: more than 1.3 % apart."""
+    """Tapered cone, short thick hat with rim, cone of 45° and power law with fillets are more than 1.3 % apart."""
     far = {
         feature: 100 * (float(sum(windups(kind, size).values())) / integral - 1)
         for feature, kind, size, integral in TRIANGLES

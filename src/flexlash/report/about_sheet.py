@@ -20,7 +20,7 @@ MODEL = (
     "U = T/(2πG) ∫ ds/(r³ t) along the meridian: tooth rim, wall, junction fillet, disk or flange, hub fillet.",
     "Without refinements this is U_cylinder = T l/(G 2π r_m³ Δ) plus U_disk = T/(4π t G) (1/r_ci² − 1/r_co²).",
     "G = E/(2(1 + ν)) unless the material gives G. The wall is thin; its torsion constant is low by (Δ/2r_m)².",
-    "A disk that thins as a power of the radius: t = t_hub (r_ci/r)^n. A conical disk winds up 1/sin of its angle more.",
+    "A disk that thins as a power of the radius: t = t_hub (r_ci/r)^n. A cone winds up 1/sin of its angle as much.",
     "Shear stress T/(2π r² t); von Mises √3 times it; wall buckling by NASA SP-8007 with its knock-down factor 0.67.",
     "A blank disk thickness is the wall thickness and a blank disk radius the mean radius: one dimension, one scatter.",
 )
@@ -28,10 +28,11 @@ PROOF = (
     "B3-160, published finite elements with fillets and tooth rim: 2U = 3.390′.",
     "Two-term formula as published: 3.687′; at the true mean radius 80.8 mm: 3.635′, by elasticity 3.636′.",
     "With its fillets R 3.5 mm: meridian integral 3.537′, elasticity 3.537′.",
-    "With a tooth rim of 20 mm × 3.2 mm as well: meridian integral 3.405′, elasticity 3.411′; of 30 mm: 3.339′ and 3.345′.",
+    "With a tooth rim of 20 mm × 3.2 mm too: meridian integral 3.405′, elasticity 3.411′; of 30 mm: 3.339′ and 3.345′.",
     "So the gap to finite elements is mean radius 1.4 %, fillets 3 %, tooth rim 4 to 6 % (its size is not published).",
-    "Against an independent finite-element program flat cups of 1 to 3 % wall were within 1.5 % of the meridian integral; "
-    "short thick hats with a rim, cones of 45° and strongly thinning disks up to 3 %. --elasticity checks each variant.",
+    "Against an independent finite-element program flat cups of 1 to 3 % wall were within 1.5 % of the meridian "
+    "integral; short thick hats with a rim, cones of 45° and strongly thinning disks up to 3 %. --elasticity checks "
+    "each variant.",
     "Calibration: published finite elements over the two-term formula give 0.907 (cylinder) and 0.936 (disk). Such "
     "factors contain fillets and rim already; relative to the finite elements the formula is 10.0 and 7.07 % high.",
 )
