@@ -211,8 +211,10 @@ def readme() -> bytes:
     """Return the README with its generated tables."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     for name, table in (("columns", column_table()), ("settings", settings_table()), ("proof", proof_table())):
-        pattern = rf"(<!-- {name}: generated -->\n).*?(\n<!-- end -->)"
-        text, found = re.subn(pattern, lambda match, table=table: match[1] + table + match[2], text, flags=re.DOTALL)
+        pattern = rf"(<!-- {name}: generated -->\n)(?:(?!<!-- ).)*(<!-- end -->)"
+        text, found = re.subn(
+            pattern, lambda match, table=table: f"{match[1]}{table}\n{match[2]}", text, flags=re.DOTALL
+        )
         if found != 1:
             raise ValueError(f"README.md has no place for its table of {name}")
     return text.encode()

@@ -8,7 +8,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from flexlash.elasticity import half_section as module
-from flexlash.elasticity.half_section import half_section, section_problem
+from flexlash.elasticity.half_section import half_section
+from flexlash.elasticity.part import section_problem
 
 thorough = settings(deadline=None, max_examples=300, derandomize=True)
 
@@ -429,7 +430,22 @@ PROBLEMS = {
         "overlap on the disk",
     ),
     "rim in the fillet": ("cup", CUP | JUNCTION_FILLET | RIM | {"rim_length": 1.06}, "rim_length", "longer than"),
-    "rim longer than the cylinder": ("hat", HAT | RIM | {"rim_length": 1.21}, "rim_length", "longer than"),
+    "rim longer than the cylinder": ("hat", HAT | RIM | {"rim_length": 1.21}, "rim_length", "as long as"),
+    "rim as long as the cylinder": ("cylinder", TUBE | RIM | {"rim_length": 1.2}, "rim_length", "as long as"),
+    "fillet on a cone": ("cup", CUP | FILLETS | {"disk_cone_angle": 0.8}, "disk_cone_angle", "takes no fillet"),
+    "foil wall": ("hat", HAT | {"wall_thickness": 5e-5}, "wall_thickness", "foil"),
+    "foil disk": (
+        "cup",
+        CUP | {"disk_inner_radius": 0.25, "disk_hub_thickness": 0.1, "disk_thickness_exponent": 10},
+        "disk_hub_thickness",
+        "foil",
+    ),
+    "disk of no thickness": (
+        "cup",
+        CUP | {"disk_hub_thickness": 0.1, "disk_thickness": -0.01},
+        "disk_hub_thickness",
+        "foil",
+    ),
     "fillet longer than the cylinder": (
         "cup",
         CUP | {"cylinder_length": 0.2, "junction_fillet_radius": 0.25},
@@ -474,3 +490,19 @@ def test_shape_at_its_limit(kind, size):
 def test_random_shapes_have_no_problem():
     """The drawn shapes close, those whose fillets or rim touch among them."""
     assert [section_problem(kind, size) for kind, size in SHAPES] == [None] * len(SHAPES)
+
+
+def test_a_flat_cone_is_a_flat_disk():
+    """A cone angle of 90° gives the very lattice of a flat disk."""
+    flat, cone = (half_section("cup", CUP | change) for change in ({}, {"disk_cone_angle": math.pi / 2}))
+    assert np.array_equal(flat.radius, cone.radius, equal_nan=True)
+    assert np.array_equal(flat.height, cone.height, equal_nan=True)
+
+
+def test_a_taper_that_ends_within_the_wall_goes_on_even():
+    """A steep taper to a disk radius short of the wall's middle does not fold under the wall."""
+    size = {"mean_radius": 1.0, "wall_thickness": 0.2, "cylinder_length": 1.0, "disk_inner_radius": 0.8}
+    taper = {"disk_outer_radius": 0.91, "disk_hub_thickness": 0.2, "disk_thickness": 0.01}
+    section = half_section("cup", size | taper)
+    under = section.radius[:, 0] >= 0.91
+    assert section.height[under, 0] == pytest.approx(-0.01, rel=1e-12)

@@ -60,7 +60,7 @@ def test_tube_is_exact(size):
     """A tube of any thickness, in which the twist is linear, has the integral 4 l/(r_o⁴ − r_b⁴) to rounding."""
     found = check("cylinder", size)
     assert found.windup == pytest.approx(exact_tube(size), rel=1e-9)
-    assert found.error < 1e-9
+    assert found.error == pytest.approx(5e-6, abs=1e-9)
     assert found.hub_fillet_shear is None
 
 
@@ -149,7 +149,8 @@ def test_sharp_corners_converge(kind, size):
     assert third > 0
     assert first / second > 2.5
     assert second / third > 2.5
-    assert check(kind, size).error > 1 - found[1] / (found[3] + third)
+    checked = check(kind, size)
+    assert checked.error > 1 - checked.windup / (found[3] + third)
 
 
 def test_hard_shape_is_refined_again():
@@ -301,11 +302,11 @@ def test_calibrations_are_ignored():
 
 
 def test_check_is_that_of_the_finer_section():
-    """Wind-up, section and stresses of the check are those of the finer mesh, its error the change from the coarser."""
+    """Wind-up, section and stresses of the check are those of the finer mesh, its error the change and a little."""
     found = check("cup", CUP | FILLETS)
     coarse, fine = (unit_twist(half_section("cup", CUP | FILLETS, refinement)) for refinement in (0, 1))
     assert found.windup == pytest.approx(fine.integral, rel=1e-15)
-    assert found.error == pytest.approx(fine.integral / coarse.integral - 1, rel=1e-9)
+    assert found.error == pytest.approx(fine.integral / coarse.integral - 1 + 5e-6, rel=1e-9)
     assert found.hub_fillet_shear == pytest.approx(fine.hub_stress, rel=1e-15)
     assert found.shear == pytest.approx(fine.stress, rel=1e-15)
     assert found.shear.shape == (found.section.cells.sum(), 9)

@@ -94,7 +94,7 @@ RESULTS = (
     _angle(
         "two_term_backlash",
         "Two-term backlash",
-        "What plain wall and even disk give: the published formula, without refinements.",
+        "What a plain wall and a disk as thick as at its edge give: the published formula, without refinements.",
     ),
     _result("rim_shear_MPa", "Rim shear", "Shear stress in the tooth rim.", "MPa", "stress"),
     _result("hub_shear_radius_mm", "Radius of hub shear", "Where in the disk the hub shear acts.", "mm", "length"),
@@ -126,7 +126,6 @@ RESULTS = (
         type="choice",
         choices=("yes", "shorter", "longer"),
     ),
-    _result("wall_ratio", "Wall ratio", "Wall thickness over mean radius, a fraction."),
     _result(
         "natural_frequency_Hz",
         "Natural frequency",
@@ -209,7 +208,7 @@ ELASTICITY = (
     _result(
         "elasticity_error_percent",
         "Error of elasticity",
-        "Change of the elasticity result from the mesh before, which is greater than the error that remains.",
+        "Change of the elasticity result from the mesh before, and 5e-4 %: greater than the error that remains.",
         "%",
         "ratio",
     ),

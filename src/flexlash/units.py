@@ -128,7 +128,7 @@ _UNITS = {
 def _plain(text: str) -> str:
     """Return a unit's letters alone: no spaces, no multiplication signs, one micro sign."""
     kept = text.replace("μ", "µ")
-    return "".join(character for character in kept if character not in " \u00a0·⋅*.-–") or text.strip()
+    return "".join(character for character in kept if character not in " \u00a0·⋅*.-–^") or text.strip()
 
 
 def find_unit(text: str, quantity: str) -> Unit | None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from flexlash.assessment import Computed, blame
 from flexlash.columns import DIMENSIONS
 from flexlash.elasticity import MISSING, is_available
-from flexlash.elasticity.half_section import section_problem
+from flexlash.elasticity.part import section_problem
 from flexlash.elasticity.twist import ElasticityCheck, elasticity_check
 from flexlash.submission.validate import Validated
 from flexlash.variant import Variant
@@ -21,6 +21,9 @@ WORTH_A_WORKER = 25
 
 _FAR = 0.02
 """Difference between formula and elasticity, as a share, above which a row is flagged."""
+
+_UNSOLVED = 0.05
+"""Error of the elasticity check, as a share, above which it says nothing."""
 
 Task = tuple[str, Mapping[str, float]]
 
@@ -54,10 +57,11 @@ def verified(
     results = mapped(_checked, tasks, min(jobs, len(tasks) // WORTH_A_WORKER))
     for done, (row, result) in enumerate(zip(rows, results, strict=True), start=1):
         one = computed[row]
-        found[row] = replace(one, nominal=one.nominal | _numbers(one, result))
-        difference = found[row].nominal["elasticity_difference"]
-        if isinstance(difference, float) and abs(difference) > _FAR:
-            blame(validated, "W414", one.variant, "variant", value=f"{100 * difference:+.1f}")
+        if result is None:
+            _flag(validated, one.variant, "wall_thickness", "the equations of so extreme a part cannot be solved")
+        else:
+            found[row] = replace(one, nominal=one.nominal | _numbers(one, result))
+            _compare(validated, found[row])
         if progress:
             progress(done, len(rows))
     return found
@@ -80,9 +84,21 @@ def _flag(validated: Validated, variant: Variant, dimension: str, clause: str) -
     blame(validated, "W413", variant, column.key, name=column.name, value=value, detail=clause)
 
 
-def _checked(task: Task) -> Checked:
-    """Return the check of one variant in numbers alone."""
-    found = elasticity_check(*task)
+def _compare(validated: Validated, one: Computed) -> None:
+    """Flag a row whose formula is far from elasticity."""
+    difference = one.nominal["elasticity_difference"]
+    if isinstance(difference, float) and abs(difference) > _FAR:
+        blame(validated, "W414", one.variant, "variant", value=f"{100 * difference:+.1f}")
+
+
+def _checked(task: Task) -> Checked | None:
+    """Return the check of one variant in numbers alone, None where its equations cannot be solved."""
+    try:
+        found = elasticity_check(*task)
+    except (ArithmeticError, RuntimeError):
+        return None
+    if not (found.windup > 0 and found.error < _UNSOLVED):
+        return None
     return Checked(windup=found.windup, error=found.error, hub_fillet_shear=found.hub_fillet_shear)
 
 

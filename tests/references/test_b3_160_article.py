@@ -8,6 +8,7 @@ behind. Expected numbers are typed in, or come from `two_term` below, a slow twi
 import csv
 import math
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 
@@ -373,3 +374,20 @@ def test_erratum_bore_radius_is_not_the_mean_radius():
     """Taking the bore radius 80 mm for the mean radius overstates the backlash; 80.8 mm gives 1.40 % less."""
     change = float(backlash("cup", BASELINE | {"mean_radius": 0.0808}) / backlash("cup", BASELINE)) - 1
     assert printed(change, -0.0140, 3)
+
+
+def test_calibration_reproduces_the_finite_elements():
+    """The example with factors 0.907 and 0.936 gives the published wind-ups, whose uncertainty shows in the spread."""
+    path = Path(__file__).resolve().parents[2] / "data" / "b3-160-calibrated.xlsx"
+    outcome = run(path)
+    row = outcome.results.row(0, named=True)
+    assert row["cylinder_windup_rad"] == pytest.approx(2.78e-4, rel=1e-3)
+    assert row["disk_windup_rad"] == pytest.approx(2.15e-4, rel=1e-3)
+    assert row["backlash_rad"] == pytest.approx(9.86e-4, rel=1e-3)
+    assert outcome.findings == []
+    (computed,) = outcome.computed.values()
+    shares = computed.variation.shares
+    # Three per cent at three sigma of 4/7 and 3/7 of the backlash, against two of Young's modulus.
+    ratio = shares["cylinder_calibration"] / shares["youngs_modulus"]
+    assert ratio == pytest.approx((3 * row["cylinder_windup_rad"] / (2 * row["windup_rad"])) ** 2, rel=0.02)
+    assert shares["disk_calibration"] == pytest.approx(shares["cylinder_calibration"] * (2.15 / 2.78) ** 2, rel=0.02)

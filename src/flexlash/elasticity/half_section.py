@@ -17,12 +17,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexlash.arrays import Array
-from flexlash.mechanics.flexspline import disk_thickness, radius_of
+from flexlash.elasticity.part import SLACK, Part, part_of, section_problem
 
-__all__ = ["HalfSection", "half_section", "section_problem"]
+__all__ = ["HalfSection", "half_section"]
 
 _GROWTH = 2.5
-"""Neighbouring mesh steps differ by at most this factor."""
+"""Factor by which mesh steps grow from one to the next, away from a fine end."""
 
 _CORNER = 0.02
 """Mesh step at a sharp corner over the thickness: there the twist goes as the two-thirds power of the distance."""
@@ -36,9 +36,6 @@ _ARC = 6
 _LONG = 6
 """Least number of cells along a stretch of the meridian."""
 
-_SLACK = 1e-9
-"""Sums of decimals miss an edge by their last binary digit; relative to the radius."""
-
 Place = Callable[[Array], tuple[Array, Array, Array, Array]]
 """Outer radius and height, inner radius and height of ribs at places from 0 to 1 along a stretch."""
 
@@ -49,9 +46,9 @@ Lines = tuple[float, ...]
 class HalfSection:
     """Nodes of a half-section and what its edges are.
 
-        `radius` and `height` [m] have shape (2 columns + 1, 2 rows + 1) and are NaN where no cell needs them; `cells`
-    XX
-        `details` are places worth a closer look: what is there, radius, height, and reach around them [m].
+    `radius` and `height` [m] have shape (2 columns + 1, 2 rows + 1) and are NaN where no cell needs them; `cells`
+    (columns, rows) says which exist. `clamped`, `loaded` and `hub_fillet` mark the nodes of these edges.
+    `details` are places worth a closer look: what is there, radius, height, and reach around them [m].
     """
 
     radius: Array
@@ -63,96 +60,6 @@ class HalfSection:
     details: tuple[tuple[str, float, float, float], ...] = ()
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Part:
-    """The dimensions of one flexspline [m] as its half-section needs them; what it has not is 0."""
-
-    kind: str
-    mean: float
-    wall: float
-    length: float
-    clamp: float
-    hub_fillet: float
-    junction_fillet: float
-    rim_length: float
-    rim_thickness: float
-    lean: float
-    thickness: Callable[[Array], Array]
-
-    @property
-    def bore(self) -> float:
-        return self.mean - self.wall / 2
-
-    @property
-    def outside(self) -> float:
-        return self.mean + self.wall / 2
-
-    @property
-    def rim_outside(self) -> float:
-        return self.bore + max(self.rim_thickness, self.wall)
-
-    @property
-    def has_step(self) -> bool:
-        """Whether the rim stands out from the wall."""
-        return self.rim_length > 0 and self.rim_outside > self.outside * (1 + _SLACK)
-
-
-def _part(flexspline_type: str, dimensions: Mapping[str, float]) -> _Part:
-    """Return the dimensions of a half-section; blanks are the same dimension elsewhere."""
-    mean = float(radius_of(dimensions))
-    angle = dimensions.get("disk_cone_angle", math.pi / 2)
-
-    def thickness(radius: Array) -> Array:
-        within = np.minimum(radius, mean) if flexspline_type == "cup" else np.maximum(radius, mean)
-        return np.zeros_like(radius) + disk_thickness(dimensions, within) / math.sin(angle)
-
-    clamp = {"cup": "disk_inner_radius", "hat": "disk_outer_radius"}.get(flexspline_type, "mean_radius")
-    return _Part(
-        kind=flexspline_type,
-        mean=mean,
-        wall=dimensions["wall_thickness"],
-        length=dimensions["cylinder_length"],
-        clamp=dimensions.get(clamp, mean),
-        hub_fillet=dimensions.get("hub_fillet_radius", 0.0),
-        junction_fillet=dimensions.get("junction_fillet_radius", 0.0),
-        rim_length=dimensions.get("rim_length", 0.0),
-        rim_thickness=dimensions.get("rim_thickness", 0.0),
-        lean=math.cos(angle) / math.sin(angle) if "disk_cone_angle" in dimensions else 0.0,
-        thickness=thickness,
-    )
-
-
-def section_problem(flexspline_type: str, dimensions: Mapping[str, float]) -> tuple[str, str] | None:
-    """Return why the dimensions make no closed half-section: the dimension to blame and a clause; None if they do."""
-    part = _part(flexspline_type, dimensions)
-    edge = _SLACK * part.mean
-    meeting = {"cup": "disk_outer_radius", "hat": "disk_inner_radius"}.get(part.kind, "mean_radius")
-    width = part.bore - part.clamp
-    cup, hat = part.kind == "cup", part.kind == "hat"
-    problems = (
-        (part.bore <= edge, "wall_thickness", "the wall fills its bore"),
-        (
-            abs(dimensions.get(meeting, part.mean) - part.mean) > part.wall / 2 + edge,
-            meeting,
-            "the disk does not end within the wall",
-        ),
-        (hat and part.clamp <= part.outside + edge, "disk_outer_radius", "the flange ends within the wall"),
-        (cup and width <= edge, "disk_inner_radius", "the hub reaches into the wall"),
-        (cup and part.hub_fillet > width + edge, "hub_fillet_radius", "the hub fillet reaches into the wall"),
-        (
-            cup and part.hub_fillet + part.junction_fillet > width + edge,
-            "junction_fillet_radius",
-            "hub fillet and junction fillet overlap on the disk",
-        ),
-        (
-            part.junction_fillet + part.rim_length > part.length * (1 + _SLACK),
-            "rim_length" if part.rim_length else "junction_fillet_radius",
-            "rim and junction fillet are longer than the cylinder",
-        ),
-    )
-    return next(((name, clause) for broken, name, clause in problems if broken), None)
-
-
 def half_section(flexspline_type: str, dimensions: Mapping[str, float], refinement: int = 0) -> HalfSection:
     """Return the half-section of a flexspline; every refinement halves all cells both ways.
 
@@ -162,13 +69,13 @@ def half_section(flexspline_type: str, dimensions: Mapping[str, float], refineme
     problem = section_problem(flexspline_type, dimensions)
     if problem:
         raise ValueError(problem[1])
-    part = _part(flexspline_type, dimensions)
+    part = part_of(flexspline_type, dimensions)
     turned = part.kind == "cylinder" or part.junction_fillet > 0
     section = _along_the_meridian(part, refinement) if turned else _around_the_corner(part, refinement)
     return replace(section, details=tuple(_details(part)))
 
 
-def _details(part: _Part) -> Iterator[tuple[str, float, float, float]]:
+def _details(part: Part) -> Iterator[tuple[str, float, float, float]]:
     """Yield where hub, junction and rim step are, and how far around them stress is disturbed."""
     if part.kind != "cylinder":
         at_clamp, at_wall = (float(part.thickness(np.array([radius]))[0]) for radius in (part.clamp, part.mean))
@@ -199,7 +106,7 @@ def _graded(start: float, end: float, first: float, last: float, least: int = 1)
             high.append(high[-1] - above)
             above = min(above * _GROWTH, longest)
     gap = high[-1] - low[-1]
-    pieces = max(1, math.ceil(gap / max(below, above) - _SLACK))
+    pieces = max(1, math.ceil(gap / max(below, above) - SLACK))
     return (*low, *(low[-1] + gap * place / pieces for place in range(1, pieces)), *reversed(high))
 
 
@@ -221,7 +128,7 @@ def _step(*, sharp: bool, thickness: float) -> float:
 # Ribs across the disk and the wall
 
 
-def _disk_stretches(part: _Part, end: float) -> Iterator[tuple[Lines, Place]]:
+def _disk_stretches(part: Part, end: float) -> Iterator[tuple[Lines, Place]]:
     """Yield the ribs of a cup's disk from the hub to a radius: those under the hub fillet, then the others."""
     start = part.clamp
     at_hub, at_end = (float(part.thickness(np.array([radius]))[0]) for radius in (start, end))
@@ -234,7 +141,7 @@ def _disk_stretches(part: _Part, end: float) -> Iterator[tuple[Lines, Place]]:
 
         yield tuple(np.linspace(0, 1, _ARC + 1).tolist()), arc
         start += part.hub_fillet
-    if end - start > _SLACK * part.mean:
+    if end - start > SLACK * part.mean:
         stretch = math.log(end / start)
 
         def body(place: Array) -> tuple[Array, Array, Array, Array]:
@@ -248,7 +155,7 @@ def _disk_stretches(part: _Part, end: float) -> Iterator[tuple[Lines, Place]]:
         yield _graded(0.0, 1.0, first, last, _LONG), body
 
 
-def _fan(part: _Part) -> Iterator[tuple[Lines, Place]]:
+def _fan(part: Part) -> Iterator[tuple[Lines, Place]]:
     """Yield the ribs around the junction fillet, from the disk to the diagonal and from there to the wall."""
     fillet, bore = part.junction_fillet, part.bore
     base = float(part.thickness(np.array([part.outside]))[0])
@@ -268,12 +175,12 @@ def _fan(part: _Part) -> Iterator[tuple[Lines, Place]]:
         yield tuple(np.linspace(0, 1, _ARC + 1).tolist()), place
 
 
-def _wall_stretches(part: _Part) -> Iterator[tuple[Lines, Place]]:
+def _wall_stretches(part: Part) -> Iterator[tuple[Lines, Place]]:
     """Yield the ribs of the wall from the junction to the open end: those of the plain wall, then those of the rim."""
     start, step = part.junction_fillet, part.length - part.rim_length
     corner = part.kind != "cylinder" and not part.junction_fillet
     for low, high, sharp in ((start, step, (corner, part.has_step)), (step, part.length, (part.has_step, False))):
-        if high - low > _SLACK * part.length:
+        if high - low > SLACK * part.length:
 
             def straight(place: Array, low: float = low, high: float = high) -> tuple[Array, Array, Array, Array]:
                 height = low + (high - low) * place
@@ -305,7 +212,7 @@ def _across(*, inside: bool, outside: bool) -> Lines:
 # Lattices
 
 
-def _along_the_meridian(part: _Part, refinement: int) -> HalfSection:
+def _along_the_meridian(part: Part, refinement: int) -> HalfSection:
     """Return the half-section whose columns follow the meridian throughout; a rim adds rows outside the wall."""
     disk = [*_disk_stretches(part, part.bore - part.junction_fillet), *_fan(part)] if part.kind == "cup" else []
     outer_radius, outer_height, inner_radius, inner_height = _ribs([*disk, *_wall_stretches(part)], refinement)
@@ -327,7 +234,7 @@ def _along_the_meridian(part: _Part, refinement: int) -> HalfSection:
     return section
 
 
-def _around_the_corner(part: _Part, refinement: int) -> HalfSection:
+def _around_the_corner(part: Part, refinement: int) -> HalfSection:
     """Return the half-section of a sharp corner: rows through the disk, and above them those of the wall.
 
     The columns under the wall rise into it. Beyond them stand those of a hat's flange, low, and of the rim, high.
@@ -337,7 +244,7 @@ def _around_the_corner(part: _Part, refinement: int) -> HalfSection:
     heights = _ribs([*_wall_stretches(part)], refinement)[1]
     rim = _rim_nodes(part, refinement)
     floor = len(upwards) - 1
-    bore, outside = (int(np.argmax(low >= radius * (1 - _SLACK))) for radius in (part.bore, part.outside))
+    bore, outside = (int(np.argmax(low >= radius * (1 - SLACK))) for radius in (part.bore, part.outside))
     section = _blank(max(len(low), outside + 1 + len(rim)), floor + len(heights))
     section.radius[: len(low), : floor + 1] = low[:, None]
     section.height[: len(low), : floor + 1] = bottom[:, None] + (top - bottom)[:, None] * upwards
@@ -358,7 +265,7 @@ def _around_the_corner(part: _Part, refinement: int) -> HalfSection:
     return section
 
 
-def _floor(part: _Part, refinement: int) -> tuple[Array, Array, Array]:
+def _floor(part: Part, refinement: int) -> tuple[Array, Array, Array]:
     """Return radius, lower and upper height of the columns through disk, corner and flange."""
     corners = (part.kind == "cup", part.kind == "hat" or part.has_step)
     across = _nodes(_graded(0.0, 1.0, *_ends(*corners), 2), refinement)
@@ -382,7 +289,7 @@ def _floor(part: _Part, refinement: int) -> tuple[Array, Array, Array]:
     return low, top - part.thickness(low), top
 
 
-def _rim_nodes(part: _Part, refinement: int) -> Array:
+def _rim_nodes(part: Part, refinement: int) -> Array:
     """Return the radii of nodes in the part of the rim that stands out from the wall, the wall's own left out."""
     if not part.has_step:
         return np.zeros(0)
@@ -391,12 +298,12 @@ def _rim_nodes(part: _Part, refinement: int) -> Array:
     return _nodes(_graded(part.outside, part.rim_outside, first, last, 2), refinement)[1:]
 
 
-def _rim_start(part: _Part, heights: Array) -> int:
+def _rim_start(part: Part, heights: Array) -> int:
     """Return the node at which the rim begins."""
-    return int(np.argmax(heights >= part.length - part.rim_length - _SLACK * part.length))
+    return int(np.argmax(heights >= part.length - part.rim_length - SLACK * part.length))
 
 
-def _arc_nodes(part: _Part, refinement: int) -> int:
+def _arc_nodes(part: Part, refinement: int) -> int:
     """Return the number of nodes along the hub fillet."""
     return 2 ** (refinement + 1) * _ARC + 1 if part.hub_fillet else 0
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import expm1, xlogy
 
 from flexlash.arrays import Array
-from flexlash.mechanics import windup
+from flexlash.mechanics import fillets, windup
 
 __all__ = [
     "CYLINDER_SEGMENTS",
@@ -116,7 +116,7 @@ def _cylinder_integrals(dimensions: Dimensions, mean_radius: Array) -> dict[str,
         plain = plain - rim_length
     if "junction_fillet_radius" in dimensions:
         fillet = dimensions["junction_fillet_radius"]
-        integrals["junction_fillet"] = windup.junction_fillet_integral(mean_radius, thickness, fillet)
+        integrals["junction_fillet"] = fillets.junction_fillet_integral(mean_radius, thickness, fillet)
         plain = plain - fillet
     return integrals | {"wall": windup.wall_integral(plain, mean_radius, thickness)}
 
@@ -129,7 +129,7 @@ def _disk_integrals(dimensions: Dimensions) -> dict[str, Array]:
     thickness_at = _disk_profile(dimensions)
     if "hub_fillet_radius" in dimensions:
         fillet = dimensions["hub_fillet_radius"]
-        integrals["hub_fillet"] = windup.hub_fillet_integral(inner, fillet, thickness_at)
+        integrals["hub_fillet"] = fillets.hub_fillet_integral(inner, fillet, thickness_at)
         start = inner + fillet
     if "disk_thickness_exponent" in dimensions:
         exponent = dimensions["disk_thickness_exponent"]

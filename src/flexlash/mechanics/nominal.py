@@ -128,7 +128,7 @@ def _beside(variant: Variant, numbers: Numbers, lost_motion_share: float) -> Num
         within = int(strength.buckling_range(variant.poisson_ratio, radius, wall, length))
         found["buckling_range"] = _RANGES[within]
     if variant.rated_torque is not None:
-        found["lost_motion"] = 2 * lost_motion_share * variant.rated_torque / stiffness
+        found["lost_motion"] = float(np.divide(2 * lost_motion_share * variant.rated_torque, stiffness))
     if variant.load_inertia is not None:
         frequency = natural_frequency(stiffness, variant.load_inertia)
         found |= {"natural_frequency": frequency, "resonance_speed": resonance_speed(frequency)}

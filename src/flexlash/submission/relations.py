@@ -29,8 +29,8 @@ class Relation:
         return {self.key, *self.broken.meta.root_names()}
 
 
-_FLAT = 90.0
-"""Angle between a flat disk and the axis [°]."""
+_FLAT = 89.9999
+"""Angle to the axis [°] from which on a disk counts as flat; 90° in radians rarely is 90."""
 
 _EDGE = 1e-9
 """Sums of decimals miss an edge [mm] by their last binary digit; so much counts as on it."""
@@ -44,6 +44,8 @@ _RADIUS = pl.coalesce("mean_radius_mm", (pl.col("bore_diameter_mm") + pl.col("wa
 _INNER = pl.when(_is("hat")).then(pl.coalesce("disk_inner_radius_mm", _RADIUS)).otherwise("disk_inner_radius_mm")
 _OUTER = pl.coalesce("disk_outer_radius_mm", _RADIUS)
 _RIM = pl.col("rim_length_mm").fill_null(0)
+_BORE = _RADIUS - pl.col("wall_thickness_mm") / 2
+_HUB_FILLET = pl.col("hub_fillet_radius_mm").fill_null(0)
 
 
 def radius(row: Mapping[str, Any]) -> float:
@@ -57,12 +59,12 @@ def _outer(row: Mapping[str, Any]) -> float:
     return float(given) if given is not None else radius(row)
 
 
-def _foreign(key: str, *types: str) -> Relation:
-    """Return the relation that a dimension must be blank (or 0) for these flexspline types."""
+def _foreign(key: str, *types: str, least: float = 0.0) -> Relation:
+    """Return the relation that a dimension must be blank, or not above `least`, for these flexspline types."""
     return Relation(
         code="E310",
         key=key,
-        broken=_is(*types) & (pl.col(key) > 0),
+        broken=_is(*types) & (pl.col(key) > least),
         facts=lambda row: {"other": row["flexspline_type"]},
     )
 
@@ -93,7 +95,7 @@ RELATIONS = (
     _foreign("disk_inner_radius_mm", "cylinder"),
     _foreign("disk_outer_radius_mm", "cylinder"),
     _foreign("disk_hub_thickness_mm", "cylinder", "hat"),
-    _foreign("disk_thickness_exponent", "cylinder", "hat"),
+    _foreign("disk_thickness_exponent", "cylinder", "hat", least=-1.0),
     _foreign("disk_cone_angle_deg", "cylinder"),
     _foreign("hub_fillet_radius_mm", "cylinder", "hat"),
     _foreign("junction_fillet_radius_mm", "cylinder", "hat"),
@@ -180,7 +182,7 @@ RELATIONS = (
     Relation(
         code="E328",
         key="junction_fillet_radius_mm",
-        broken=_is("cup") & (pl.col("junction_fillet_radius_mm") > _RADIUS - pl.col("wall_thickness_mm") / 2 + _EDGE),
+        broken=_is("cup") & (pl.col("junction_fillet_radius_mm") > _BORE + _EDGE),
         facts=lambda row: {"other": radius(row) - row["wall_thickness_mm"] / 2},
     ),
     Relation(
@@ -188,10 +190,10 @@ RELATIONS = (
         key="junction_fillet_radius_mm",
         broken=_is("cup")
         & (pl.col("junction_fillet_radius_mm") > 0)
-        & (
-            pl.col("junction_fillet_radius_mm") + pl.col("hub_fillet_radius_mm").fill_null(0)
-            > _RADIUS - pl.col("wall_thickness_mm") / 2 - pl.col("disk_inner_radius_mm") + _EDGE
-        ),
+        & (pl.col("junction_fillet_radius_mm") <= _BORE + _EDGE)
+        & (pl.col("disk_inner_radius_mm") < pl.min_horizontal(_BORE, _OUTER))
+        & (_HUB_FILLET <= _OUTER - _INNER + _EDGE)
+        & (pl.col("junction_fillet_radius_mm") + _HUB_FILLET > _BORE - pl.col("disk_inner_radius_mm") + _EDGE),
         facts=lambda row: {"other": radius(row) - row["wall_thickness_mm"] / 2 - row["disk_inner_radius_mm"]},
     ),
     Relation(

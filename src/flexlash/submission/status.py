@@ -108,8 +108,10 @@ _RULES = (
     ),
     _Rule(
         text="exponent needs the thickness at hub",
-        excel='AND({disk_thickness_exponent}<>"",{disk_hub_thickness_mm}="")',
-        holds=lambda row, _: not _blank(row, "disk_thickness_exponent") and _blank(row, "disk_hub_thickness_mm"),
+        excel=f'AND({_CUP},{{disk_thickness_exponent}}<>"",{{disk_hub_thickness_mm}}="")',
+        holds=lambda row, _: (
+            _type(row) == "cup" and not _blank(row, "disk_thickness_exponent") and _blank(row, "disk_hub_thickness_mm")
+        ),
     ),
     _Rule(
         text="exponent and disk thickness both given",
