@@ -148,7 +148,7 @@ FURTHER_KEYS = [
     "elastic_limit_torque_Nm",
     "buckling_shear_MPa",
     "buckling_range",
-    "wall_ratio",
+
     "natural_frequency_Hz",
     "resonance_speed_rpm",
     "catalogue_size",

@@ -495,3 +495,41 @@ def test_every_sheet_prints_on_whole_pages(name, request, tmp_path):
     assert pages.count("Findings") == 1
     assert pages.count("Strength") == 1
     assert len(pages) <= 24
+
+
+def test_the_summary_says_what_yields_first(study):
+    """The Summary names the variant nearest to yield, its governing section and its reserve."""
+    outcome, _ = study
+    said = [one for one in sentences(outcome, selection.drawn_variants(outcome)) if one.startswith("Nearest to yield")]
+    rows = list(outcome.results.iter_rows(named=True))
+    torque = {one.variant.name: one.variant.dimensions["torque"] for one in outcome.computed.values()}
+    reserve = {row["variant"]: row["elastic_limit_torque_Nm"] / torque[row["variant"]] for row in rows}
+    least = min(reserve.values())
+    first = next(
+        one.row for one in selection.drawn_variants(outcome) if reserve[one.row["variant"]] <= least * 1.000001
+    )
+    assert said == [
+        f"Nearest to yield is {first['variant']}: its {first['governing_section']} yields at {least:.3g} times the "
+        "torque, corners not counted."
+    ]
+    assert not any("elasticity" in one for one in sentences(outcome, selection.drawn_variants(outcome)))
+
+
+def test_without_a_yield_strength_nothing_is_near_to_yield(table, sound, tmp_path):
+    """Of materials without a yield strength the Summary says nothing about yield."""
+    materials = tmp_path / "materials.csv"
+    materials.write_text("material,youngs_modulus_GPa,poisson_ratio\n20Cr2Ni4,211,0.3\n", encoding="utf-8")
+    outcome = run(table([sound]), materials=materials, method="random", samples=16)
+    assert not any("yield" in one for one in sentences(outcome, selection.drawn_variants(outcome)))
+
+
+def test_the_summary_says_how_far_the_formula_is_off(workbook, sound):
+    """With the elasticity check the Summary gives the range of differences; without a checked row nothing."""
+    pytest.importorskip("skfem", reason="scikit-fem is not installed here")
+    odd = {**sound, "variant": "odd", "disk_outer_radius_mm": 100.0}
+    outcome = run(workbook([sound, odd]), elasticity=True, method="random", samples=16)
+    difference = outcome.results["elasticity_difference_percent"][0]
+    (said,) = [one for one in sentences(outcome, selection.drawn_variants(outcome)) if "elasticity" in one]
+    assert f"is {difference:+.2f} % off (1 checked" in said
+    outcome = run(workbook([odd]), elasticity=True, method="random", samples=16)
+    assert not any("elasticity" in one for one in sentences(outcome, selection.drawn_variants(outcome)))

@@ -206,7 +206,9 @@ def test_curve_and_histogram_of_a_normal_output(of_a_sum):
     greatest = max(found.statistics[f"{name}_standard_error"] for name in PERCENTILES)
     assert np.abs(found.curve - exact).max() <= max(4 * greatest, 3 * allowed if method == "line" else 0)
     assert np.abs(found.heights - np.diff(ndtr((found.edges - 10.0) / 3.0))).max() <= allowed
-    assert found.edges[0] == pytest.approx(10.0 + 3.0 * float(ndtri(0.0005)), abs=6 * allowed)
+    least = 10.0 + 3.0 * float(ndtri(0.0005))
+    # The histogram begins beyond P0.135, where points are rarer still.
+    assert found.edges[0] == pytest.approx(least, abs=6 * allowed if method == "line" else 6 * greatest)
 
 
 def test_shares_of_a_sum(of_a_sum):

@@ -40,6 +40,8 @@ def section_png(check: ElasticityCheck, title: str, greatest: float) -> bytes:
             drawn = axes.tripcolor(mesh, stress, shading="gouraud", cmap="cividis", vmin=0, vmax=greatest / _MEGAPASCAL)
             axes.set_aspect("equal")
             axes.tick_params(labelsize=size)
+        middle, reach = (radius.min() + radius.max()) / 2, max(0.55 * np.ptp(radius), 0.2 * np.ptp(height))
+        whole.set_xlim(middle - reach, middle + reach)
         whole.set_title(title, fontsize=10, color=PALETTE["ink"])
         whole.set_xlabel("radius [mm]", fontsize=8)
         whole.set_ylabel("height over the disk [mm]", fontsize=8)

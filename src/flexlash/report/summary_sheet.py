@@ -81,6 +81,8 @@ def sentences(outcome: Outcome, drawn: Sequence[Drawn]) -> Iterator[str]:
             "The classical cylinder-only formula would miss "
             f"{_missed(100 * min(missed), 100 * max(missed))} of the backlash of cups and hats."
         )
+    yield from _strength(drawn)
+    yield from _elasticity(outcome)
     yield from spread_notes(outcome)
     exact = sum(
         "shear_modulus" in one.variant.dimensions and "shear_modulus" not in one.limits
@@ -88,6 +90,38 @@ def sentences(outcome: Outcome, drawn: Sequence[Drawn]) -> Iterator[str]:
     )
     if exact:
         yield f"The shear modulus of {exact} variants is given and has no tolerance: it does not scatter."
+
+
+def _strength(drawn: Sequence[Drawn]) -> Iterator[str]:
+    """Yield how far the variant nearest to yield is from it."""
+    reserves = {
+        one.row["variant"]: one.row["elastic_limit_torque_Nm"] / one.computed.variant.dimensions["torque"]
+        for one in drawn
+        if one.row["elastic_limit_torque_Nm"] is not None
+    }
+    if reserves:
+        name = min(reserves, key=lambda variant: reserves[variant])
+        section = next(one.row["governing_section"] for one in drawn if one.row["variant"] == name)
+        yield (
+            f"Nearest to yield is {shown(name, longest=_NAME)}: its {section} yields at {reserves[name]:.3g} times the "
+            "torque, corners not counted."
+        )
+
+
+def _elasticity(outcome: Outcome) -> Iterator[str]:
+    """Yield how far the formula is from two-dimensional elasticity, where that was checked."""
+    if "elasticity_difference_percent" not in outcome.results.columns:
+        return
+    checked = outcome.results.filter(outcome.results["elasticity_difference_percent"].is_not_null())
+    if checked.height:
+        differences = checked["elasticity_difference_percent"].to_list()
+        error = max(checked["elasticity_error_percent"].to_list())
+        least, most = (f"{one:+.2f}" for one in (min(differences), max(differences)))
+        span = most if least == most else f"{least} to {most}"
+        yield (
+            f"Against two-dimensional elasticity the nominal backlash is {span} % off ({checked.height} checked, "
+            f"converged to {error:.1g} %)."
+        )
 
 
 def _lost(outcome: Outcome) -> str:
