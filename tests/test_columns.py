@@ -148,7 +148,6 @@ FURTHER_KEYS = [
     "elastic_limit_torque_Nm",
     "buckling_shear_MPa",
     "buckling_range",
-
     "natural_frequency_Hz",
     "resonance_speed_rpm",
     "catalogue_size",

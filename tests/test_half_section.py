@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from flexlash.elasticity import half_section as module
+from flexlash.elasticity import mesh_lines
 from flexlash.elasticity.half_section import half_section
 from flexlash.elasticity.part import section_problem
 
@@ -394,16 +394,16 @@ def test_blank_disk_thickness_is_that_of_the_wall():
 @thorough
 def test_graded_lines(end, first, last, least):
     """Mesh lines rise from end to end; steps grow by the factor, or by its square where they meet in the middle."""
-    lines = module._graded(0.0, end, first, last, least)
+    lines = mesh_lines.graded(0.0, end, first, last, least)
     steps = np.diff(lines)
     assert lines[0] == 0
     assert lines[-1] == end
     assert len(steps) >= least
     assert (steps > 0).all()
     assert steps.max() <= end / least * (1 + 1e-6)
-    most = module._GROWTH**2 * (1 + 1e-6)
-    assert steps[0] <= first * module._GROWTH * (1 + 1e-6)
-    assert steps[-1] <= last * module._GROWTH * (1 + 1e-6)
+    most = mesh_lines._GROWTH**2 * (1 + 1e-6)
+    assert steps[0] <= first * mesh_lines._GROWTH * (1 + 1e-6)
+    assert steps[-1] <= last * mesh_lines._GROWTH * (1 + 1e-6)
     assert (np.maximum(steps[1:] / steps[:-1], steps[:-1] / steps[1:]) <= most).all()
 
 
