@@ -30,7 +30,7 @@ ALLOWED = {
     "tolerance": CORE,
     "submission": CORE | {"tolerance.grades"},
     "assessment": CORE | {"mechanics", "submission", "tolerance"},
-    "verification": CORE | {"assessment", "elasticity", "submission"},
+    "verification": CORE | {"assessment", "elasticity", "mechanics", "submission"},
     "results": CORE | {"tolerance"},
     "outcome": CORE | {"assessment", "elasticity", "submission"},
     "summary": CORE | {"outcome"},

@@ -12,6 +12,7 @@ import regenerate
 from flexlash import elasticity, pipeline, verification
 from flexlash.cli import cli
 from flexlash.elasticity import MISSING
+from flexlash.elasticity.twist import ElasticityCheck
 from flexlash.pipeline import run
 from flexlash.result_columns import ELASTICITY, RESULTS
 
@@ -135,18 +136,65 @@ def test_where_formula_and_elasticity_part_is_flagged(workbook, sound):
     (told,) = [found for found in outcome.findings if found.code == "W414"]
     row = _rows(outcome)[sound["variant"]]
     assert told.variant == sound["variant"]
-    assert f"{row['elasticity_difference_percent']:+.1f} %" in told.message
+    assert f"{-row['elasticity_difference_percent']:.1f} % below two-dimensional elasticity" in told.message
     assert row["elasticity_difference_percent"] < -2
     assert "W414" in row["findings"]
 
 
-def test_calibration_is_part_of_the_difference(workbook, sound):
-    """A factor of 0.9 on both parts shows as a difference of minus ten per cent; elasticity does not know it."""
+def test_calibration_has_no_part_in_the_difference(workbook, sound):
+    """With factors on both parts the check and its difference stay those of the formula without them."""
+    keys = [column.key for column in ELASTICITY]
     plain = _rows(run(workbook([sound]), elasticity=True, **QUICK))[sound["variant"]]
-    factors = {"cylinder_calibration": 0.9, "disk_calibration": 0.9}
-    scaled = _rows(run(workbook([sound], settings=factors), elasticity=True, **QUICK))[sound["variant"]]
-    assert scaled["elasticity_windup_rad"] == plain["elasticity_windup_rad"]
-    assert scaled["elasticity_difference_percent"] == pytest.approx(-10, abs=0.1)
+    factors = {"cylinder_calibration": 0.9, "disk_calibration": 0.8}
+    outcome = run(workbook([sound], settings=factors), elasticity=True, **QUICK)
+    scaled = _rows(outcome)[sound["variant"]]
+    assert [scaled[key] for key in keys[:3]] == pytest.approx([plain[key] for key in keys[:3]], rel=1e-9)
+    assert scaled["windup_rad"] < 0.9 * plain["windup_rad"]
+    assert outcome.findings == []
+
+
+@pytest.mark.parametrize(("torque", "told"), [(8500, False), (9800, True)])
+def test_a_hub_fillet_that_yields(workbook, sound, torque, told):
+    """A peak von Mises stress above yield along the hub fillet is a warning, also where the section does not yield."""
+    row = {**sound, "torque_Nm": torque, "hub_fillet_radius_mm": 1.0}
+    outcome = run(workbook([row]), elasticity=True, **QUICK)
+    assert [found.code for found in outcome.findings] == ["W417"][:told]
+    peak = 3**0.5 * _rows(outcome)[sound["variant"]]["elasticity_hub_fillet_shear_MPa"]
+    assert (peak > 1080) == told
+    if told:
+        assert f"{peak:.4g} MPa exceeds the yield strength 1080 MPa" in outcome.findings[0].message
+
+
+def test_what_cannot_be_solved_is_told(workbook, sound, monkeypatch):
+    """Where the equations fail, or their result is nonsense, the row says so and stays without a check."""
+
+    def fail(*_):
+        raise RuntimeError("singular")
+
+    def nonsense(*_):
+        return elasticity_check_of(windup=-1.0, error=0.0)
+
+    for faulty in (fail, nonsense, lambda *_: elasticity_check_of(windup=1e-3, error=0.02)):
+        monkeypatch.setattr(verification, "elasticity_check", faulty)
+        outcome = run(workbook([sound]), elasticity=True, **QUICK)
+        (told,) = outcome.findings
+        assert told.code == "W413"
+        assert told.message.endswith(
+            "= 1.6 mm: not checked by elasticity, since so extreme a part cannot be solved to 1 %."
+        )
+        assert _rows(outcome)[sound["variant"]]["elasticity_windup_rad"] is None
+
+
+def elasticity_check_of(windup, error):
+    """Return a check with these results and nothing else."""
+    return ElasticityCheck(windup=windup, error=error, hub_fillet_shear=None, section=None, shear=None)
+
+
+def test_a_foil_is_not_solved(workbook, sound):
+    """A disk that thins to a foil is told, not solved."""
+    thin = {"disk_inner_radius_mm": 20.0, "disk_hub_thickness_mm": 4.0, "disk_thickness_exponent": 4.6}
+    outcome = run(workbook([{**sound, **thin}]), elasticity=True, **QUICK)
+    assert "thins to a foil" in next(found.message for found in outcome.findings if found.code == "W413")
 
 
 def test_worker_processes_change_no_bit(workbook, sound, tmp_path, monkeypatch):

@@ -101,15 +101,17 @@ def _warn_strength(validated: Validated, variant: Variant, nominal: Numbers) -> 
 
 def _warn_stiffness(validated: Validated, variant: Variant, nominal: Numbers) -> None:
     """Warn when the flexspline is softer than drives that contain one, or resonates within usual speeds."""
-    stiffness, listed = nominal["stiffness"], nominal.get("catalogue_stiffness")
-    if _exceeds(listed, stiffness):
+    stiffness, least = nominal["stiffness"], nominal.get("least_stiffness")
+    if _exceeds(least, stiffness):
         key = "mean_radius_mm" if "mean_radius" in variant.dimensions else "bore_diameter_mm"
         size = f"{nominal['catalogue_size']:.0f}"
-        blame(validated, "W412", variant, key, value=f"{stiffness:.4g}", other=listed, detail=size)
-    speed = nominal.get("resonance_speed")
-    if _exceeds(_USUAL_SPEED, speed):
-        facts = {"value": f"{nominal['natural_frequency']:.4g}", "other": f"{float(speed or 0) / RPM:.0f}"}
-        blame(validated, "W415", variant, "load_inertia_kg_m2", **facts)
+        blame(validated, "W412", variant, key, value=f"{stiffness:.4g}", other=f"{least:.4g}", detail=size)
+    speeds = [nominal.get("resonance_speed_low"), nominal.get("resonance_speed")]
+    if _exceeds(_USUAL_SPEED, speeds[0]):
+        low, high = (f"{float(speed or 0) / RPM:.2g}" for speed in speeds)
+        span = high if low == high else f"{low} to {high}"
+        value = f"{nominal['natural_frequency']:.2g}"
+        blame(validated, "W415", variant, "load_inertia_kg_m2", value=value, other=span)
 
 
 def _exceeds(one: float | str | None, other: float | str | None) -> bool:

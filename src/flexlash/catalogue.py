@@ -211,7 +211,7 @@ CATALOGUE = _rules(
         "number too small",
         "{place} {name} = {value}: {requirement} is required.",
         "Check the value and its unit.",
-        "Dimensions, torques and moduli are greater than 0; fillets may be 0.",
+        "Dimensions, torques and moduli are greater than 0; fillets and exponents may be 0, a cone starts at 30°.",
     ),
     (
         "E208",
@@ -323,7 +323,7 @@ CATALOGUE = _rules(
         "does not belong to this type",
         "{place} {name} = {value}: a {other} has no such dimension.",
         "Clear the cell, or change the flexspline type.",
-        "A cylinder has no disk. Fillets and the disk taper are those of a cup.",
+        "A cylinder has no disk. Fillets, the disk taper and its exponent are those of a cup.",
     ),
     (
         "E311",
@@ -457,7 +457,7 @@ CATALOGUE = _rules(
         "disk does not meet the wall",
         "{place} {name} = {value} mm differs from the mean radius {other:g} mm.",
         "Leave the cell blank, unless the model of a source is to be repeated.",
-        "A cup's disk ends where the wall begins. The value is used as entered.",
+        "A cup's disk ends where the wall begins, and a hat's flange begins there. The value is used as entered.",
     ),
     (
         "W402",
@@ -498,9 +498,10 @@ CATALOGUE = _rules(
     (
         "W407",
         "calibration with refinements",
-        "{place}: a calibration other than 1 is used together with fillets, taper or rim.",
+        "{place}: a calibration other than 1 is used together with refinement columns.",
         "Set the calibrations to 1, or leave the refinement columns blank.",
-        "Factors fitted to the plain two-term formula already contain fillets and rim; together they count twice.",
+        "Factors fitted to the plain two-term formula already contain fillets and rim; together they count twice. The "
+        "same holds for the mean radius: a factor fitted with the bore's radius already contains the half wall.",
     ),
     (
         "W408",
@@ -534,40 +535,49 @@ CATALOGUE = _rules(
     (
         "W412",
         "softer than a whole drive",
-        "{place}: stiffness {value} N·m/rad, but whole drives of size {detail} reach {other:g} N·m/rad.",
+        "{place}: stiffness {value} N·m/rad, but whole drives like size {detail} reach {other} N·m/rad at this radius.",
         "Check radius, thicknesses and their units, and the elastic constants.",
         "A flexspline alone is stiffer than the drive that contains it. Compared with the least K3 of a maker's "
-        "catalogue at the nearest size, which is the mean diameter over 2.54 mm.",
+        "catalogue at the nearest size, the mean diameter over 2.54 mm; a smaller radius counts with its cube.",
     ),
     (
         "W413",
         "no elasticity check",
-        "{place} {name} = {value}: {detail}, so that there is no closed half-section to check.",
-        "Check the value; the wind-up by the formula stands beside without a check.",
-        "The check by two-dimensional elasticity needs a part that could be made: disk, wall and fillets must meet.",
+        "{place} {name} = {value}: not checked by elasticity, since {detail}.",
+        "Check the value; the wind-up by the formula stands without a check.",
+        "The check by two-dimensional elasticity needs a part that could be made: disk, wall and fillets must meet, "
+        "and no thickness may be a foil.",
     ),
     (
         "W414",
         "elasticity differs",
-        "{place}: the wind-up is {value} % off two-dimensional elasticity; the spread keeps the formula.",
+        "{place}: the formula is {value} two-dimensional elasticity; the spread keeps the formula.",
         "Trust the elasticity result for the nominal value, and mind the difference in the spread.",
-        "Short, thick or strongly stepped parts depart from the thin shell of the formula. Calibrations are part of "
-        "the difference. More than 2 % is reported.",
+        "Short, thick or strongly stepped parts depart from the thin shell of the formula. Both are compared without "
+        "calibration. More than 2 % is reported.",
     ),
     (
         "W415",
         "resonance within usual input speeds",
-        "{place}: the load's natural frequency {value} Hz is met at {other} rpm of the input.",
+        "{place}: the load's natural frequency is at most {value} Hz; the input meets it at {other} rpm.",
         "Avoid dwelling near that input speed, stiffen the flexspline or reduce the inertia.",
-        "A strain wave gear's torque ripples twice per turn of its input. Bearing and teeth lower the frequency "
-        "further. Speeds below 3000 rpm are reported.",
+        "A strain wave gear's torque ripples twice per turn of its input. The higher speed is that of the flexspline "
+        "alone, the lower that of a whole drive of its size. Below 3000 rpm it is reported.",
     ),
     (
         "W416",
         "fillets overlap on the disk",
-        "{place} {name} = {value} mm: with the hub fillet it exceeds the width of the disk inside, {other:g} mm.",
+        "{place} {name} = {value} mm: fillets take more than the {other:g} mm of disk between hub and bore.",
         "Check both fillet radii and the disk inner radius.",
         "Such a part cannot be made as drawn. The wind-up adds both fillets by formula; it is an approximation.",
+    ),
+    (
+        "W417",
+        "hub fillet beyond yield",
+        "{place} {name} = {value} mm: its peak von Mises stress {detail} MPa exceeds the yield strength {other:g} MPa.",
+        "Enlarge the fillet, thicken the disk at the hub, or lower the torque.",
+        "By two-dimensional elasticity, which adds to the thin disk's stress what the fillet concentrates. A ductile "
+        "part yields there before its section does; under alternating torque it fatigues there.",
     ),
     (
         "I501",

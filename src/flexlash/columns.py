@@ -153,7 +153,8 @@ VARIANTS = (
     _variant(
         "disk_cone_angle_deg",
         "Disk cone angle [°]",
-        "Angle between a conical disk or flange and the axis; thicknesses are normal to it. Blank or 90: flat.",
+        "Angle between a conical disk or flange and the axis; it falls away from the open end. Thicknesses are normal "
+        "to it. Blank or 90: flat.",
         quantity="angle",
         minimum=30,
         maximum=90,

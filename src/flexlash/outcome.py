@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
     from flexlash.elasticity.twist import ElasticityCheck
 
-__all__ = ["Outcome"]
+__all__ = ["PICTURED", "Outcome"]
+
+PICTURED = 6
+"""Most variants of which the report shows the half-section."""
 
 
 @dataclass(kw_only=True)

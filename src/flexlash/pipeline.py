@@ -12,7 +12,7 @@ from flexlash.assessment import assess
 from flexlash.elasticity import MISSING, is_available
 from flexlash.findings import Finding, finding
 from flexlash.mechanics.flexspline import backlash
-from flexlash.outcome import Outcome
+from flexlash.outcome import PICTURED, Outcome
 from flexlash.results import result_record, results_frame
 from flexlash.submission.gate import Refusal, admit, read_bytes
 from flexlash.submission.read import RawSheet, Submission, read_submission, read_table
@@ -28,9 +28,6 @@ if TYPE_CHECKING:
 __all__ = ["Options", "Outcome", "check", "run"]
 
 Progress = Callable[[int, int], None]
-
-PICTURED = 6
-"""Most variants of which the report shows the half-section."""
 
 _ELSEWHERE = "stopped by an error of another row or sheet, see Findings"
 

@@ -201,7 +201,7 @@ ELASTICITY = (
     _result(
         "elasticity_difference_percent",
         "Difference from elasticity",
-        "Wind-up over that by elasticity, minus one.",
+        "Wind-up by the formula, without calibration, over that by elasticity, minus one.",
         "%",
         "ratio",
     ),
@@ -215,7 +215,7 @@ ELASTICITY = (
     _result(
         "elasticity_hub_fillet_shear_MPa",
         "Hub fillet shear by elasticity",
-        "Greatest shear stress along the hub fillet; blank without fillet, where a sharp corner has no finite one.",
+        "Greatest shear stress along the hub fillet; blank without fillet, or where it has not settled to 3 %.",
         "MPa",
         "stress",
     ),

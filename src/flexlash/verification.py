@@ -10,6 +10,7 @@ from flexlash.columns import DIMENSIONS
 from flexlash.elasticity import MISSING, is_available
 from flexlash.elasticity.part import section_problem
 from flexlash.elasticity.twist import ElasticityCheck, elasticity_check
+from flexlash.mechanics.strength import von_mises_stress
 from flexlash.submission.validate import Validated
 from flexlash.variant import Variant
 from flexlash.workers import mapped
@@ -22,7 +23,9 @@ WORTH_A_WORKER = 25
 _FAR = 0.02
 """Difference between formula and elasticity, as a share, above which a row is flagged."""
 
-_UNSOLVED = 0.05
+_MEGAPASCAL = 1e6
+
+_UNSOLVED = 0.01
 """Error of the elasticity check, as a share, above which it says nothing."""
 
 Task = tuple[str, Mapping[str, float]]
@@ -58,7 +61,7 @@ def verified(
     for done, (row, result) in enumerate(zip(rows, results, strict=True), start=1):
         one = computed[row]
         if result is None:
-            _flag(validated, one.variant, "wall_thickness", "the equations of so extreme a part cannot be solved")
+            _flag(validated, one.variant, "wall_thickness", "so extreme a part cannot be solved to 1 %")
         else:
             found[row] = replace(one, nominal=one.nominal | _numbers(one, result))
             _compare(validated, found[row])
@@ -80,15 +83,22 @@ def _closed(validated: Validated, computed: Mapping[int, Computed]) -> Iterator[
 def _flag(validated: Validated, variant: Variant, dimension: str, clause: str) -> None:
     """Record that a variant cannot be checked, at the dimension to blame."""
     column = DIMENSIONS[dimension]
-    value = f"{variant.dimensions[dimension] / column.si_unit.si:.10g}"
+    value = f"{variant.dimensions[dimension] / column.si_unit.si:.10g} {column.unit}"
     blame(validated, "W413", variant, column.key, name=column.name, value=value, detail=clause)
 
 
 def _compare(validated: Validated, one: Computed) -> None:
-    """Flag a row whose formula is far from elasticity."""
+    """Flag a row whose formula is far from elasticity, or whose hub fillet yields."""
     difference = one.nominal["elasticity_difference"]
     if isinstance(difference, float) and abs(difference) > _FAR:
-        blame(validated, "W414", one.variant, "variant", value=f"{100 * difference:+.1f}")
+        words = f"{abs(100 * difference):.1f} % {'above' if difference > 0 else 'below'}"
+        blame(validated, "W414", one.variant, "variant", value=words)
+    shear, limit = one.nominal["elasticity_hub_fillet_shear"], one.variant.yield_strength
+    if isinstance(shear, float) and limit is not None and von_mises_stress(shear) > limit:
+        peak = f"{von_mises_stress(shear) / _MEGAPASCAL:.4g}"
+        value = f"{one.variant.dimensions['hub_fillet_radius'] * 1e3:.10g}"
+        facts = {"name": "Hub fillet radius", "value": value, "detail": peak, "other": limit / _MEGAPASCAL}
+        blame(validated, "W417", one.variant, "hub_fillet_radius_mm", **facts)
 
 
 def _checked(task: Task) -> Checked | None:
@@ -103,13 +113,18 @@ def _checked(task: Task) -> Checked | None:
 
 
 def _numbers(one: Computed, result: Checked) -> dict[str, float | str | None]:
-    """Return the check's results [SI] by result key without unit; the difference is relative to elasticity."""
-    windup = one.nominal["windup"]
-    if not isinstance(windup, float):
-        raise TypeError(windup)
+    """Return the check's results [SI] by result key without unit.
+
+    The difference is that of the formula without calibration, relative to elasticity.
+    """
+    uncalibrated = 0.0
+    for part in ("cylinder", "disk"):
+        windup = one.nominal[f"{part}_windup"]
+        if isinstance(windup, float):
+            uncalibrated += windup / one.variant.dimensions.get(f"{part}_calibration", 1.0)
     return {
         "elasticity_windup": result.windup,
-        "elasticity_difference": windup / result.windup - 1,
+        "elasticity_difference": uncalibrated / result.windup - 1,
         "elasticity_error": result.error,
         "elasticity_hub_fillet_shear": result.hub_fillet_shear,
     }

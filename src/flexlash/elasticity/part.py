@@ -117,7 +117,9 @@ def section_problem(flexspline_type: str, dimensions: Mapping[str, float]) -> tu
         (
             cup and part.hub_fillet + part.junction_fillet > width + edge,
             "junction_fillet_radius",
-            "hub fillet and junction fillet overlap on the disk",
+            "hub fillet and junction fillet overlap on the disk"
+            if part.hub_fillet
+            else "the junction fillet reaches beyond the disk",
         ),
         (
             part.lean > 0 and part.hub_fillet + part.junction_fillet > 0,

@@ -29,6 +29,9 @@ _POINTS, _SHARES = (_GAUSS + 1) / 2, _WEIGHTS / 2
 _CONVERGED = 5e-4
 """Change of the wind-up from one mesh to the next at which refining ends."""
 
+_PEAK_CONVERGED = 0.03
+"""Change of the peak stress from one mesh to the next above which it is not told."""
+
 _CHANCE = 5e-6
 """Added to the change, as a share, since two meshes may agree by chance."""
 
@@ -52,7 +55,8 @@ class UnitTwist:
 class ElasticityCheck:
     """The elasticity check of one flexspline, in SI.
 
-    `windup` [rad], its `error` as a share of it, the shear stress along the hub fillet [Pa] or None without fillet,
+    `windup` [rad], its `error` as a share of it, the greatest shear stress along the hub fillet [Pa] or None without
+    fillet or where it has not settled to 3 %,
     and for a picture the finer half-section with the shear stress at the Gauss points of its cells (cells, 9) [Pa].
     """
 
@@ -81,23 +85,30 @@ def elasticity_check(flexspline_type: str, dimensions: Mapping[str, float]) -> E
     '5.294e-04'
     """
     section = half_section(flexspline_type, dimensions)
-    twist, error = unit_twist(section), math.inf
+    before = twist = unit_twist(section)
+    error = math.inf
     for refinement in range(1, _REFINEMENTS + 1):
-        before = twist.integral
+        before = twist
         section = half_section(flexspline_type, dimensions, refinement)
         twist = unit_twist(section)
-        error = abs(twist.integral / before - 1) + _CHANCE
+        error = abs(twist.integral / before.integral - 1) + _CHANCE
         if error < _CONVERGED:
             break
     torque = dimensions["torque"]
     per_stress = torque / (2 * math.pi)
+    peak = twist.hub_stress if _is_converged(before.hub_stress, twist.hub_stress) else None
     return ElasticityCheck(
         windup=float(windup.segment_windup(torque, modulus_of(dimensions), twist.integral)),
         error=error,
-        hub_fillet_shear=None if twist.hub_stress is None else per_stress * twist.hub_stress,
+        hub_fillet_shear=None if peak is None else per_stress * peak,
         section=section,
         shear=per_stress * twist.stress,
     )
+
+
+def _is_converged(before: float | None, after: float | None) -> bool:
+    """Whether a peak stress is finite: that it no longer grows from mesh to mesh."""
+    return before is not None and after is not None and abs(after / before - 1) < _PEAK_CONVERGED
 
 
 def unit_twist(section: HalfSection) -> UnitTwist:

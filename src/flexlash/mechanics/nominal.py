@@ -124,17 +124,22 @@ def _beside(variant: Variant, numbers: Numbers, lost_motion_share: float) -> Num
     wall, length = variant.dimensions["wall_thickness"], variant.dimensions["cylinder_length"]
     radius = _of(numbers, "mean_radius")
     if variant.youngs_modulus is not None and variant.poisson_ratio is not None:
-        found["buckling_shear"] = float(strength.buckling_shear(variant.youngs_modulus, radius, wall, length))
-        within = int(strength.buckling_range(variant.poisson_ratio, radius, wall, length))
-        found["buckling_range"] = _RANGES[within]
+        young, poisson = variant.youngs_modulus, variant.poisson_ratio
+        buckling = strength.wall_buckling_shear(young, poisson, radius, wall, length)
+        found["buckling_shear"] = float(buckling)
+        found["buckling_torque"] = float(torque * buckling / _of(numbers, "wall_shear"))
+        found["buckling_range"] = _RANGES[int(strength.buckling_range(poisson, radius, wall, length))]
     if variant.rated_torque is not None:
         found["lost_motion"] = float(np.divide(2 * lost_motion_share * variant.rated_torque, stiffness))
+    listed = catalogue_stiffness(radius)
+    if listed and variant.flexspline_type != "cylinder":
+        found |= {"catalogue_size": float(listed.size), "catalogue_stiffness": listed.stiffness}
+        found["least_stiffness"] = listed.at_radius(radius)
     if variant.load_inertia is not None:
         frequency = natural_frequency(stiffness, variant.load_inertia)
         found |= {"natural_frequency": frequency, "resonance_speed": resonance_speed(frequency)}
-    listed = catalogue_stiffness(radius)
-    if listed and variant.flexspline_type != "cylinder":
-        found |= {"catalogue_size": float(listed[0]), "catalogue_stiffness": listed[1]}
+        of_drive = min(stiffness, listed.at_radius(radius)) if listed else stiffness
+        found["resonance_speed_low"] = resonance_speed(natural_frequency(of_drive, variant.load_inertia))
     return found
 
 

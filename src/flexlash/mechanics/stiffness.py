@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from typing import NamedTuple
 
 from flexlash import tables
 
-__all__ = ["catalogue_stiffness", "natural_frequency", "resonance_speed"]
+__all__ = ["WholeDrive", "catalogue_stiffness", "natural_frequency", "resonance_speed"]
 
-_MILLIMETRES_PER_SIZE = 2.54
+_METRES_PER_SIZE = 2.54e-3
 """A maker's size counts tenths of an inch of pitch diameter."""
 
 _WAVES = 2
@@ -44,8 +45,20 @@ def resonance_speed(frequency: float) -> float:
     return 2 * math.pi * frequency / _WAVES
 
 
-def catalogue_stiffness(mean_radius: float) -> tuple[int, float] | None:
-    """Size of the nearest catalogue drive [-] and its stiffness beyond the second slope [N·m/rad]; None if unlisted.
+class WholeDrive(NamedTuple):
+    """A catalogue drive: its size [-] and the least stiffness listed beyond its second slope [N·m/rad]."""
+
+    size: int
+    stiffness: float
+
+    def at_radius(self, mean_radius: float) -> float:
+        """Return the stiffness [N·m/rad] that a drive of a smaller radius [m] would have: it goes as its cube."""
+        share = 2 * mean_radius / (_METRES_PER_SIZE * self.size)
+        return self.stiffness * min(1.0, share**3)
+
+
+def catalogue_stiffness(mean_radius: float) -> WholeDrive | None:
+    """Nearest drive of a maker's catalogue with its stiffness [N·m/rad]; None if unlisted.
 
     Equation: size = 2 r_m / 2.54 mm; K3 the least over the listed ratios
     Arguments: mean_radius r_m of the wall [m].
@@ -53,15 +66,15 @@ def catalogue_stiffness(mean_radius: float) -> tuple[int, float] | None:
     Source: a maker's catalogue, `tables/catalogue_stiffness.csv`.
 
     >>> catalogue_stiffness(0.0178), catalogue_stiffness(0.2)
-    ((14, 3400.0), None)
+    (WholeDrive(size=14, stiffness=3400.0), None)
     """
-    size = 2 * mean_radius * 1000 / _MILLIMETRES_PER_SIZE
+    size = 2 * mean_radius / _METRES_PER_SIZE
     listed = _least_stiffness()
     if not min(listed) - _SLACK <= size <= max(listed) + _SLACK:
         return None
     nearest = min(listed, key=lambda one: (abs(one - size), one))
     stiffness = listed[nearest]
-    return None if stiffness is None else (nearest, stiffness)
+    return None if stiffness is None else WholeDrive(size=nearest, stiffness=stiffness)
 
 
 _SLACK = 1e-9

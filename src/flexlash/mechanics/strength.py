@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from scipy.special import cosdg, sindg
 
 from flexlash.arrays import Array
 
@@ -15,6 +16,7 @@ __all__ = [
     "elastic_limit_torque",
     "shear_stress",
     "von_mises_stress",
+    "wall_buckling_shear",
 ]
 
 _STATIONS = 41
@@ -69,8 +71,8 @@ def disk_shear(
     fillet = np.minimum(fillet_radius, width)
 
     def in_fillet(fraction: Array) -> tuple[Array, Array]:
-        angle = fraction * np.pi / 2
-        return at(fillet * (1 - np.cos(angle)), fillet * (1 - np.sin(angle)))
+        # Sine and cosine of SciPy, since NumPy's may round otherwise at another place of an array.
+        return at(fillet * (1 - cosdg(90 * fraction)), fillet * (1 - sindg(90 * fraction)))
 
     def in_body(fraction: Array) -> tuple[Array, Array]:
         return at(fillet + (width - fillet) * fraction, 0.0)
@@ -148,6 +150,36 @@ def buckling_shear(
         * youngs_modulus
         / (slender * slender * np.sqrt(slender))
         / np.sqrt(length / np.asarray(radius))
+    )
+
+
+def wall_buckling_shear(
+    youngs_modulus: Array | float,
+    poisson_ratio: Array | float,
+    radius: Array | float,
+    thickness: Array | float,
+    length: Array | float,
+) -> Array:
+    """Shear stress at which the wall buckles under torque, for cylinders of any length [Pa].
+
+    Equation: `buckling_shear`; where the cylinder is shorter at least the long plate's 5.35 π² E/(12 (1 − ν²)) (t/l)²;
+        where it is longer at most 0.67 · 0.272 E (1 − ν²)^(−¾) (t/r)^(3/2)
+    Arguments: youngs_modulus E [Pa]; poisson_ratio ν [-]; radius r, thickness t and length l [m], of any one shape.
+    Valid: thin cylinders; for shorter ones it is a lower bound, since curvature and edges both stiffen them.
+    Source: NASA SP-8007; Timoshenko and Gere, shear of a long plate; Donnell, torsion of a long tube.
+
+    >>> [f"{wall_buckling_shear(211e9, 0.3, 0.08, 0.0016, length) / 1e6:.1f}" for length in (0.08, 0.16, 5.0)]
+    ['794.2', '561.6', '100.5']
+    """
+    within = buckling_range(poisson_ratio, radius, thickness, length)
+    usual = buckling_shear(youngs_modulus, radius, thickness, length)
+    flexible = 1 - np.asarray(poisson_ratio) * poisson_ratio
+    plate = 5.35 * np.pi**2 * youngs_modulus / (12 * flexible) * np.square(np.asarray(thickness) / length)
+    slender = np.asarray(thickness) / radius
+    root = np.sqrt(flexible)
+    tube = _KNOCK_DOWN * 0.272 * youngs_modulus / (root * np.sqrt(root)) * slender * np.sqrt(slender)
+    return np.asarray(
+        np.where(within < 0, np.maximum(usual, plate), np.where(within > 0, np.minimum(usual, tube), usual))
     )
 
 

@@ -6,24 +6,26 @@ import io
 from collections.abc import Sequence
 
 from flexlash.findings import shown
-from flexlash.outcome import Outcome
+from flexlash.outcome import PICTURED, Outcome
 from flexlash.report.section_picture import section_png
 from flexlash.report.selection import Drawn
 from flexlash.report.styles import Book
+from flexlash.units import ARCMIN
 
 __all__ = ["NOTES", "write_elasticity", "write_stress"]
 
 NOTES = (
     "Torsion of a body of revolution, ∇·(G r³ ∇φ) = 0 on the half-section with fillets, taper, cone and rim; the hub "
     "bore (hat: bolt circle) is held, the torque enters at the open end. Second-order finite elements.",
-    "The error is the change from the mesh before, which is greater than what remains. Calibrations are part of the "
-    "difference. The spread keeps the formula: scale it by the difference where that matters.",
-    "A corner without fillet has no finite peak stress in elasticity; there the hub fillet's columns stay blank.",
+    "The error is the change from the mesh before, which is greater than what remains. Formula and elasticity are "
+    "compared without calibration. The spread keeps the formula: scale it by the difference where that matters.",
+    "The hub is held rigidly, so that a sharp corner there shows no notch, though a real one is a notch. Sharp corners "
+    "between disk and wall and at the rim have no finite peak; the colours of Stress end below it.",
 )
 _COLUMNS = (
     ("two_term_backlash_arcmin", "Two-term formula [arcmin]", "arcmin"),
-    ("backlash_arcmin", "Meridian integral [arcmin]", "arcmin"),
-    ("elasticity_backlash", "Elasticity [arcmin]", "arcmin"),
+    ("meridian", "Meridian integral [arcmin]", "arcmin"),
+    ("elasticity", "Elasticity [arcmin]", "arcmin"),
     ("elasticity_difference_percent", "Meridian over elasticity [%]", "0.00"),
     ("elasticity_error_percent", "Error of elasticity [%]", "0.0000"),
     ("hub_shear_MPa", "Disk shear by formula [MPa]", "stress"),
@@ -35,7 +37,7 @@ _OVER = 1.25
 """Where the colours of a picture end, over the greatest stress by formula."""
 
 _PER_ROW = 2
-_PICTURE_ROWS = 24
+_PICTURE_ROWS = 30
 _PICTURE_COLUMNS = 10
 
 
@@ -54,12 +56,16 @@ def write_elasticity(book: Book, outcome: Outcome) -> None:
     sheet.set_row(_HEADER, 48)
     row = _HEADER
     for record in outcome.results.iter_rows(named=True):
-        if record["elasticity_windup_rad"] is None:
+        if record["windup_rad"] is None:
             continue
         row += 1
-        ratio = record["elasticity_windup_rad"] / record["windup_rad"]
-        values = {**record, "elasticity_backlash": ratio * record["backlash_arcmin"]}
         sheet.write_string(row, 0, shown(record["variant"], longest=_NAME), book.format("text"))
+        if record["elasticity_windup_rad"] is None:
+            sheet.write_string(row, 1, "not checked, see Findings", book.format("quiet"))
+            continue
+        elastic = 2 * record["elasticity_windup_rad"] / ARCMIN
+        meridian = elastic * (1 + record["elasticity_difference_percent"] / 100)
+        values = {**record, "meridian": meridian, "elasticity": elastic}
         for place, (key, _, number) in enumerate(_COLUMNS, start=1):
             if values[key] is not None:
                 sheet.write_number(row, place, values[key], book.format("text", number))
@@ -74,14 +80,18 @@ def write_stress(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
     sheet = book.sheet("Stress", landscape=False, pages_tall=1)
     sheet.write_string(0, 0, "Shear stress in the half-section", book.format("title"))
     sheet.set_row(0, 28)
-    text = f"The {len(outcome.pictured)} worst of the checked variants; colours end at {_OVER:g} times the formula."
+    text = (
+        f"Checked variants, worst first, at most {PICTURED}. Each has its own colours; they end at {_OVER:g} times its "
+        "greatest stress by formula."
+    )
     sheet.write_string(1, 0, text, book.format("quiet"))
     by_name = {one.row["variant"]: one for one in drawn}
     for number, (name, check) in enumerate(outcome.pictured.items()):
-        row, column = (number // _PER_ROW) * _PICTURE_ROWS + 3, (number % _PER_ROW) * _PICTURE_COLUMNS
+        row, column = (number // _PER_ROW) * _PICTURE_ROWS + 4, (number % _PER_ROW) * _PICTURE_COLUMNS
         greatest = _OVER * _greatest_shear(by_name[name])
         title = shown(name, longest=_NAME)
-        data = io.BytesIO(section_png(check, title, greatest))
+        sheet.write_string(row - 1, column, title, book.format("label"))
+        data = io.BytesIO(section_png(check, greatest))
         described = f"Half-section of {title}, coloured by shear stress"
         options = {"image_data": data, "description": described, "object_position": 2}
         sheet.insert_image(row, column, f"half-section-{number + 1}.png", options)

@@ -13,7 +13,7 @@ from flexlash.report.styles import PALETTE
 
 __all__ = ["PICTURE_SIZE", "section_png"]
 
-PICTURE_SIZE = (600, 460)
+PICTURE_SIZE = (640, 540)
 """Width and height of the picture [px]."""
 
 _DOTS = 100
@@ -21,7 +21,7 @@ _MILLIMETRE = 1e-3
 _MEGAPASCAL = 1e6
 
 
-def section_png(check: ElasticityCheck, title: str, greatest: float) -> bytes:
+def section_png(check: ElasticityCheck, greatest: float) -> bytes:
     """Return the picture as PNG; colours end at `greatest` [Pa], beyond which only singular corners lie."""
     import matplotlib as mpl
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -42,7 +42,6 @@ def section_png(check: ElasticityCheck, title: str, greatest: float) -> bytes:
             axes.tick_params(labelsize=size)
         middle, half = (radius.min() + radius.max()) / 2, max(0.55 * np.ptp(radius), 0.2 * np.ptp(height))
         whole.set_xlim(middle - half, middle + half)
-        whole.set_title(title, fontsize=10, color=PALETTE["ink"])
         whole.set_xlabel("radius [mm]", fontsize=8)
         whole.set_ylabel("height over the disk [mm]", fontsize=8)
         for axes, (name, place, level, reach) in zip(near, details, strict=True):

@@ -37,7 +37,7 @@ def write_sections(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
     sheet.write_string(0, 0, "Where the backlash arises", book.format("title"))
     sheet.set_row(0, 28)
     note = (
-        "Backlash of each segment at the entered dimensions [arcmin], from the open end to the hub; together nominal."
+        "Backlash of each segment at the entered dimensions [arcmin], from the open end to the hub; the sum is nominal."
     )
     if len(drawn) < computed:
         note += f" The {len(drawn)} worst of {computed} variants."

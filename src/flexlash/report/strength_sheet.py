@@ -19,23 +19,25 @@ _COLUMNS = (
     ("rim_von_mises", "Rim von Mises [MPa]", "stress"),
     ("hub_shear_MPa", "Disk shear [MPa]", "stress"),
     ("hub_von_mises", "Disk von Mises [MPa]", "stress"),
-    ("hub_shear_radius_mm", "at radius [mm]", "plain"),
+    ("hub_shear_radius_mm", "Radius of disk shear [mm]", "plain"),
     ("governing_section", "Governing section", ""),
     ("elastic_limit_torque_Nm", "Elastic limit torque [N·m]", "stress"),
     ("buckling_shear_MPa", "Wall buckles at shear [MPa]", "stress"),
+    ("buckling_torque", "Buckling torque [N·m]", "stress"),
     ("buckling_range", "Buckling formula applies", ""),
     ("wall_ratio", "Wall over mean radius", "share"),
     ("stiffness_Nm_per_rad", "Stiffness [N·m/rad]", "count"),
     ("catalogue_size", "Nearest catalogue size", "count"),
     ("catalogue_stiffness_Nm_per_rad", "Whole drives [N·m/rad]", "count"),
     ("natural_frequency_Hz", "Natural frequency [Hz]", "stress"),
-    ("resonance_speed_rpm", "met at input [rpm]", "count"),
+    ("resonance_speed_rpm", "Resonance at input [rpm]", "count"),
 )
 _NOTES = (
-    "Shear stress T/(2π r² t) of each section; von Mises stress is √3 times it. The governing section yields first, at "
-    "the elastic limit torque. Peaks at corners come on top: --elasticity shows them.",
-    "Buckling: NASA SP-8007 with its knock-down factor; where the cylinder is shorter than that formula is meant for, "
-    "the real stress is higher. The flexspline alone must be stiffer than whole drives of its size.",
+    "Shear stress T/(2π r² t) of each section; von Mises stress is √3 times it. The governing section is the first to "
+    "yield, at the elastic limit torque, unless the wall buckles before. Peaks at corners come on top; a run with the "
+    "option --elasticity gives that of the hub fillet.",
+    "Buckling of the wall: NASA SP-8007 with its knock-down factor; for shorter cylinders a lower bound. A buckling "
+    "stress above yield/√3 means that the wall yields first. The flexspline alone must be stiffer than whole drives.",
     "The natural frequency is that of the load inertia on the flexspline alone, an upper bound; the input meets it by "
     "its two torque ripples per turn.",
 )

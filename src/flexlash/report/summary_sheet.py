@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from flexlash.findings import shown
+from flexlash.findings import CATALOGUE, shown
 from flexlash.outcome import Outcome
 from flexlash.report.selection import Drawn
 from flexlash.report.spread_sheet import curve_place
@@ -34,7 +34,7 @@ _COLUMNS = (
 )
 LIGHT_RULE = (
     "Verdict: green, at least 99.865 % of units within the limit; amber, at least 97.5 %; red, fewer; –, no limit. "
-    "Order: share over the limit."
+    "Order: share over the limit. It judges the backlash alone."
 )
 
 
@@ -82,6 +82,7 @@ def sentences(outcome: Outcome, drawn: Sequence[Drawn]) -> Iterator[str]:
             f"{_missed(100 * min(missed), 100 * max(missed))} of the backlash of cups and hats."
         )
     yield from _strength(drawn)
+    yield from _flagged(outcome)
     yield from _elasticity(outcome)
     yield from spread_notes(outcome)
     exact = sum(
@@ -106,6 +107,19 @@ def _strength(drawn: Sequence[Drawn]) -> Iterator[str]:
             f"Nearest to yield is {shown(name, longest=_NAME)}: its {section} yields at {reserves[name]:.3g} times the "
             "torque, corners not counted."
         )
+
+
+_FLAGS = ("W402", "W411", "W412", "W415", "W417")
+
+
+def _flagged(outcome: Outcome) -> Iterator[str]:
+    """Yield which variants have an engineering warning that the verdict on backlash does not show."""
+    for code in _FLAGS:
+        names = list(dict.fromkeys(found.variant for found in outcome.findings if found.code == code))
+        if names:
+            listed = ", ".join(shown(name, longest=_NAME) for name in names[:_NAMED])
+            more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+            yield f"{CATALOGUE[code].title.capitalize()}: {listed}{more} ({code}, see Findings)."
 
 
 def _elasticity(outcome: Outcome) -> Iterator[str]:

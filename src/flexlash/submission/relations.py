@@ -203,6 +203,14 @@ RELATIONS = (
         facts=lambda row: {"other": radius(row)},
     ),
     Relation(
+        code="W401",
+        key="disk_inner_radius_mm",
+        broken=_is("hat")
+        & (pl.col("disk_inner_radius_mm") < pl.col("disk_outer_radius_mm"))
+        & ((pl.col("disk_inner_radius_mm") - _RADIUS).abs() > pl.col("wall_thickness_mm") / 2 + _EDGE),
+        facts=lambda row: {"other": radius(row)},
+    ),
+    Relation(
         code="W403",
         key="wall_thickness_mm",
         broken=pl.col("wall_thickness_mm") / _RADIUS > 0.2,  # noqa: PLR2004
