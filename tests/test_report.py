@@ -533,3 +533,12 @@ def test_the_summary_says_how_far_the_formula_is_off(workbook, sound):
     assert f"is {difference:+.2f} % off (1 checked" in said
     outcome = run(workbook([odd]), elasticity=True, method="random", samples=16)
     assert not any("elasticity" in one for one in sentences(outcome, selection.drawn_variants(outcome)))
+
+
+def test_the_summary_names_what_the_verdict_does_not_show(table, sound):
+    """Variants that yield or are softer than a drive are named in the Summary, the first four of them."""
+    rows = [{**sound, "variant": f"T {number}", "torque_Nm": 12000 + number} for number in range(5)]
+    outcome = run(table(rows), method="random", samples=16)
+    said = list(sentences(outcome, selection.drawn_variants(outcome)))
+    assert "Beyond yield: T 0, T 1, T 2, T 3 and 1 more (W402, see Findings)." in said
+    assert not any("W411" in one for one in said)

@@ -126,3 +126,11 @@ def test_a_blank_beside_a_listed_ratio_is_passed_over(monkeypatch):
     monkeypatch.setattr(tables, "rows", lambda _: listed)
     monkeypatch.setattr(stiffness, "_least_stiffness", stiffness._least_stiffness.__wrapped__)
     assert [of_size(size) for size in (14, 17, 20)] == [(14, 5.0), (17, 9.0), None]
+
+
+def test_a_smaller_radius_counts_with_its_cube():
+    """A drive's stiffness at a smaller radius than its own goes as the cube; a greater radius adds nothing."""
+    drive = stiffness.WholeDrive(size=80, stiffness=1.45e6)
+    assert drive.at_radius(80 * 2.54e-3 / 2) == pytest.approx(1.45e6, rel=1e-12)
+    assert drive.at_radius(0.0925) == pytest.approx(1.45e6 * (185 / 203.2) ** 3, rel=1e-12)
+    assert drive.at_radius(0.11) == 1.45e6

@@ -332,3 +332,33 @@ def test_limits_of_arrays_equal_scalars_bit_for_bit(function, arguments):
     assert together.shape == (30,)
     assert [float(function(*map(float, row))) for row in zip(*table, strict=True)] == together.tolist()
     assert len(set(together.tolist())) > 1
+
+
+def test_a_wall_of_usual_length_buckles_by_the_published_formula():
+    """Within the range of NASA SP-8007 the wall's buckling stress is that of its formula."""
+    for length in (0.11, 0.16, 0.5, 3.0):
+        assert strength.buckling_range(0.3, 0.08, 0.0016, length) == 0
+        found = strength.wall_buckling_shear(211e9, 0.3, 0.08, 0.0016, length)
+        assert found == strength.buckling_shear(211e9, 0.08, 0.0016, length)
+
+
+def test_a_very_short_wall_buckles_as_a_plate():
+    """A wall much shorter than its radius buckles no earlier than a long plate in shear, nor than the formula says."""
+    length, thickness = 0.008, 0.0002
+    plate = 5.35 * math.pi**2 * 206e9 / (12 * (1 - 0.3**2)) * (thickness / length) ** 2
+    found = strength.wall_buckling_shear(206e9, 0.3, 0.08, thickness, length)
+    assert found == pytest.approx(plate, rel=1e-12)
+    assert found > strength.buckling_shear(206e9, 0.08, thickness, length)
+    longer = strength.wall_buckling_shear(206e9, 0.3, 0.08, thickness, 0.02)
+    assert longer == strength.buckling_shear(206e9, 0.08, thickness, 0.02)
+
+
+def test_a_long_tube_buckles_whatever_its_length():
+    """Beyond the formula's range the stress no longer falls with the length; it meets the formula at the border."""
+    border = 6.5 * 0.08 * math.sqrt(0.08 / 0.0016)
+    within, beyond, far = (
+        float(strength.wall_buckling_shear(211e9, 0.3, 0.08, 0.0016, length))
+        for length in (border * 0.999, border * 1.001, 10 * border)
+    )
+    assert beyond == far == pytest.approx(0.67 * 0.272 * 211e9 * 0.91**-0.75 * 0.02**1.5, rel=1e-12)
+    assert within == pytest.approx(beyond, rel=0.01)

@@ -122,7 +122,7 @@ RESULTS = (
     _result(
         "buckling_range",
         "Buckling formula applies",
-        "yes; shorter: the cylinder is too short for it, the real buckling stress is higher; longer: it is lower.",
+        "yes; shorter: the cylinder is too short for it and the stress a lower bound; longer: a long tube's is given.",
         type="choice",
         choices=("yes", "shorter", "longer"),
     ),

@@ -29,7 +29,7 @@ _LEAST_CURVATURE = 50.0
 """γZ above which a cylinder counts as moderately long."""
 
 _GREATEST_SLENDERNESS = 6.5
-"""(l/r)/√(r/t) above which two waves around a long tube buckle earlier than the formula says."""
+"""(l/r)/√(r/t) above which a long tube buckles in two waves around, whatever its length."""
 
 
 def shear_stress(torque: Array | float, radius: Array | float, thickness: Array | float) -> Array:
@@ -163,13 +163,13 @@ def wall_buckling_shear(
     """Shear stress at which the wall buckles under torque, for cylinders of any length [Pa].
 
     Equation: `buckling_shear`; where the cylinder is shorter at least the long plate's 5.35 π² E/(12 (1 − ν²)) (t/l)²;
-        where it is longer at most 0.67 · 0.272 E (1 − ν²)^(−¾) (t/r)^(3/2)
+        where it is longer 0.67 · 0.272 E (1 − ν²)^(−¾) (t/r)^(3/2), whatever the length
     Arguments: youngs_modulus E [Pa]; poisson_ratio ν [-]; radius r, thickness t and length l [m], of any one shape.
     Valid: thin cylinders; for shorter ones it is a lower bound, since curvature and edges both stiffen them.
     Source: NASA SP-8007; Timoshenko and Gere, shear of a long plate; Donnell, torsion of a long tube.
 
     >>> [f"{wall_buckling_shear(211e9, 0.3, 0.08, 0.0016, length) / 1e6:.1f}" for length in (0.08, 0.16, 5.0)]
-    ['794.2', '561.6', '100.5']
+    ['794.2', '561.6', '116.7']
     """
     within = buckling_range(poisson_ratio, radius, thickness, length)
     usual = buckling_shear(youngs_modulus, radius, thickness, length)
@@ -178,9 +178,7 @@ def wall_buckling_shear(
     slender = np.asarray(thickness) / radius
     root = np.sqrt(flexible)
     tube = _KNOCK_DOWN * 0.272 * youngs_modulus / (root * np.sqrt(root)) * slender * np.sqrt(slender)
-    return np.asarray(
-        np.where(within < 0, np.maximum(usual, plate), np.where(within > 0, np.minimum(usual, tube), usual))
-    )
+    return np.asarray(np.where(within < 0, np.maximum(usual, plate), np.where(within > 0, tube, usual)))
 
 
 def buckling_range(
