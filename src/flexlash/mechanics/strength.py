@@ -169,7 +169,7 @@ def wall_buckling_shear(
     Source: NASA SP-8007; Timoshenko and Gere, shear of a long plate; Donnell, torsion of a long tube.
 
     >>> [f"{wall_buckling_shear(211e9, 0.3, 0.08, 0.0016, length) / 1e6:.1f}" for length in (0.08, 0.16, 5.0)]
-    ['794.2', '561.6', '116.7']
+    ['794.3', '561.6', '116.7']
     """
     within = buckling_range(poisson_ratio, radius, thickness, length)
     usual = buckling_shear(youngs_modulus, radius, thickness, length)
