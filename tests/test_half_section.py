@@ -506,3 +506,28 @@ def test_a_taper_that_ends_within_the_wall_goes_on_even():
     section = half_section("cup", size | taper)
     under = section.radius[:, 0] >= 0.91
     assert section.height[under, 0] == pytest.approx(-0.01, rel=1e-12)
+
+
+def test_junction_fillet_edge():
+    """The junction fillet's nodes run along a quarter of its circle, from the disk to the wall, and no others do."""
+    filleted = [
+        (kind, size) for kind, size in SHAPES if size.get("junction_fillet_radius", 0.0) > 0.01 * size["mean_radius"]
+    ]
+    assert len(filleted) > 30
+    for kind, size in filleted:
+        section, fillet = half_section(kind, size), size["junction_fillet_radius"]
+        bore = size["mean_radius"] - size["wall_thickness"] / 2
+        radius, height = marked(section, section.junction_fillet)
+        assert close(np.hypot(radius - (bore - fillet), height - fillet), fillet, size).all()
+        assert close(radius[0], bore - fillet, size)
+        assert close(height[0], 0, size)
+        assert close(radius[-1], bore, size)
+        assert close(height[-1], fillet, size)
+
+
+def test_no_junction_fillet_no_mark():
+    """A shape without junction fillet has no node marked as one."""
+    plain = [(kind, size) for kind, size in SHAPES[::3] if "junction_fillet_radius" not in size]
+    assert len(plain) > 30
+    for kind, size in plain:
+        assert not half_section(kind, size).junction_fillet.any()

@@ -358,3 +358,19 @@ def test_a_peak_that_has_not_settled_is_not_told():
     assert usual == pytest.approx(UNIT["torque"] / (2 * np.pi) * finer, rel=0.01)
     width = CUP["mean_radius"] - CUP["wall_thickness"] / 2 - CUP["disk_inner_radius"]
     assert check("cup", CUP | {"hub_fillet_radius": width}).hub_fillet_shear is None
+
+
+def test_both_fillets_have_a_peak_of_their_own():
+    """The junction fillet's peak is that along its arc: about the disk's where it begins, settled, None without it."""
+    found = check("cup", CUP | FILLETS)
+    start = CUP["mean_radius"] - CUP["wall_thickness"] / 2 - FILLETS["junction_fillet_radius"]
+    disk = UNIT["torque"] / (2 * np.pi) / (start**2 * CUP["wall_thickness"])
+    finer = unit_twist(half_section("cup", CUP | FILLETS, 3)).junction_stress
+    assert found.junction_fillet_shear == pytest.approx(UNIT["torque"] / (2 * np.pi) * finer, rel=0.01)
+    assert disk < found.junction_fillet_shear < 1.1 * disk
+    only_hub = check("cup", CUP | {"hub_fillet_radius": 0.05})
+    assert only_hub.junction_fillet_shear is None
+    assert only_hub.hub_fillet_shear == pytest.approx(found.hub_fillet_shear, rel=0.01)
+    only_junction = check("cup", CUP | {"junction_fillet_radius": 0.15})
+    assert only_junction.hub_fillet_shear is None
+    assert only_junction.junction_fillet_shear == pytest.approx(found.junction_fillet_shear, rel=0.01)

@@ -165,6 +165,16 @@ def test_a_hub_fillet_that_yields(workbook, sound, torque, told):
         assert f"{peak:.4g} MPa exceeds the yield strength 1080 MPa" in outcome.findings[0].message
 
 
+def test_a_junction_fillet_that_yields(workbook, sound):
+    """In a disk that is thick at the hub and thin at the wall the junction fillet has the greatest peak."""
+    disk = {"disk_hub_thickness_mm": 6.4, "disk_thickness_exponent": 2.0}
+    row = {**sound, **disk, "torque_Nm": 25000, "hub_fillet_radius_mm": 3.0, "junction_fillet_radius_mm": 0.5}
+    outcome = run(workbook([row]), elasticity=True, **QUICK)
+    found = _rows(outcome)[sound["variant"]]
+    assert found["elasticity_junction_fillet_shear_MPa"] > 1.2 * found["elasticity_hub_fillet_shear_MPa"]
+    assert [one.column for one in outcome.findings if one.code == "W417"] == ["junction_fillet_radius_mm"]
+
+
 def test_what_cannot_be_solved_is_told(workbook, sound, monkeypatch):
     """Where the equations fail, or their result is nonsense, the row says so and stays without a check."""
 
@@ -187,7 +197,9 @@ def test_what_cannot_be_solved_is_told(workbook, sound, monkeypatch):
 
 def elasticity_check_of(windup, error):
     """Return a check with these results and nothing else."""
-    return ElasticityCheck(windup=windup, error=error, hub_fillet_shear=None, section=None, shear=None)
+    return ElasticityCheck(
+        windup=windup, error=error, hub_fillet_shear=None, junction_fillet_shear=None, section=None, shear=None
+    )
 
 
 def test_a_foil_is_not_solved(workbook, sound):

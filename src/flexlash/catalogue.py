@@ -573,9 +573,9 @@ CATALOGUE = _rules(
     ),
     (
         "W417",
-        "hub fillet beyond yield",
+        "fillet beyond yield",
         "{place} {name} = {value} mm: its peak von Mises stress {detail} MPa exceeds the yield strength {other:g} MPa.",
-        "Enlarge the fillet, thicken the disk at the hub, or lower the torque.",
+        "Enlarge the fillet, thicken the disk there, or lower the torque.",
         "By two-dimensional elasticity, which adds to the thin disk's stress what the fillet concentrates. A ductile "
         "part yields there before its section does; under alternating torque it fatigues there.",
     ),

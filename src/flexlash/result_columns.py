@@ -219,6 +219,13 @@ ELASTICITY = (
         "MPa",
         "stress",
     ),
+    _result(
+        "elasticity_junction_fillet_shear_MPa",
+        "Junction fillet shear by elasticity",
+        "Greatest shear stress along the junction fillet; blank as for the hub fillet.",
+        "MPa",
+        "stress",
+    ),
 )
 """Further columns of a run with --elasticity."""
 

@@ -33,11 +33,12 @@ Task = tuple[str, Mapping[str, float]]
 
 @dataclass(frozen=True, kw_only=True)
 class Checked:
-    """What the elasticity check of one variant found: wind-up [rad], its error [-], stress at the hub fillet [Pa]."""
+    """What the elasticity check of one variant found: wind-up [rad], its error [-], peak stresses at fillets [Pa]."""
 
     windup: float
     error: float
     hub_fillet_shear: float | None
+    junction_fillet_shear: float | None
 
 
 def verified(
@@ -88,17 +89,20 @@ def _flag(validated: Validated, variant: Variant, dimension: str, clause: str) -
 
 
 def _compare(validated: Validated, one: Computed) -> None:
-    """Flag a row whose formula is far from elasticity, or whose hub fillet yields."""
+    """Flag a row whose formula is far from elasticity, or whose fillet yields."""
     difference = one.nominal["elasticity_difference"]
     if isinstance(difference, float) and abs(difference) > _FAR:
         words = f"{abs(100 * difference):.1f} % {'above' if difference > 0 else 'below'}"
         blame(validated, "W414", one.variant, "variant", value=words)
-    shear, limit = one.nominal["elasticity_hub_fillet_shear"], one.variant.yield_strength
-    if isinstance(shear, float) and limit is not None and von_mises_stress(shear) > limit:
-        peak = f"{von_mises_stress(shear) / _MEGAPASCAL:.4g}"
-        value = f"{one.variant.dimensions['hub_fillet_radius'] * 1e3:.10g}"
-        facts = {"name": "Hub fillet radius", "value": value, "detail": peak, "other": limit / _MEGAPASCAL}
-        blame(validated, "W417", one.variant, "hub_fillet_radius_mm", **facts)
+    limit = one.variant.yield_strength
+    for fillet in ("hub_fillet", "junction_fillet"):
+        shear = one.nominal[f"elasticity_{fillet}_shear"]
+        if isinstance(shear, float) and limit is not None and von_mises_stress(shear) > limit:
+            column = DIMENSIONS[f"{fillet}_radius"]
+            value = f"{one.variant.dimensions[column.dimension] / column.si_unit.si:.10g}"
+            peak = f"{von_mises_stress(shear) / _MEGAPASCAL:.4g}"
+            facts = {"name": column.name, "value": value, "detail": peak, "other": limit / _MEGAPASCAL}
+            blame(validated, "W417", one.variant, column.key, **facts)
 
 
 def _checked(task: Task) -> Checked | None:
@@ -109,7 +113,12 @@ def _checked(task: Task) -> Checked | None:
         return None
     if not (found.windup > 0 and found.error < _UNSOLVED):
         return None
-    return Checked(windup=found.windup, error=found.error, hub_fillet_shear=found.hub_fillet_shear)
+    return Checked(
+        windup=found.windup,
+        error=found.error,
+        hub_fillet_shear=found.hub_fillet_shear,
+        junction_fillet_shear=found.junction_fillet_shear,
+    )
 
 
 def _numbers(one: Computed, result: Checked) -> dict[str, float | str | None]:
@@ -127,6 +136,7 @@ def _numbers(one: Computed, result: Checked) -> dict[str, float | str | None]:
         "elasticity_difference": uncalibrated / result.windup - 1,
         "elasticity_error": result.error,
         "elasticity_hub_fillet_shear": result.hub_fillet_shear,
+        "elasticity_junction_fillet_shear": result.junction_fillet_shear,
     }
 
 

@@ -28,7 +28,8 @@ class HalfSection:
     """Nodes of a half-section and what its edges are.
 
     `radius` and `height` [m] have shape (2 columns + 1, 2 rows + 1) and are NaN where no cell needs them; `cells`
-    (columns, rows) says which exist. `clamped`, `loaded` and `hub_fillet` mark the nodes of these edges.
+    (columns, rows) says which exist. `clamped`, `loaded`, `hub_fillet` and `junction_fillet` mark the nodes of these
+    edges.
     `details` are places worth a closer look: what is there, radius, height, and reach around them [m].
     """
 
@@ -38,6 +39,7 @@ class HalfSection:
     clamped: Array
     loaded: Array
     hub_fillet: Array
+    junction_fillet: Array
     details: tuple[tuple[str, float, float, float], ...] = ()
 
 
@@ -73,8 +75,11 @@ def _details(part: Part) -> Iterator[tuple[str, float, float, float]]:
 
 def _along_the_meridian(part: Part, refinement: int) -> HalfSection:
     """Return the half-section whose columns follow the meridian throughout; a rim adds rows outside the wall."""
-    disk = [*disk_stretches(part, part.bore - part.junction_fillet), *fan(part)] if part.kind == "cup" else []
-    outer_radius, outer_height, inner_radius, inner_height = ribs_of([*disk, *wall_stretches(part)], refinement)
+    disk = [*disk_stretches(part, part.bore - part.junction_fillet)] if part.kind == "cup" else []
+    around = [*fan(part)] if part.kind == "cup" else []
+    outer_radius, outer_height, inner_radius, inner_height = ribs_of(
+        [*disk, *around, *wall_stretches(part)], refinement
+    )
     outwards = _rim_nodes(part, refinement)[::-1]
     rim = len(outwards)
     inwards = nodes_on(across(low_is_sharp=rim > 0, high_is_sharp=False), refinement)
@@ -89,6 +94,10 @@ def _along_the_meridian(part: Part, refinement: int) -> HalfSection:
         section.cells[start // 2 :, : rim // 2] = True
     section.clamped[0, rim:] = True
     section.loaded[-1, :] = True
+    if around:
+        ends = np.cumsum([sum(len(lines) - 1 for lines, _ in stretches) for stretches in (disk, around)])
+        start, end = ends * 2 ** (refinement + 1)
+        section.junction_fillet[start : end + 1, -1] = True
     section.hub_fillet[: _arc_nodes(part, refinement), -1] = True
     return section
 
@@ -176,4 +185,5 @@ def _blank(columns: int, rows: int) -> HalfSection:
         clamped=np.zeros(shape, dtype=bool),
         loaded=np.zeros(shape, dtype=bool),
         hub_fillet=np.zeros(shape, dtype=bool),
+        junction_fillet=np.zeros(shape, dtype=bool),
     )

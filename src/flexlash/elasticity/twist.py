@@ -43,26 +43,29 @@ class UnitTwist:
     """The twist on one mesh, free of torque and material.
 
     `integral` is that of ds/(r³ t) along a meridian [1/m³]; `stress` is r|∇φ| at the Gauss points of all cells
-    (cells, 9) and `hub_stress` its greatest value along the hub fillet [1/m³]: the shear stress is T/(2π) of them.
+    (cells, 9), `hub_stress` and `junction_stress` its greatest values along the two fillets [1/m³], None without: the
+    shear stress is T/(2π) of them.
     """
 
     integral: float
     stress: Array
     hub_stress: float | None
+    junction_stress: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticityCheck:
     """The elasticity check of one flexspline, in SI.
 
-    `windup` [rad], its `error` as a share of it, the greatest shear stress along the hub fillet [Pa] or None without
-    fillet or where it has not settled to 3 %,
+    `windup` [rad], its `error` as a share of it, the greatest shear stress along hub fillet and junction fillet [Pa],
+    None without the fillet or where it has not settled to 3 %,
     and for a picture the finer half-section with the shear stress at the Gauss points of its cells (cells, 9) [Pa].
     """
 
     windup: float
     error: float
     hub_fillet_shear: float | None
+    junction_fillet_shear: float | None
     section: HalfSection
     shear: Array
 
@@ -96,19 +99,25 @@ def elasticity_check(flexspline_type: str, dimensions: Mapping[str, float]) -> E
             break
     torque = dimensions["torque"]
     per_stress = torque / (2 * math.pi)
-    peak = twist.hub_stress if _is_converged(before.hub_stress, twist.hub_stress) else None
+    hub, junction = (
+        _settled(*stresses)
+        for stresses in ((before.hub_stress, twist.hub_stress), (before.junction_stress, twist.junction_stress))
+    )
     return ElasticityCheck(
         windup=float(windup.segment_windup(torque, modulus_of(dimensions), twist.integral)),
         error=error,
-        hub_fillet_shear=None if peak is None else per_stress * peak,
+        hub_fillet_shear=None if hub is None else per_stress * hub,
+        junction_fillet_shear=None if junction is None else per_stress * junction,
         section=section,
         shear=per_stress * twist.stress,
     )
 
 
-def _is_converged(before: float | None, after: float | None) -> bool:
-    """Whether a peak stress is finite: that it no longer grows from mesh to mesh."""
-    return before is not None and after is not None and abs(after / before - 1) < _PEAK_CONVERGED
+def _settled(before: float | None, after: float | None) -> float | None:
+    """Return a peak stress, None where it still changes from mesh to mesh."""
+    if before is None or after is None or abs(after / before - 1) > _PEAK_CONVERGED:
+        return None
+    return after
 
 
 def unit_twist(section: HalfSection) -> UnitTwist:
@@ -124,13 +133,20 @@ def unit_twist(section: HalfSection) -> UnitTwist:
     twist = solve(*condense(stiffness, load, D=number[section.clamped]))
     inner = np.stack(np.meshgrid(_POINTS, _POINTS, indexing="ij")).reshape(2, -1)
     stress = _stress(Basis(mesh, ElementQuad2(), quadrature=(inner, np.ones(9))), twist)
-    hub = np.nonzero(section.hub_fillet[1::2, 2::2][section.cells])[0]
     edge = np.stack([_POINTS, np.ones(3)])
-    along = Basis(mesh, ElementQuad2(), quadrature=(edge, np.ones(3)), elements=hub) if len(hub) else None
+
+    def peak(marks: Array) -> float | None:
+        cells = np.nonzero(marks[1::2, 2::2][section.cells])[0]
+        if not len(cells):
+            return None
+        along = Basis(mesh, ElementQuad2(), quadrature=(edge, np.ones(3)), elements=cells)
+        return float(_stress(along, twist).max())
+
     return UnitTwist(
         integral=float(load @ twist),
         stress=stress,
-        hub_stress=float(_stress(along, twist).max()) if along else None,
+        hub_stress=peak(section.hub_fillet),
+        junction_stress=peak(section.junction_fillet),
     )
 
 

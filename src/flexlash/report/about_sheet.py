@@ -37,7 +37,7 @@ PROOF = (
     "factors contain fillets and rim already; relative to the finite elements the formula is 10.0 and 7.07 % high.",
 )
 LEFT_OUT = (
-    "Buckling of the disk; notches, except the hub fillet's peak in the elasticity check; fatigue; an elastic hub.",
+    "Buckling of the disk; notches, except the fillets' peaks in the elasticity check; fatigue; an elastic hub.",
     "Load entering in two lobes instead of evenly: one published shell model finds 0.6 of the axisymmetric stiffness.",
     "Hub bolts, wave generator bearing and teeth: the wind-up is a lower bound on the drive's total compliance.",
     "Tooth clearance, radial play, couplings and hysteresis: they come on top of this backlash.",

@@ -30,6 +30,7 @@ _COLUMNS = (
     ("elasticity_error_percent", "Error of elasticity [%]", "0.0000"),
     ("hub_shear_MPa", "Disk shear by formula [MPa]", "stress"),
     ("elasticity_hub_fillet_shear_MPa", "Peak at hub fillet [MPa]", "stress"),
+    ("elasticity_junction_fillet_shear_MPa", "Peak at junction fillet [MPa]", "stress"),
 )
 _HEADER = len(NOTES) + 2
 _NAME = 30

@@ -35,7 +35,7 @@ _COLUMNS = (
 _NOTES = (
     "Shear stress T/(2π r² t) of each section; von Mises stress is √3 times it. The governing section is the first to "
     "yield, at the elastic limit torque, unless the wall buckles before. Peaks at corners come on top; a run with the "
-    "option --elasticity gives that of the hub fillet.",
+    "option --elasticity gives those of the fillets.",
     "Buckling of the wall: NASA SP-8007 with its knock-down factor; for shorter cylinders a lower bound. A buckling "
     "stress above yield/√3 means that the wall yields first. The flexspline alone must be stiffer than whole drives.",
     "The natural frequency is that of the load inertia on the flexspline alone, an upper bound; the input meets it by "
