@@ -542,3 +542,21 @@ def test_the_summary_names_what_the_verdict_does_not_show(table, sound):
     said = list(sentences(outcome, selection.drawn_variants(outcome)))
     assert "Beyond yield: T 0, T 1, T 2, T 3 and 1 more (W402, see Findings)." in said
     assert not any("W411" in one for one in said)
+
+
+def test_the_elasticity_sheet_says_what_was_not_checked(table, sound, tmp_path):
+    """A row that cannot be checked stands in the Elasticity sheet and says so; one with errors does not stand there."""
+    pytest.importorskip("skfem", reason="scikit-fem is not installed here")
+    odd, faulty = (
+        {**sound, "variant": "odd", "disk_outer_radius_mm": 100.0},
+        {**sound, "variant": "bad", "torque_Nm": ""},
+    )
+    path = tmp_path / "report.xlsx"
+    run(table([odd, faulty]), path, elasticity=True, method="random", samples=16)
+    book = _open(path)
+    sheet = book["Elasticity"]
+    rows = _table(sheet, next(cell.row for cell in sheet["A"] if cell.value == "Variant"))
+    assert [(row["Variant"], row["Two-term formula [arcmin]"]) for row in rows] == [
+        ("odd", "not checked, see Findings")
+    ]
+    assert "Stress" not in book.sheetnames

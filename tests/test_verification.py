@@ -73,16 +73,16 @@ def test_only_a_hub_fillet_has_a_peak(proof):
             assert peak is None
 
 
-def test_without_the_option_nothing_is_checked(workbook, sound):
+def test_without_the_option_nothing_is_checked(table, sound):
     """The columns are those of --elasticity alone, and come last."""
-    assert run(workbook([sound]), **QUICK).results.columns == [column.key for column in RESULTS]
-    checked = run(workbook([sound]), elasticity=True, **QUICK).results.columns
+    assert run(table([sound]), **QUICK).results.columns == [column.key for column in RESULTS]
+    checked = run(table([sound]), elasticity=True, **QUICK).results.columns
     assert checked == [column.key for column in (*RESULTS, *ELASTICITY)]
 
 
-def test_the_formula_and_the_spread_do_not_change(workbook, sound):
+def test_the_formula_and_the_spread_do_not_change(table, sound):
     """The check adds its columns and changes no other number."""
-    plain, checked = (run(workbook([sound]), elasticity=asked, **QUICK).results for asked in (False, True))
+    plain, checked = (run(table([sound]), elasticity=asked, **QUICK).results for asked in (False, True))
     assert checked.select(plain.columns).equals(plain)
 
 
@@ -115,9 +115,9 @@ def test_the_formula_and_the_spread_do_not_change(workbook, sound):
         ),
     ],
 )
-def test_what_cannot_be_made_is_told_and_stays_unchecked(workbook, sound, change, column, cause):
+def test_what_cannot_be_made_is_told_and_stays_unchecked(table, sound, change, column, cause):
     """A row without a closed half-section is computed, keeps empty check cells, and says why at the cell to blame."""
-    outcome = run(workbook([{**sound, **change}, {**sound, "variant": "sound"}]), elasticity=True, **QUICK)
+    outcome = run(table([{**sound, **change}, {**sound, "variant": "sound"}]), elasticity=True, **QUICK)
     (told,) = [found for found in outcome.findings if found.code == "W413"]
     assert told.column == column
     assert told.variant == sound["variant"]
@@ -130,9 +130,9 @@ def test_what_cannot_be_made_is_told_and_stays_unchecked(workbook, sound, change
     assert outcome.exit_code == 0
 
 
-def test_where_formula_and_elasticity_part_is_flagged(workbook, sound):
+def test_where_formula_and_elasticity_part_is_flagged(table, sound):
     """A short thick hat with a rim is over 2 % off and says so; a plain cup is not."""
-    outcome = run(workbook([{**sound, **SHORT_HAT}, {**sound, "variant": "cup"}]), elasticity=True, **QUICK)
+    outcome = run(table([{**sound, **SHORT_HAT}, {**sound, "variant": "cup"}]), elasticity=True, **QUICK)
     (told,) = [found for found in outcome.findings if found.code == "W414"]
     row = _rows(outcome)[sound["variant"]]
     assert told.variant == sound["variant"]
@@ -154,10 +154,10 @@ def test_calibration_has_no_part_in_the_difference(workbook, sound):
 
 
 @pytest.mark.parametrize(("torque", "told"), [(8500, False), (9800, True)])
-def test_a_hub_fillet_that_yields(workbook, sound, torque, told):
+def test_a_hub_fillet_that_yields(table, sound, torque, told):
     """A peak von Mises stress above yield along the hub fillet is a warning, also where the section does not yield."""
     row = {**sound, "torque_Nm": torque, "hub_fillet_radius_mm": 1.0}
-    outcome = run(workbook([row]), elasticity=True, **QUICK)
+    outcome = run(table([row]), elasticity=True, **QUICK)
     assert [found.code for found in outcome.findings] == ["W417"][:told]
     peak = 3**0.5 * _rows(outcome)[sound["variant"]]["elasticity_hub_fillet_shear_MPa"]
     assert (peak > 1080) == told
@@ -165,17 +165,17 @@ def test_a_hub_fillet_that_yields(workbook, sound, torque, told):
         assert f"{peak:.4g} MPa exceeds the yield strength 1080 MPa" in outcome.findings[0].message
 
 
-def test_a_junction_fillet_that_yields(workbook, sound):
+def test_a_junction_fillet_that_yields(table, sound):
     """In a disk that is thick at the hub and thin at the wall the junction fillet has the greatest peak."""
     disk = {"disk_hub_thickness_mm": 6.4, "disk_thickness_exponent": 2.0}
     row = {**sound, **disk, "torque_Nm": 25000, "hub_fillet_radius_mm": 3.0, "junction_fillet_radius_mm": 0.5}
-    outcome = run(workbook([row]), elasticity=True, **QUICK)
+    outcome = run(table([row]), elasticity=True, **QUICK)
     found = _rows(outcome)[sound["variant"]]
     assert found["elasticity_junction_fillet_shear_MPa"] > 1.2 * found["elasticity_hub_fillet_shear_MPa"]
     assert [one.column for one in outcome.findings if one.code == "W417"] == ["junction_fillet_radius_mm"]
 
 
-def test_what_cannot_be_solved_is_told(workbook, sound, monkeypatch):
+def test_what_cannot_be_solved_is_told(table, sound, monkeypatch):
     """Where the equations fail, or their result is nonsense, the row says so and stays without a check."""
 
     def fail(*_):
@@ -186,7 +186,7 @@ def test_what_cannot_be_solved_is_told(workbook, sound, monkeypatch):
 
     for faulty in (fail, nonsense, lambda *_: elasticity_check_of(windup=1e-3, error=0.02)):
         monkeypatch.setattr(verification, "elasticity_check", faulty)
-        outcome = run(workbook([sound]), elasticity=True, **QUICK)
+        outcome = run(table([sound]), elasticity=True, **QUICK)
         (told,) = outcome.findings
         assert told.code == "W413"
         assert told.message.endswith(
@@ -202,63 +202,63 @@ def elasticity_check_of(windup, error):
     )
 
 
-def test_a_foil_is_not_solved(workbook, sound):
+def test_a_foil_is_not_solved(table, sound):
     """A disk that thins to a foil is told, not solved."""
     thin = {"disk_inner_radius_mm": 20.0, "disk_hub_thickness_mm": 4.0, "disk_thickness_exponent": 4.6}
-    outcome = run(workbook([{**sound, **thin}]), elasticity=True, **QUICK)
+    outcome = run(table([{**sound, **thin}]), elasticity=True, **QUICK)
     assert "thins to a foil" in next(found.message for found in outcome.findings if found.code == "W413")
 
 
-def test_worker_processes_change_no_bit(workbook, sound, tmp_path, monkeypatch):
+def test_worker_processes_change_no_bit(table, sound, tmp_path, monkeypatch):
     """Checked here or by two worker processes, the report has the same bytes."""
     monkeypatch.setattr(verification, "WORTH_A_WORKER", 1)
     rows = [{**sound, **FILLETS, "variant": f"l {length}", "cylinder_length_mm": length} for length in (90, 120.5, 160)]
-    path = workbook(rows)
+    path = table(rows)
     for jobs in (1, 2):
         run(path, tmp_path / f"{jobs}.xlsx", elasticity=True, jobs=jobs, **QUICK)
     assert (tmp_path / "1.xlsx").read_bytes() == (tmp_path / "2.xlsx").read_bytes()
 
 
-def test_a_variant_does_not_depend_on_its_neighbours(workbook, sound):
+def test_a_variant_does_not_depend_on_its_neighbours(table, sound):
     """A row's check has the same bits alone and among others in another order."""
     rows = [{**sound, **FILLETS, "variant": f"l {length}", "cylinder_length_mm": length} for length in (90, 120.5, 160)]
     keys = [column.key for column in ELASTICITY]
-    every = _rows(run(workbook(rows[::-1]), elasticity=True, **QUICK))
+    every = _rows(run(table(rows[::-1]), elasticity=True, **QUICK))
     for row in rows:
-        alone = _rows(run(workbook([row]), elasticity=True, **QUICK))[row["variant"]]
+        alone = _rows(run(table([row]), elasticity=True, **QUICK))[row["variant"]]
         assert [alone[key] for key in keys] == [every[row["variant"]][key] for key in keys]
 
 
-def test_progress_counts_spread_and_check(workbook, sound):
+def test_progress_counts_spread_and_check(table, sound):
     """The progress callback ends at twice the rows: each is spread, then checked."""
     told = []
     rows = [{**sound, "variant": f"v{number}"} for number in range(3)]
-    run(workbook(rows), elasticity=True, progress=lambda done, total: told.append((done, total)), **QUICK)
+    run(table(rows), elasticity=True, progress=lambda done, total: told.append((done, total)), **QUICK)
     assert told == [(number, 6) for number in range(1, 7)]
 
 
-def test_only_the_worst_are_pictured_and_only_in_a_report(workbook, sound, tmp_path, monkeypatch):
+def test_only_the_worst_are_pictured_and_only_in_a_report(table, sound, tmp_path, monkeypatch):
     """The report pictures the worst few; the other forms and a run without output solve nothing twice."""
     monkeypatch.setattr(pipeline, "PICTURED", 2)
     rows = [{**sound, "variant": f"T {torque}", "torque_Nm": torque} for torque in (500, 800, 700)]
-    path = workbook(rows)
+    path = table(rows)
     assert list(run(path, tmp_path / "r.xlsx", elasticity=True, **QUICK).pictured) == ["T 800", "T 700"]
     assert run(path, tmp_path / "r.csv", elasticity=True, **QUICK).pictured == {}
     assert run(path, elasticity=True, **QUICK).pictured == {}
     assert pl.read_csv(tmp_path / "r.csv")["elasticity_windup_rad"].null_count() == 0
 
 
-def test_nothing_computed_is_nothing_to_check(workbook, sound):
+def test_nothing_computed_is_nothing_to_check(table, sound):
     """A submission without a sound row ends as it does without the check."""
-    outcome = run(workbook([{**sound, "torque_Nm": None}]), elasticity=True, **QUICK)
+    outcome = run(table([{**sound, "torque_Nm": None}]), elasticity=True, **QUICK)
     assert outcome.exit_code == 4
     refused = run(regenerate.ROOT / "pyproject.toml", elasticity=True)
     assert refused.exit_code == 4
 
 
-def test_absent_libraries_are_named_before_anything_is_read(workbook, sound, tmp_path, monkeypatch):
+def test_absent_libraries_are_named_before_anything_is_read(table, sound, tmp_path, monkeypatch):
     """Without the extra the command line ends with usage and says what to install; the function raises; no file."""
-    path = workbook([sound])
+    path = table([sound])
     monkeypatch.setattr(elasticity, "find_spec", lambda _: None)
     with pytest.raises(ModuleNotFoundError, match="pip install 'flexlash\\[elasticity\\]'"):
         run(path, tmp_path / "report.xlsx", elasticity=True)
