@@ -3,41 +3,32 @@
 from __future__ import annotations
 
 import os
-import signal
 
 import pytest
 
 from flexlash import workers
 from flexlash.workers import mapped
-
-
-def _square(number):
-    return number * number, os.getpid()
-
-
-def _die_in_a_worker(item):
-    number, parent = item
-    if number == 2 and os.getpid() != parent:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return number
+from worker_tasks import die_in_a_worker, square
 
 
 def test_one_worker_is_this_process():
     """With one worker, or none, everything is done here."""
     for count in (0, 1):
-        assert list(mapped(_square, [1, 2, 3], count)) == [(1, os.getpid()), (4, os.getpid()), (9, os.getpid())]
+        assert list(mapped(square, [1, 2, 3], count)) == [(1, os.getpid()), (4, os.getpid()), (9, os.getpid())]
 
 
 def test_workers_keep_the_order_and_are_other_processes():
     """Two workers give the results in the order of the items, from other processes."""
-    found = list(mapped(_square, range(6), 2))
+    found = list(mapped(square, range(6), 2))
     assert [value for value, _ in found] == [0, 1, 4, 9, 16, 25]
     assert os.getpid() not in {process for _, process in found}
 
 
 def test_the_work_of_a_killed_worker_is_done_here():
     """A worker that the system kills loses nothing: what is left is done here, each item once."""
-    assert list(mapped(_die_in_a_worker, [(number, os.getpid()) for number in range(5)], 2)) == [0, 1, 2, 3, 4]
+    found = list(mapped(die_in_a_worker, [(number, os.getpid()) for number in range(5)], 2))
+    assert [number for number, _ in found] == [0, 1, 2, 3, 4]
+    assert found[2][1] == os.getpid()
 
 
 @pytest.mark.parametrize("fault", [workers.BrokenProcessPool, OSError])
@@ -60,9 +51,9 @@ def test_where_processes_cannot_be_had_the_rest_is_done_here(monkeypatch, fault,
             raise fault
 
     monkeypatch.setattr(workers, "ProcessPoolExecutor", Pool)
-    assert [value for value, _ in mapped(_square, [0, 1, 2, 3], 2)] == [0, 1, 4, 9]
+    assert [value for value, _ in mapped(square, [0, 1, 2, 3], 2)] == [0, 1, 4, 9]
 
 
 def test_nothing_asks_for_nothing():
     """No items give no results, whatever the workers."""
-    assert list(mapped(_square, [], 2)) == []
+    assert list(mapped(square, [], 2)) == []
