@@ -11,6 +11,7 @@ from flexlash.tolerance import spreading
 from flexlash.tolerance.limits import Limits
 from flexlash.tolerance.spreading import spread_batch, spread_rows, variations_of
 from flexlash.tolerance.variation import Draws
+from worker_tasks import PoolHere
 
 ALIKE = {
     "wall_thickness": Limits(low=0.00155, high=0.00165),
@@ -22,19 +23,6 @@ WIDE_CUT = {"wall_thickness": Limits(low=0.00155, high=0.00165, distribution="tr
 NARROW_CUT = {"wall_thickness": Limits(low=0.00155, high=0.00165, distribution="truncated normal", sigma=2.0)}
 SHIFTED = {"disk_inner_radius": Limits(low=0.0402, high=0.0402)}
 LINES = Draws("line", None, 3)
-
-
-class _Pool:
-    """A pool of two workers that are this process."""
-
-    def __init__(self, count, **_):
-        assert count == 2
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        return False
 
 
 def _row(model, limits, number=0, limit=None):
@@ -153,7 +141,7 @@ def test_a_batch_is_what_its_rows_are(here):
 def test_rows_of_a_lost_worker_are_computed_here(here, monkeypatch, fault, delivered):
     """When workers cannot be started, or are lost on the way, the rows they leave are computed here, once each."""
 
-    class Pool(_Pool):
+    class Pool(PoolHere):
         def map(self, function, items):
             yield from map(function, items[:delivered])
             raise fault
@@ -185,7 +173,7 @@ def test_workers_are_no_more_than_are_worth_it(monkeypatch):
 def test_any_other_fault_of_a_worker_is_told(monkeypatch):
     """A defect of the model in a worker is raised, not computed again."""
 
-    class Pool(_Pool):
+    class Pool(PoolHere):
         def map(self, *_):
             raise ValueError("the model failed")
 

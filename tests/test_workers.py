@@ -8,7 +8,7 @@ import pytest
 
 from flexlash import workers
 from flexlash.workers import mapped
-from worker_tasks import die_in_a_worker, square
+from worker_tasks import PoolHere, die_in_a_worker, square
 
 
 def test_one_worker_is_this_process():
@@ -36,16 +36,7 @@ def test_the_work_of_a_killed_worker_is_done_here():
 def test_where_processes_cannot_be_had_the_rest_is_done_here(monkeypatch, fault, delivered):
     """When the pool fails at once or on the way, the rest is done here."""
 
-    class Pool:
-        def __init__(self, count, **_):
-            assert count == 2
-
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *_):
-            return False
-
+    class Pool(PoolHere):
         def map(self, function, items):
             yield from map(function, items[:delivered])
             raise fault

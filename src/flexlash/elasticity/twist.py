@@ -58,8 +58,8 @@ class ElasticityCheck:
     """The elasticity check of one flexspline, in SI.
 
     `windup` [rad], its `error` as a share of it, the greatest shear stress along hub fillet and junction fillet [Pa],
-    None without the fillet or where it has not settled to 3 %,
-    and for a picture the finer half-section with the shear stress at the Gauss points of its cells (cells, 9) [Pa].
+    None without the fillet or where it has not settled to 3 %, and for a picture the finer half-section with the shear
+    stress at the Gauss points of its cells (cells, 9) [Pa].
     """
 
     windup: float
