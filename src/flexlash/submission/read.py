@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-import csv
-import datetime
 import hashlib
 import io
 import warnings
-from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
+from flexlash.submission.delimited import read_table
 from flexlash.submission.gate import Admitted, Refusal, admit, read_bytes
+from flexlash.submission.raw import (
+    ERROR_WORDS,
+    ErrorCell,
+    RawSheet,
+    RawValue,
+    Submission,
+    Unstored,
+    column_letters,
+)
 
 __all__ = [
     "ErrorCell",
@@ -28,71 +34,6 @@ __all__ = [
 
 PROPERTY = "flexlash"
 """Document property in which a template or a report says what it is."""
-
-_ERRORS = frozenset((
-    "#REF!", "#DIV/0!", "#VALUE!", "#NAME?", "#N/A", "#NUM!", "#NULL!", "#SPILL!", "#CALC!", "#FIELD!", "#BLOCKED!",
-    "#CONNECT!", "#UNKNOWN!", "#BUSY!", "#GETTING_DATA", "#EXTERNAL!", "#PYTHON!",
-))  # fmt: skip
-"""Error words, which some programs store as plain texts."""
-
-_TOP = 15
-"""Rows among which the header, and so the widest row of a table, is looked for."""
-
-
-@dataclass(frozen=True)
-class ErrorCell:
-    """A cell that shows an Excel error."""
-
-    text: str
-
-
-@dataclass(frozen=True)
-class Unstored:
-    """A formula whose result was never stored."""
-
-
-RawValue: TypeAlias = (
-    str | float | int | bool | datetime.date | datetime.time | datetime.timedelta | ErrorCell | Unstored
-)
-
-
-@dataclass(frozen=True, kw_only=True)
-class RawSheet:
-    """Cells by row and column number, both from 1 as the user counts; blank cells are absent.
-
-    `numbers_are_texts` tells a CSV sheet, in which a text may be a number.
-    """
-
-    name: str
-    rows: dict[int, dict[int, RawValue]]
-    numbers_are_texts: bool = False
-
-
-@dataclass(frozen=True, kw_only=True)
-class Submission:
-    """A submission as read. `role` is what its document properties say it is."""
-
-    name: str
-    sha256: str
-    kind: str
-    sheets: dict[str, RawSheet] = field(default_factory=dict)
-    modified: datetime.datetime | None = None
-    role: str = ""
-    template_version: str = ""
-    delimiter: str = ""
-
-
-def column_letters(number: int) -> str:
-    """Return the letters of a column number.
-
-    >>> column_letters(28)
-    'AB'
-    """
-    letters = ""
-    while number:
-        number, rest = divmod(number - 1, 26)
-        letters = chr(65 + rest) + letters
-    return letters
 
 
 def read_submission(path: Path) -> Submission:
@@ -152,52 +93,13 @@ def _rows(rows: Iterable[tuple[Any, ...]]) -> dict[int, dict[int, RawValue]]:
     found: dict[int, dict[int, RawValue]] = {}
     for number, values in enumerate(rows, start=1):
         cells = {
-            place: ErrorCell(value) if value in _ERRORS else value
+            place: ErrorCell(value) if value in ERROR_WORDS else value
             for place, value in enumerate(values, start=1)
             if value is not None
         }
         if cells:
             found[number] = cells
     return found
-
-
-def read_table(data: bytes, name: str) -> tuple[RawSheet, str]:
-    """Return a CSV file as a sheet and the delimiter it was written with.
-
-    Raises Refusal when it is not UTF-8 text or not a table.
-    """
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as fault:
-        raise Refusal("E107") from fault
-    tables = {sign: records for sign in ",;\t" if (records := _records(text, sign)) is not None}
-    delimiter = max(tables, key=lambda sign: _evenness(tables[sign]), default="")
-    if not delimiter or (len(tables) < len(",;\t") and not _evenness(tables[delimiter])):
-        raise Refusal("E102")
-    rows: dict[int, dict[int, RawValue]] = {}
-    for number, values in enumerate(tables[delimiter], start=1):
-        cells: dict[int, RawValue] = {
-            place: ErrorCell(cell.strip()) if cell.strip() in _ERRORS else cell
-            for place, cell in enumerate(values, start=1)
-            if cell.strip()
-        }
-        if cells:
-            rows[number] = cells
-    return RawSheet(name=name, rows=rows, numbers_are_texts=True), delimiter
-
-
-def _evenness(records: list[list[str]]) -> int:
-    """Return how many cells of the top rows stand in rows of the commonest width: high for the true delimiter."""
-    widths = Counter(len(values) for values in records[:_TOP] if len(values) > 1)
-    return max((width * count for width, count in widths.items()), default=0)
-
-
-def _records(text: str, delimiter: str) -> list[list[str]] | None:
-    """Return the records of a CSV text; None where its quotes do not close."""
-    try:
-        return list(csv.reader(io.StringIO(text, newline=None), delimiter=delimiter, strict=True))
-    except csv.Error:
-        return None
 
 
 def _read_parquet(data: bytes) -> RawSheet:
