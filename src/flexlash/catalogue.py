@@ -108,8 +108,8 @@ CATALOGUE = _rules(
     (
         "E110",
         "too large",
-        "{file} exceeds a limit: {what} may be at most {limit}.",
-        "Split the submission, or copy the cells into a fresh template.",
+        "{file} exceeds a limit: {what} is {found}; at most {limit} may be read (setting {setting}).",
+        "Split the submission, copy the cells into a fresh template, or raise the limit: --limit {setting}=NUMBER.",
         "Limits keep one damaged or hostile file from stopping the work of others.",
     ),
     (
@@ -162,6 +162,13 @@ CATALOGUE = _rules(
         "{file} has two sheets of one name but for case and spaces: {other} and {found}.",
         "Rename or delete one of them.",
         "With two sheets of one name flexlash cannot know which holds.",
+    ),
+    (
+        "E118",
+        "reading failed",
+        "{file} stopped the program that reads it; nothing of it was used.",
+        "Open it in Excel, save it under a new name as .xlsx and submit that, or copy the cells into a fresh template.",
+        "Files are read by a separate process with little memory and time, so that a faulty file stops only itself.",
     ),
     (
         "E201",

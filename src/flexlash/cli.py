@@ -104,8 +104,24 @@ def _generally(fix: str) -> str:
     return fix.format(label="the header of the template", unit="the template's unit", dimension="the dimension")
 
 
+def _limits(_: click.Context, __: click.Parameter, given: tuple[str, ...]) -> dict[str, str]:
+    """Return limits by name; raise a usage error for one that does not exist."""
+    from flexlash.submission.reading.limits import ReadingLimits
+
+    pairs = {name.strip(): value.strip() for name, _, value in (text.partition("=") for text in given)}
+    try:
+        ReadingLimits.of(pairs)
+    except ValueError as fault:
+        raise click.UsageError(f"--limit: {fault}.") from fault
+    return pairs
+
+
 _SUBMISSIONS = click.argument("submissions", nargs=-1, required=True, type=click.Path(path_type=Path))
 _JSON = click.option("--json", "as_json", is_flag=True, help="Machine-readable outcome on stdout.")
+_LIMITS = click.option(
+    "--limit", "limits", multiple=True, metavar="NAME=NUMBER", envvar="FLEXLASH_LIMIT", callback=_limits,
+    help="Read more, or less, of a file than usual: cells=2000000. A refusal names the limit.",
+)  # fmt: skip
 _STRICT = click.option("--strict", is_flag=True, help="Compute nothing when any row has an error.")
 
 
@@ -121,6 +137,7 @@ def _table_option(name: str) -> Callable[[Command], Command]:
 @cli.command()
 @_SUBMISSIONS
 @_STRICT
+@_LIMITS
 @_JSON
 @_table_option("tolerances")
 @_table_option("materials")
@@ -153,6 +170,7 @@ def check(submissions: tuple[Path, ...], *, as_json: bool, **options: Any) -> No
     "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default="all cores", help="Processes."
 )
 @_STRICT
+@_LIMITS
 @_JSON
 @click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")
 @_table_option("tolerances")

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,8 +14,10 @@ from flexlash.findings import Finding, finding
 from flexlash.mechanics.flexspline import backlash
 from flexlash.outcome import PICTURED, Outcome
 from flexlash.results import result_record, results_frame
-from flexlash.submission.gate import Refusal, admit, read_bytes
+from flexlash.submission.gate import kind_of, read_bytes
 from flexlash.submission.read import RawSheet, Submission, read_submission, read_table
+from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.validate import Validated, validate
 from flexlash.summary import worst_first
 from flexlash.tolerance.spreading import spread_rows
@@ -45,7 +47,13 @@ class Options:
     jobs: int = 1
     tolerances: str | Path | None = None
     materials: str | Path | None = None
+    limits: Mapping[str, object] = field(default_factory=dict)
     progress: Progress | None = None
+
+    @property
+    def reading_limits(self) -> ReadingLimits:
+        """How much of a file is read; raises ValueError for a limit that does not exist."""
+        return ReadingLimits.of(self.limits)
 
 
 def check(submission: str | Path, **options: Any) -> Outcome:
@@ -85,7 +93,7 @@ def run(submission: str | Path, output: str | Path | None = None, **options: Any
 def _examine(path: Path, options: Options) -> Outcome:
     """Read, validate and compute at the entered dimensions."""
     try:
-        submission = read_submission(path)
+        submission = read_submission(path, options.reading_limits)
         if submission.role and submission.role != "template":
             skipped = [finding("I508", file=path.name)]
             return Outcome(
@@ -112,21 +120,23 @@ def _with_tables(submission: Submission, options: Options) -> Submission:
     given: dict[str, RawSheet] = {}
     for name, path in (("Tolerances", options.tolerances), ("Materials", options.materials)):
         if path is not None:
-            given[name] = _table_beside(Path(path), name)
+            given[name] = _table_beside(Path(path), name, options.reading_limits)
     return replace(submission, sheets=submission.sheets | given)
 
 
-def _table_beside(path: Path, name: str) -> RawSheet:
+def _table_beside(path: Path, name: str, limits: ReadingLimits) -> RawSheet:
     """Return a CSV table given beside a submission; raise Refusal, by its own name, when it is none."""
     try:
-        return read_table(admit(read_bytes(path), only="csv").data, name)[0]
+        data = read_bytes(path, limits)
+        kind_of(data, only="csv")
+        return read_table(data, name)[0]
     except Refusal as refusal:
         raise Refusal(refusal.code, **{"file": path.name, **refusal.facts}) from refusal
 
 
 def _validated(submission: Submission, options: Options) -> Outcome:
     """Validate, set the limits and compute at the entered dimensions."""
-    validated = validate(submission)
+    validated = validate(submission, options.reading_limits)
     overrides = {
         name: getattr(options, name) for name in ("seed", "method", "samples") if getattr(options, name) is not None
     }

@@ -36,12 +36,16 @@ RawValue: TypeAlias = (
 class RawSheet:
     """Cells by row and column number, both from 1 as the user counts; blank cells are absent.
 
-    `numbers_are_texts` tells a CSV sheet, in which a text may be a number.
+    `numbers_are_texts` tells a CSV sheet, in which a text may be a number. `hidden_rows` hold cells that Excel does
+    not show; `merged` are areas as (first row, first column, last row, last column).
     """
 
     name: str
     rows: dict[int, dict[int, RawValue]]
     numbers_are_texts: bool = False
+    hidden: bool = False
+    hidden_rows: frozenset[int] = frozenset()
+    merged: tuple[tuple[int, int, int, int], ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,10 +9,11 @@ from typing import Any
 
 from flexlash.columns import ENTRY_SHEETS, columns_of
 from flexlash.submission.checks import check_cells, check_relations
-from flexlash.submission.gate import Refusal
 from flexlash.submission.headers import closest, plain
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.read import RawSheet, Submission
+from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.tables import (
     built_in_materials,
     materials_of,
@@ -26,8 +27,6 @@ from flexlash.variant import Material, Settings, ToleranceRow, Variant
 __all__ = ["TEMPLATE_VERSION", "Validated", "validate"]
 
 TEMPLATE_VERSION = 1
-MAXIMUM_ROWS = 20_000
-MAXIMUM_COLUMNS = 256
 
 _OTHER_SOURCES = "Other sources"
 
@@ -57,7 +56,7 @@ class Validated:
         return list(self.table.frame.select("row", "variant", "notes").fill_null("").iter_rows())
 
 
-def validate(submission: Submission) -> Validated:
+def validate(submission: Submission, limits: ReadingLimits | None = None) -> Validated:
     """Return the variants of a submission and all that is wrong with it.
 
     Raises Refusal when there is no Variants sheet or the template is newer than this program.
@@ -65,7 +64,7 @@ def validate(submission: Submission) -> Validated:
     ledger = Ledger(submission.name)
     result = Validated(ledger=ledger)
     _check_version(submission)
-    sheets = _entry_sheets(submission)
+    sheets = _entry_sheets(submission, limits or ReadingLimits())
     tables: dict[str, Table] = {}
     for schema, sheet in sheets.items():
         table = tabulate(sheet, schema, ledger)
@@ -97,7 +96,7 @@ def _check_version(submission: Submission) -> None:
         raise Refusal("E116", found=version, known=TEMPLATE_VERSION)
 
 
-def _entry_sheets(submission: Submission) -> dict[str, RawSheet]:
+def _entry_sheets(submission: Submission, limits: ReadingLimits) -> dict[str, RawSheet]:
     """Return the entry sheets by schema; letter case and spaces of their names do not matter."""
     by_plain: dict[str, RawSheet] = {}
     for name, sheet in submission.sheets.items():
@@ -111,16 +110,14 @@ def _entry_sheets(submission: Submission) -> dict[str, RawSheet]:
     found = {schema: by_plain[plain(schema)] for schema in ENTRY_SHEETS if plain(schema) in by_plain}
     if submission.kind == "workbook":
         for sheet in found.values():
-            _check_size(sheet)
+            _check_size(sheet, limits)
     return found
 
 
-def _check_size(sheet: RawSheet) -> None:
+def _check_size(sheet: RawSheet, limits: ReadingLimits) -> None:
     """Refuse a sheet that holds more than a submission can mean."""
-    if len(sheet.rows) > MAXIMUM_ROWS:
-        raise Refusal("E110", what="the number of rows", limit=f"{MAXIMUM_ROWS:,}")
-    if max((max(cells) for cells in sheet.rows.values()), default=0) > MAXIMUM_COLUMNS:
-        raise Refusal("E110", what="the number of columns", limit=f"{MAXIMUM_COLUMNS:,}")
+    limits.require("rows", len(sheet.rows))
+    limits.require("columns", max((max(cells) for cells in sheet.rows.values()), default=0))
 
 
 def _fill_tables(result: Validated, submission: Submission, present: Collection[str], tables: dict[str, Table]) -> None:

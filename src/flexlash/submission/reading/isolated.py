@@ -1,0 +1,68 @@
+"""Asking the limited process: a file's bytes go in, what it holds comes back, whatever the file does to its reader."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import flexlash
+from flexlash.submission.reading.child import Answer
+from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.refusal import Refusal
+
+__all__ = ["Asked", "ask"]
+
+_START = "import sys; sys.path.append(sys.argv[1]); from flexlash.submission.reading.child import main; main()"
+_ENVIRONMENT = {"POLARS_MAX_THREADS": "1", "RUST_BACKTRACE": "0", "OPENBLAS_NUM_THREADS": "1"}
+
+
+def ask(task: str, data: bytes, limits: ReadingLimits, **facts: Any) -> Answer:
+    """Return what a task of the limited process gives.
+
+    Raises Refusal when the file is refused, exceeds a limit or stops the process, OSError when no process can be
+    started.
+    """
+    return Asked(task, data, limits, **facts).answer()
+
+
+class Asked:
+    """A running request, so that the caller can do something else meanwhile."""
+
+    def __init__(self, task: str, data: bytes, limits: ReadingLimits, **facts: Any) -> None:
+        self.limits = limits
+        head = {"task": task, "facts": facts, "limits": limits.as_dictionary()}
+        self.request = json.dumps(head).encode() + b"\n" + data
+        # -I: neither the working folder nor the user's variables can put other code in the way.
+        self.process = subprocess.Popen(  # noqa: S603
+            [sys.executable, "-I", "-c", _START, str(Path(flexlash.__file__).parent.parent)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=None if os.environ.get("FLEXLASH_DEBUG") == "1" else subprocess.DEVNULL,
+            env={**os.environ, **_ENVIRONMENT},
+        )
+
+    def answer(self) -> Answer:
+        """Wait for the answer and return it; raise Refusal when there is none."""
+        try:
+            out, _ = self.process.communicate(self.request, timeout=self.limits.seconds)
+        except BaseException as fault:
+            self.process.kill()
+            self.process.communicate()
+            if isinstance(fault, subprocess.TimeoutExpired):
+                raise self.limits.exceeded("seconds") from None
+            raise
+        if self.process.returncode == -getattr(signal, "SIGXCPU", 0):
+            raise self.limits.exceeded("processor_seconds")
+        head, end, payload = out.partition(b"\n")
+        if not end:
+            raise Refusal("E118")
+        found = json.loads(head)
+        if "refusal" in found:
+            code, facts = found["refusal"]
+            raise Refusal(code, **facts)
+        return found, payload

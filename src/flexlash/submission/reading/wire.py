@@ -1,0 +1,81 @@
+"""Cells as JSON and back: how the limited process hands over what it read. Nothing in it can be executed."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Callable
+from typing import Any
+
+from flexlash.submission.raw import ErrorCell, RawSheet, RawValue, Unstored
+from flexlash.submission.reading.workbook import Cells
+
+__all__ = ["from_wire", "to_wire"]
+
+_KINDS: dict[str, tuple[type, Callable[[Any], str], Callable[[str], RawValue]]] = {
+    "moment": (datetime.datetime, datetime.datetime.isoformat, datetime.datetime.fromisoformat),
+    "date": (datetime.date, datetime.date.isoformat, datetime.date.fromisoformat),
+    "time": (datetime.time, datetime.time.isoformat, datetime.time.fromisoformat),
+    "duration": (
+        datetime.timedelta,
+        lambda value: repr(value.total_seconds()),
+        lambda text: datetime.timedelta(seconds=float(text)),
+    ),
+    "error": (ErrorCell, lambda value: value.text, ErrorCell),
+    "unstored": (Unstored, lambda _: "", lambda _: Unstored()),
+}
+"""How each kind of value that JSON lacks is written and read."""
+
+
+def to_wire(cells: Cells) -> dict[str, Any]:
+    """Return cells as what JSON can hold."""
+    return {
+        "sheets": [
+            {
+                "name": sheet.name,
+                "rows": [
+                    [number, [[place, _written(value)] for place, value in row.items()]]
+                    for number, row in sheet.rows.items()
+                ],
+                "hidden": sheet.hidden,
+                "hidden_rows": sorted(sheet.hidden_rows),
+                "merged": sheet.merged,
+            }
+            for sheet in cells.sheets
+        ],
+        "modified": cells.modified.isoformat() if cells.modified else "",
+        "role": cells.role,
+        "template_version": cells.template_version,
+    }
+
+
+def _written(value: RawValue) -> Any:
+    """Return a value as JSON holds it; kinds that it lacks become a pair of their name and a text."""
+    if isinstance(value, str | int | float):
+        return value
+    for kind, (type_, write, _) in _KINDS.items():
+        if isinstance(value, type_):
+            return [kind, write(value)]
+    return str(value)
+
+
+def from_wire(wire: dict[str, Any]) -> Cells:
+    """Return the cells that `to_wire` has written."""
+    return Cells(
+        sheets=[
+            RawSheet(
+                name=sheet["name"],
+                rows={number: {place: _read(value) for place, value in row} for number, row in sheet["rows"]},
+                hidden=sheet["hidden"],
+                hidden_rows=frozenset(sheet["hidden_rows"]),
+                merged=tuple(tuple(area) for area in sheet["merged"]),
+            )
+            for sheet in wire["sheets"]
+        ],
+        modified=datetime.datetime.fromisoformat(wire["modified"]) if wire["modified"] else None,
+        role=wire["role"],
+        template_version=wire["template_version"],
+    )
+
+
+def _read(value: Any) -> RawValue:
+    return _KINDS[value[0]][2](value[1]) if isinstance(value, list) else value
