@@ -19,6 +19,7 @@ from flexlash.findings import CATALOGUE, shown
 if TYPE_CHECKING:
     from flexlash.outcome import Outcome
     from flexlash.pipeline import Progress
+    from flexlash.submission.reading.limits import ReadingLimits
 
 __all__ = ["cli", "main"]
 
@@ -104,16 +105,15 @@ def _generally(fix: str) -> str:
     return fix.format(label="the header of the template", unit="the template's unit", dimension="the dimension")
 
 
-def _limits(_: click.Context, __: click.Parameter, given: tuple[str, ...]) -> dict[str, str]:
-    """Return limits by name; raise a usage error for one that does not exist."""
+def _limits(_: click.Context, __: click.Parameter, given: tuple[str, ...]) -> ReadingLimits:
+    """Return the limits of reading; raise a usage error for one that does not exist."""
     from flexlash.submission.reading.limits import ReadingLimits
 
     pairs = {name.strip(): value.strip() for name, _, value in (text.partition("=") for text in given)}
     try:
-        ReadingLimits.of(pairs)
+        return ReadingLimits.of(pairs)
     except ValueError as fault:
         raise click.UsageError(f"--limit: {fault}.") from fault
-    return pairs
 
 
 _SUBMISSIONS = click.argument("submissions", nargs=-1, required=True, type=click.Path(path_type=Path))
@@ -143,12 +143,16 @@ def _table_option(name: str) -> Callable[[Command], Command]:
 @_table_option("materials")
 def check(submissions: tuple[Path, ...], *, as_json: bool, **options: Any) -> None:
     """Validate submissions and print what was found; nothing is sampled or written."""
-    from flexlash.pipeline import check as check_one
+    from flexlash.submission.read import Reading
 
     codes: list[int] = []
     for path in submissions:
         with _one_submission(path, codes, as_json=as_json):
-            outcome = check_one(path, **options)
+            reading = Reading(path, options["limits"])
+            # Loading the libraries takes as long as reading the file does: both at once.
+            from flexlash.pipeline import check as check_one
+
+            outcome = check_one(reading, **options)
             _tell(outcome, path, as_json=as_json)
             codes += [] if outcome.skipped else [outcome.exit_code]
     sys.exit(_worst(codes))
@@ -178,7 +182,7 @@ def check(submissions: tuple[Path, ...], *, as_json: bool, **options: Any) -> No
 def run(submissions: tuple[Path, ...], output: Path | None, *, as_json: bool, quiet: bool, **options: Any) -> None:
     """Validate, compute the tolerance spread, write the report."""
     from flexlash.elasticity import MISSING, is_available
-    from flexlash.pipeline import run as run_one
+    from flexlash.submission.read import Reading
 
     if options["elasticity"] and not is_available():
         raise click.UsageError(MISSING)
@@ -186,7 +190,10 @@ def run(submissions: tuple[Path, ...], output: Path | None, *, as_json: bool, qu
     codes: list[int] = []
     for path, target in zip(submissions, targets, strict=True):
         with _one_submission(path, codes, as_json=as_json), _progress(quiet=quiet or as_json) as progress:
-            outcome = run_one(path, target, progress=progress, **options)
+            reading = Reading(path, options["limits"])
+            from flexlash.pipeline import run as run_one
+
+            outcome = run_one(reading, target, progress=progress, **options)
             if not quiet or outcome.exit_code:
                 _tell(outcome, path, as_json=as_json, ran=True)
             codes += [] if outcome.skipped else [outcome.exit_code]

@@ -8,14 +8,18 @@ from pathlib import Path
 from flexlash.submission.delimited import read_table
 from flexlash.submission.gate import kind_of, read_bytes
 from flexlash.submission.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored, column_letters
-from flexlash.submission.reading.isolated import ask
+from flexlash.submission.reading.isolated import Asked
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.reading.wire import from_wire
+from flexlash.submission.reading.workbook import PROPERTY
 
 __all__ = [
+    "PROPERTY",
     "ErrorCell",
     "RawSheet",
     "RawValue",
+    "Reading",
     "Submission",
     "Unstored",
     "column_letters",
@@ -24,25 +28,51 @@ __all__ = [
 ]
 
 
+class Reading:
+    """A submission being read; where another process does so, its caller can do something else meanwhile.
+
+    Raises OSError when the file cannot be opened; what else is wrong with it is told by `submission`.
+    """
+
+    def __init__(self, path: Path, limits: ReadingLimits | None = None) -> None:
+        self.path = path
+        self.limits = limits or ReadingLimits()
+        self.kind = ""
+        self.data = b""
+        self.refusal: Refusal | None = None
+        self.asked: Asked | None = None
+        try:
+            self.data = read_bytes(path, self.limits)
+            self.kind = kind_of(self.data)
+            if self.kind != "csv":
+                self.asked = Asked(self.kind, self.data, self.limits)
+        except Refusal as refusal:
+            self.refusal = refusal
+
+    def submission(self) -> Submission:
+        """Return the cells, once they are read; raise Refusal when the file is no readable submission."""
+        if self.refusal:
+            raise self.refusal
+        digest = hashlib.sha256(self.data).hexdigest()
+        if self.asked is None:
+            sheets = {"Variants": read_table(self.data, "Variants", self.path.name)}
+            return Submission(name=self.path.name, sha256=digest, kind=self.kind, sheets=sheets, data=self.data)
+        cells = from_wire(self.asked.answer()[0])
+        return Submission(
+            name=self.path.name,
+            sha256=digest,
+            kind=self.kind,
+            sheets={sheet.name: sheet for sheet in cells.sheets},
+            modified=cells.modified,
+            role=cells.role,
+            template_version=cells.template_version,
+            data=self.data,
+        )
+
+
 def read_submission(path: Path, limits: ReadingLimits | None = None) -> Submission:
     """Return the cells of a workbook, CSV or Parquet file.
 
     Raises OSError when the file cannot be opened and Refusal when it is no readable submission.
     """
-    limits = limits or ReadingLimits()
-    data = read_bytes(path, limits)
-    kind = kind_of(data)
-    digest = hashlib.sha256(data).hexdigest()
-    if kind == "csv":
-        sheet, delimiter = read_table(data, "Variants")
-        return Submission(name=path.name, sha256=digest, kind=kind, sheets={"Variants": sheet}, delimiter=delimiter)
-    cells = from_wire(ask(kind, data, limits)[0])
-    return Submission(
-        name=path.name,
-        sha256=digest,
-        kind=kind,
-        sheets={sheet.name: sheet for sheet in cells.sheets},
-        modified=cells.modified,
-        role=cells.role,
-        template_version=cells.template_version,
-    )
+    return Reading(path, limits).submission()

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -31,12 +32,11 @@ def ask(task: str, data: bytes, limits: ReadingLimits, **facts: Any) -> Answer:
 
 
 class Asked:
-    """A running request, so that the caller can do something else meanwhile."""
+    """A request under way; its caller can do something else until it wants the answer."""
 
     def __init__(self, task: str, data: bytes, limits: ReadingLimits, **facts: Any) -> None:
         self.limits = limits
         head = {"task": task, "facts": facts, "limits": limits.as_dictionary()}
-        self.request = json.dumps(head).encode() + b"\n" + data
         # -I: neither the working folder nor the user's variables can put other code in the way.
         self.process = subprocess.Popen(  # noqa: S603
             [sys.executable, "-I", "-c", _START, str(Path(flexlash.__file__).parent.parent)],
@@ -45,24 +45,45 @@ class Asked:
             stderr=None if os.environ.get("FLEXLASH_DEBUG") == "1" else subprocess.DEVNULL,
             env={**os.environ, **_ENVIRONMENT},
         )
+        self.out = b""
+        self.too_slow = False
+        request = json.dumps(head).encode() + b"\n" + data
+        self.talk = threading.Thread(target=self._talk, args=(request,), daemon=True)
+        self.talk.start()
+
+    def _talk(self, request: bytes) -> None:
+        """Hand over the request and collect the answer, within the time allowed."""
+        try:
+            self.out, _ = self.process.communicate(request, timeout=self.limits.seconds)
+        except subprocess.TimeoutExpired:
+            self.too_slow = True
+            self.stop()
+
+    def stop(self) -> None:
+        """End the process, whatever it is doing."""
+        self.process.kill()
+        self.process.wait()
 
     def answer(self) -> Answer:
         """Wait for the answer and return it; raise Refusal when there is none."""
         try:
-            out, _ = self.process.communicate(self.request, timeout=self.limits.seconds)
-        except BaseException as fault:
-            self.process.kill()
-            self.process.communicate()
-            if isinstance(fault, subprocess.TimeoutExpired):
-                raise self.limits.exceeded("seconds") from None
+            self.talk.join()
+        except BaseException:
+            self.stop()
             raise
-        if self.process.returncode == -getattr(signal, "SIGXCPU", 0):
-            raise self.limits.exceeded("processor_seconds")
-        head, end, payload = out.partition(b"\n")
+        head, end, payload = self.out.partition(b"\n")
         if not end:
-            raise Refusal("E118")
+            raise self._failure()
         found = json.loads(head)
         if "refusal" in found:
             code, facts = found["refusal"]
             raise Refusal(code, **facts)
         return found, payload
+
+    def _failure(self) -> Refusal:
+        """Return what a process that gave no answer died of."""
+        if self.too_slow:
+            return self.limits.exceeded("seconds")
+        if self.process.wait() == -getattr(signal, "SIGXCPU", 0):
+            return self.limits.exceeded("processor_seconds")
+        return Refusal("E118")
