@@ -689,26 +689,6 @@ def test_two_sheets_of_one_name(book):
     assert {found.code for found in outcome.findings} - {"I505"}
 
 
-def _hide(workbook):
-    workbook["Variants"].row_dimensions[3].hidden = True
-
-
-def _merge(workbook):
-    workbook["Variants"].merge_cells("D2:D3")
-
-
-@pytest.mark.parametrize("what", ["a hidden row", "merged cells", "a row below sixty empty ones"])
-@pytest.mark.xfail(strict=True, reason="hidden rows, merged cells and far rows have no code of their own yet")
-def test_what_is_easily_overlooked_is_told(what, book):
-    """A hidden row with data, merged cells, and a row far below the others are told."""
-    first, second = list(ROW.values()), ["B", *list(ROW.values())[1:]]
-    gap = [[] for _ in range(61)] if "sixty" in what else []
-    change = {"a hidden row": _hide, "merged cells": _merge}.get(what)
-    outcome = check(book({"Variants": [list(ROW), first, *gap, second]}, change))
-    codes = {found.code for found in outcome.findings}
-    assert codes - {"I505", "E201"}
-
-
 def test_a_row_that_is_not_computed_says_why(table, tmp_path, sound):
     """In the results every row that is not computed names a finding."""
     beside = tmp_path / "tolerances.csv"

@@ -87,9 +87,10 @@ CATALOGUE = _rules(
     (
         "E107",
         "text encoding",
-        "{file} is a text table that is not encoded as UTF-8.",
+        "{file} is a text table whose letters cannot be told: neither Unicode nor Windows-1252.",
         "In Excel: Save As, type CSV UTF-8.",
-        "In other encodings µ, Δ and names with accents would be misread.",
+        "UTF-8, UTF-16 with its mark and Windows-1252 are read. In other encodings µ, Δ and names with accents would "
+        "be misread.",
     ),
     (
         "E108",
@@ -261,6 +262,13 @@ CATALOGUE = _rules(
         "{place} {name} = {value}: {requirement} is required.",
         "Type a whole number.",
         "A count, such as seed or samples, has no decimals.",
+    ),
+    (
+        "E214",
+        "merged cells",
+        "{place} {name} is hidden under the merged cells {other}: {requirement} is required.",
+        "Unmerge the cells and fill each of them.",
+        "Merged cells hold one value at their top left corner; the others are empty, whatever they seem to show.",
     ),
     (
         "E301",
@@ -587,6 +595,83 @@ CATALOGUE = _rules(
         "part yields there before its section does; under alternating torque it fatigues there.",
     ),
     (
+        "W418",
+        "unusual wall",
+        "{place} {name} = {value} mm is {detail} of the mean diameter {other:g} mm; 0.01 to 0.015 is usual.",
+        "Check wall and radius for a diameter entered as a radius, or the other way round, and for the decimal point.",
+        "Flexsplines have walls of 0.01 to 0.015 of their diameter. Outside 0.006 to 0.02 it is reported; above 0.05 "
+        "I506 and W403 speak of it.",
+    ),
+    (
+        "W419",
+        "large hub",
+        "{place} {name} = {value} mm exceeds 0.7 of the bore radius {other:g} mm.",
+        "Check for a diameter entered as a radius.",
+        "A hub of about half the bore is usual. A disk much narrower than that is hardly flexible enough.",
+    ),
+    (
+        "W420",
+        "unit slipped",
+        "{place} {name} = {value} is about {other} {detail}.",
+        "Enter the value in the unit of the header, or mend the header's unit.",
+        "Metres in a column of millimetres, MPa or Pa in a column of GPa, N·mm in a column of N·m: each value is "
+        "compared with the rest of its row, or with real materials. It is used as entered.",
+    ),
+    (
+        "W421",
+        "wide tolerance",
+        "{place} {name} = {value}: class {other} allows ± {detail} % of it; up to 10 % is usual.",
+        "Check the deviations and their unit in Tolerances.",
+        "Half the distance between the limits is compared with the entered value. The limits are used as entered.",
+    ),
+    (
+        "W422",
+        "general tolerance on a thin part",
+        "{place} {name} = {value}: the general tolerance of class {other} is ± {detail} % of it; up to 2 % suits thin "
+        "parts.",
+        "Enter a closer grade or deviations for this thickness in Tolerances.",
+        "ISO 2768 is meant for dimensions without a tolerance of their own. Wind-up goes with the inverse of a "
+        "thickness, so 2768-m on a wall of 1.6 mm already spreads it by 6 %.",
+    ),
+    (
+        "W423",
+        "limit below the nominal backlash",
+        "{place} {name} = {value} arcmin is below the nominal backlash {other} arcmin: about half of the units or "
+        "more exceed it.",
+        "Raise the limit, or stiffen the flexspline.",
+        "Units scatter about a value near the nominal one. When that is over the limit already, closer tolerances do "
+        "not help.",
+    ),
+    (
+        "W424",
+        "torque above catalogue drives",
+        "{place} {name} = {value} N·m exceeds twice T2 = {other:g} N·m of catalogue drives of size {detail}.",
+        "Check torque and radius, and their units.",
+        "T2 is the torque where the second slope of a drive's stiffness ends in a maker's catalogue, the greatest of "
+        "its ratios. It is no rated torque, but a torque above twice T2 is unusual for the size.",
+    ),
+    (
+        "W425",
+        "hidden row with data",
+        "{place}: {detail} hidden, but used.",
+        "Show the rows and check them, or delete them.",
+        "Rows hidden by hand, by a filter or by an outline hold data like any others.",
+    ),
+    (
+        "W426",
+        "hidden sheet",
+        "{place}: the sheet is hidden, but its {value} rows with data are used.",
+        "Show the sheet and check it, or delete it.",
+        "Nobody sees what a hidden sheet says, yet its entries hold.",
+    ),
+    (
+        "W427",
+        "row far below",
+        "{place} stands {detail} empty rows below row {other}; it is used like the others.",
+        "Check that the row was meant; delete it, or move it up.",
+        "A forgotten row below the visible end of a table is easily submitted by accident.",
+    ),
+    (
         "I501",
         "unit converted",
         "{place}: {name} is given in {value} and was converted to {unit}.",
@@ -631,9 +716,9 @@ CATALOGUE = _rules(
     (
         "I507",
         "delimiter recognised",
-        "{file} separates its columns by {value}.",
+        "{file} was read as {detail} text with columns separated by {value}.",
         "Nothing to do.",
-        "Comma, semicolon and tab are recognised. Numbers need a decimal point in any case.",
+        "Comma, semicolon, tab and the bar | are recognised, and a first line such as sep=; is obeyed.",
     ),
     (
         "I508",
@@ -648,5 +733,28 @@ CATALOGUE = _rules(
         "{place}: the values of column {value} have no header and were not read.",
         "Write a header above them, or clear them.",
         "A column takes part, or passes through to the report, by its header.",
+    ),
+    (
+        "I510",
+        "decimal comma recognised",
+        '{file} writes numbers with a decimal comma: {place} "{value}" was read as {suggestion}.',
+        "Nothing to do, if the numbers of the report are yours.",
+        "In a table separated by semicolons, tabs or bars a comma is taken as the decimal sign when no number has a "
+        "point and at least one comma cannot separate thousands.",
+    ),
+    (
+        "I511",
+        "encoding assumed",
+        '{file} was read as Windows-1252 text, since it is no Unicode; {place} shows "{value}".',
+        "Check accents and symbols. In Excel: Save As, type CSV UTF-8, keeps every letter.",
+        "A plain CSV of Excel does not say which letters its bytes stand for. Numbers are the same in any case; names, "
+        "notes and symbols of units may be shown wrongly.",
+    ),
+    (
+        "I512",
+        "older template",
+        "{file} was made from template version {found}; version {known} adds {added}.",
+        "Nothing to do. To enter them, move the file into a new template: flexlash template --upgrade FILE.",
+        "An older template is read as before; what it has no column for counts as blank.",
     ),
 )
