@@ -31,6 +31,8 @@ FACTS = {
     "what": "the file",
     "limit": "20 MiB",
     "suggestion": "1.6",
+    "setting": "parts",
+    "added": "Disk cone angle, Disk thickness exponent and Load inertia",
 }
 LEVELS = {"E": "error", "W": "warning", "I": "info"}
 

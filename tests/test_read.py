@@ -14,7 +14,7 @@ import pytest
 import xlsxwriter
 
 from flexlash.submission.gate import Refusal
-from flexlash.submission.read import ErrorCell, Unstored, column_letters, read_submission, read_table
+from flexlash.submission.read import ErrorCell, Unstored, column_letters, read_submission
 
 CORPUS = Path(__file__).resolve().parents[2] / "shared" / "corpus"
 ERRORS = ["#REF!", "#DIV/0!", "#VALUE!", "#NAME?", "#N/A", "#NUM!", "#NULL!", "#SPILL!", "#CALC!"]
@@ -38,18 +38,6 @@ def save(tmp_path):
         return path
 
     return write
-
-
-@pytest.fixture
-def text(tmp_path):
-    """Return a function that writes a text as a file and reads it."""
-
-    def read(content):
-        path = tmp_path / "submission.csv"
-        path.write_bytes(content if isinstance(content, bytes) else content.encode())
-        return read_submission(path)
-
-    return read
 
 
 @pytest.fixture
@@ -299,112 +287,14 @@ def test_infinity_is_read_as_such(save):
     assert read_submission(path).sheets["Variants"].rows == {1: {1: float("inf")}}
 
 
-TABLES = {
-    "plain": ("a,b\n1,2\n", {1: {1: "a", 2: "b"}, 2: {1: "1", 2: "2"}}),
-    "carriage returns": ("a,b\r\n1,2\r\n", {1: {1: "a", 2: "b"}, 2: {1: "1", 2: "2"}}),
-    "byte order mark": ("\ufeffa,b\n", {1: {1: "a", 2: "b"}}),
-    "semicolon": ("a;b\n1,5;2\n", {1: {1: "a", 2: "b"}, 2: {1: "1,5", 2: "2"}}),
-    "tab": ("a\tb\n1,5\t2\n", {1: {1: "a", 2: "b"}, 2: {1: "1,5", 2: "2"}}),
-    "blank lines": ("\n\na,b\n\n1,2\n\n", {3: {1: "a", 2: "b"}, 5: {1: "1", 2: "2"}}),
-    "blank cells": ("a,,c\n,,\n, ,3\n", {1: {1: "a", 3: "c"}, 3: {3: "3"}}),
-    "quoted line break": ('a,b\n"x\ny",2\nz,3\n', {1: {1: "a", 2: "b"}, 2: {1: "x\ny", 2: "2"}, 3: {1: "z", 2: "3"}}),
-    "quoted delimiter": ('a,b\n"x,y",2\n', {1: {1: "a", 2: "b"}, 2: {1: "x,y", 2: "2"}}),
-    "quoted quote": ('a,b\n"5"" pipe",2\n', {1: {1: "a", 2: "b"}, 2: {1: '5" pipe', 2: "2"}}),
-    "ragged": ("a,b,c\n1\n1,2,3,4\n", {1: {1: "a", 2: "b", 3: "c"}, 2: {1: "1"}, 3: {1: "1", 2: "2", 3: "3", 4: "4"}}),
-    "no last line end": ("a,b\n1,2", {1: {1: "a", 2: "b"}, 2: {1: "1", 2: "2"}}),
-    "one column": ("a\n1\n", {1: {1: "a"}, 2: {1: "1"}}),
-    "spaces kept": ("a,b\n x ,2\n", {1: {1: "a", 2: "b"}, 2: {1: " x ", 2: "2"}}),
-    "only white space": (" \n\t\n", {}),
-}
-
-
-@pytest.mark.parametrize("what", TABLES)
-def test_csv_rows_are_numbered_as_excel_shows_them(text, what):
-    """A CSV file's cells have the addresses that Excel would show, with the header in row 1 or where it stands."""
-    content, rows = TABLES[what]
-    submission = text(content)
-    assert submission.kind == "csv"
-    assert submission.sheets["Variants"].rows == rows
-
-
-@pytest.mark.parametrize(
-    ("content", "delimiter"),
-    [
-        ("a,b\n", ","),
-        ("a;b\n", ";"),
-        ("a\tb\n", "\t"),
-        ("a\n1;2;3\n", ";"),
-        ("a;b;c\n1,5;2,5;3,5\n1,6;2,6;3,6\n", ";"),
-        ("a\tb\n1,5;2\t3\n", "\t"),
-        ("a,b\nx;y;z,1\n", ","),
-        ('a,b\n"1;2;3","4;5;6"\n', ","),
-        ("a\n1\n", ","),
-        ("", ","),
-    ],
-)
-def test_the_delimiter_makes_even_rows(content, delimiter):
-    """Of comma, semicolon and tab that is the delimiter which makes the most rows of one width."""
-    assert read_table(content.encode(), "Variants")[1] == delimiter
-
-
-DECIMAL_COMMAS = """a;b;c;d;e;f
-1,1;1,2;1,3;1,4;;
-2,1;2,2;2,3;2,4;x;
-3,1;3,2;3,3;3,4;;y
-"""
-
-
-def test_decimal_commas_do_not_pass_for_delimiters():
-    """A table with semicolons and decimal commas has semicolons, also where the last cells are blank."""
-    assert read_table(DECIMAL_COMMAS.encode(), "Variants")[1] == ";"
-
-
-@pytest.mark.parametrize("title", ["Study of spring", "Study, spring, 2026"])
-def test_a_title_above_does_not_tell_the_delimiter(text, title):
-    """A line of title above the header row does not hide that the table has semicolons."""
-    rows = text(f"{title}\nvariant;material\nA;20Cr2Ni4\n").sheets["Variants"].rows
-    assert rows[3] == {1: "A", 2: "20Cr2Ni4"}
-
-
-def test_lines_of_an_old_mac(text):
-    """A table saved as CSV (Macintosh) is read."""
-    assert text("a,b\r1,2\r").sheets["Variants"].rows == {1: {1: "a", 2: "b"}, 2: {1: "1", 2: "2"}}
-
-
-@pytest.mark.parametrize("encoding", ["cp1252", "latin-1", "cp932"])
-def test_other_encodings_are_refused_by_name(text, encoding):
-    """A table that is not UTF-8 is refused for its encoding, since µ and Δ would be misread."""
-    content = "名前,b\n" if encoding == "cp932" else "Länge [µm],b\n"
-    with pytest.raises(Refusal) as caught:
-        text(content.encode(encoding))
-    assert caught.value.code == "E107"
-
-
-@pytest.mark.parametrize("content", ['a,b\n"x,2\n', 'a,b\n"x"y,2\n', f"a,b\n{'x' * 200_000},2\n"])
-def test_a_broken_table_is_damage(text, content):
-    """Quotes that do not match, and cells without end, make a table damaged."""
-    with pytest.raises(Refusal) as caught:
-        text(content)
-    assert caught.value.code == "E102"
-
-
-def test_an_open_quote_in_a_later_column_is_damage(text):
-    """A quote that does not close makes a table damaged in whichever column it stands."""
-    with pytest.raises(Refusal) as caught:
-        text('variant,material,notes\nA,20Cr2Ni4,"open\nB,20Cr2Ni4,x\n')
-    assert caught.value.code == "E102"
-
-
-@pytest.mark.parametrize("error", ["#REF!", "#N/A"])
-def test_error_words_of_a_table_are_errors(text, error):
-    """An Excel error that was saved as CSV is an error there too."""
-    assert text(f"variant,material\n{error},20Cr2Ni4\n").sheets["Variants"].rows[2][1] == ErrorCell(error)
-
-
-def test_a_table_beside_is_named_as_asked():
-    """A CSV file given beside a submission becomes the sheet that it stands for."""
-    sheet, delimiter = read_table(b"a;b\n", "Tolerances")
-    assert (sheet.name, delimiter) == ("Tolerances", ";")
+def test_a_delimited_text_is_the_variants_and_knows_how_it_was_written(tmp_path):
+    """A delimited text is a submission with Variants alone that tells delimiter, encoding and decimal comma."""
+    path = tmp_path / "submission.csv"
+    path.write_bytes("variant;a\nMüller;1,6\n".encode("cp1252"))
+    submission = read_submission(path)
+    assert (submission.kind, list(submission.sheets)) == ("csv", ["Variants"])
+    assert (submission.delimiter, submission.encoding, submission.decimal_comma) == (";", "Windows-1252", True)
+    assert submission.manner.file == "submission.csv"
 
 
 def test_parquet_keeps_types_and_addresses(parquet):

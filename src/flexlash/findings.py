@@ -12,7 +12,10 @@ __all__ = ["CATALOGUE", "Finding", "finding", "shown"]
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """One thing found in a submission, at the address that its user sees."""
+    """One thing found in a submission, at the address that its user sees.
+
+    `suggestion` is what was probably meant, in words; `repair` what to write where nothing else can be meant.
+    """
 
     level: Level
     code: str
@@ -24,10 +27,11 @@ class Finding:
     message: str
     fix: str
     suggestion: str = ""
+    repair: str | float | None = None
 
     def as_dictionary(self) -> dict[str, str]:
         """Return the fields in the order of the Findings sheet."""
-        return asdict(self)
+        return {key: value for key, value in asdict(self).items() if key != "repair"}
 
     @property
     def place(self) -> str:
@@ -38,8 +42,8 @@ class Finding:
 def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **facts: Any) -> Finding:
     """Return a finding with the catalogue's words filled in.
 
-    `facts` are what the message names; `variant`, `value` and `suggestion` also become fields. `entered` is the
-    value as entered, where the message names another.
+    `facts` are what the message names; `variant`, `value`, `suggestion` and `repair` also become fields. `entered` is
+    the value as entered, where the message names another.
     """
     rule = CATALOGUE[code]
     place = f"{sheet}!{cell}" if sheet and cell else sheet or str(facts.get("file", ""))
@@ -59,6 +63,7 @@ def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **f
         message=message,
         fix=rule.fix.format(**words),
         suggestion=suggestion,
+        repair=facts.get("repair"),
     )
 
 

@@ -8,23 +8,24 @@ import re
 import unicodedata
 from dataclasses import dataclass
 
-from flexlash.submission.read import ErrorCell, RawValue, Unstored
+from flexlash.columns import Column
+from flexlash.submission.number_texts import Measure, meant_number
+from flexlash.submission.raw import CommaNumber, DoubtfulNumber, ErrorCell, RawValue, Unstored
 
-__all__ = ["Fault", "as_number", "as_text", "suggested_number"]
+__all__ = ["Fault", "as_number", "as_text"]
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII)
-_UNIT_AT_END = re.compile(r"[\s%°′″'\"a-zA-Zµμ·⋅*/²³]+$")
 _DATES = (datetime.date, datetime.time, datetime.timedelta)
-_LOOKALIKES = str.maketrans({"\u2212": "-", "\u2013": "-", "\u2012": "-", "\u066b": ".", "\u00a0": " "})
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fault:
-    """Why a cell is not usable: code, what to show of it, what was probably meant."""
+    """Why a cell is not usable: code, what to show of it, what was probably meant, what can only be meant."""
 
     code: str
     value: object
     suggestion: str = ""
+    repair: str | float | None = None
 
 
 def _not_an_entry(value: RawValue) -> Fault | None:
@@ -41,18 +42,27 @@ def _not_an_entry(value: RawValue) -> Fault | None:
     return None
 
 
-def as_number(value: RawValue, *, from_text: bool) -> float | Fault:
-    """Return a cell as a finite number; texts count as numbers only in CSV files (`from_text`)."""
+def as_number(
+    value: RawValue, column: Column | None = None, *, from_text: bool, measure: Measure | None = None
+) -> float | Fault:
+    """Return a cell as a finite number; texts count as numbers only in CSV files (`from_text`).
+
+    A column gives a text its suggestion; `measure` says what the column's numbers stand for where that is not its printed unit.
+    """
     if fault := _not_an_entry(value):
         return fault
     if isinstance(value, int | float):
         number = float(value)
         return number if math.isfinite(number) else Fault(code="E212", value=value)
     text = str(value).strip()
-    if from_text and _NUMBER.fullmatch(text):
-        number = float(text)
+    readable = text.replace(",", ".") if isinstance(value, CommaNumber) else text
+    if from_text and _NUMBER.fullmatch(readable) and not isinstance(value, DoubtfulNumber):
+        number = float(readable)
         return number if math.isfinite(number) else Fault(code="E212", value=text)
-    return Fault(code="E202", value=value, suggestion=suggested_number(str(value)))
+    if column is None:
+        return Fault(code="E202", value=value)
+    meant = meant_number(str(value), column, measure)
+    return Fault(code="E202", value=value, suggestion=meant.words, repair=meant.repair)
 
 
 def as_text(value: RawValue, longest: int) -> str | Fault:
@@ -66,16 +76,3 @@ def as_text(value: RawValue, longest: int) -> str | Fault:
     spaced = " ".join(unicodedata.normalize("NFC", str(value)).split())
     text = "".join(character for character in spaced if unicodedata.category(character) not in {"Cc", "Cf", "Cs"})
     return text if len(text) <= longest else Fault(code="E212", value=text)
-
-
-def suggested_number(text: str) -> str:
-    """Return the number that a text probably means, or an empty text.
-
-    >>> suggested_number("1,6 mm"), suggested_number("±0.02"), suggested_number("5%"), suggested_number("n/a")
-    ('1.6', '0.02', '5', '')
-    """
-    bare = _UNIT_AT_END.sub("", text.translate(_LOOKALIKES).replace("±", "").strip())
-    kept = unicodedata.normalize("NFKC", bare).replace("'", "").replace(" ", "")
-    if kept.count(",") == 1 and "." not in kept:
-        kept = kept.replace(",", ".")
-    return kept if _NUMBER.fullmatch(kept) else ""

@@ -1,35 +1,65 @@
-"""Delimited text → a sheet of raw cells."""
+"""Delimited text → a sheet of raw cells: delimiter, encoding and decimal sign are recognised and told."""
 
 from __future__ import annotations
 
+import codecs
 import csv
 import io
+import re
 from collections import Counter
+from collections.abc import Iterator
 
-from flexlash.submission.gate import Refusal
-from flexlash.submission.raw import ERROR_WORDS, ErrorCell, RawSheet, RawValue
+from flexlash.submission.raw import (
+    ERROR_WORDS,
+    CommaNumber,
+    DoubtfulNumber,
+    ErrorCell,
+    Manner,
+    RawSheet,
+    RawValue,
+)
+from flexlash.submission.reading.refusal import Refusal
 
-__all__ = ["read_table"]
+__all__ = ["WINDOWS", "read_table"]
+
+WINDOWS = "Windows-1252"
+"""The encoding that is taken when a text is no Unicode; only its reader can tell whether that was right."""
+
+_DELIMITERS = ",;\t|"
+_MARKED = (
+    (codecs.BOM_UTF8, "utf-8-sig", "UTF-8"),
+    (codecs.BOM_UTF16_LE, "utf-16", "UTF-16"),
+    (codecs.BOM_UTF16_BE, "utf-16", "UTF-16"),
+)
+_NO_TEXT = re.compile(r"[\x00-\x08\x0e-\x19\x1b-\x1f]")
+"""Control characters that no program writes into a table; 1A ended the files of DOS."""
 
 _TOP = 15
 """Rows among which the header, and so the widest row of a table, is looked for."""
 
+_SEPARATOR_LINE = re.compile(r'"?sep=([,;\t|])"?(?:\r\n|\r|\n|$)', re.IGNORECASE)
+"""First line by which a table tells Excel its delimiter; Excel does not show it as a row."""
 
-def read_table(data: bytes, name: str) -> tuple[RawSheet, str]:
-    """Return a CSV file as a sheet and the delimiter it was written with.
+_SIGNED = r"[+-]?"
+_COMMA = re.compile(_SIGNED + r"\d*,\d+(?:[eE][+-]?\d{1,3})?", re.ASCII)
+_POINT = re.compile(_SIGNED + r"(?:\d+\.\d*|\.\d+)(?:[eE][+-]?\d{1,3})?", re.ASCII)
+_THOUSANDS = re.compile(_SIGNED + r"[1-9]\d{0,2}[.,]\d{3}", re.ASCII)
+"""A number whose one sign may be that of decimals or of thousands."""
 
-    Raises Refusal when it is not UTF-8 text or not a table.
+_Rows = dict[int, dict[int, RawValue]]
+
+
+def read_table(data: bytes, name: str, file: str = "") -> RawSheet:
+    """Return a delimited text as a sheet that knows how it was written; `file` is the name its findings give it.
+
+    Raises Refusal when its encoding cannot be told or it is no table.
     """
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as fault:
-        raise Refusal("E107") from fault
-    tables = {sign: records for sign in ",;\t" if (records := _records(text, sign)) is not None}
-    delimiter = max(tables, key=lambda sign: _evenness(tables[sign]), default="")
-    if not delimiter or (len(tables) < len(",;\t") and not _evenness(tables[delimiter])):
-        raise Refusal("E102")
-    rows: dict[int, dict[int, RawValue]] = {}
-    for number, values in enumerate(tables[delimiter], start=1):
+    text, encoding = _decoded(data)
+    told = _SEPARATOR_LINE.match(text)
+    text = text[told.end() :] if told else text
+    delimiter, records = _table(text, told[1] if told else _DELIMITERS)
+    rows: _Rows = {}
+    for number, values in enumerate(records, start=1):
         cells: dict[int, RawValue] = {
             place: ErrorCell(cell.strip()) if cell.strip() in ERROR_WORDS else cell
             for place, cell in enumerate(values, start=1)
@@ -37,7 +67,50 @@ def read_table(data: bytes, name: str) -> tuple[RawSheet, str]:
         }
         if cells:
             rows[number] = cells
-    return RawSheet(name=name, rows=rows, numbers_are_texts=True), delimiter
+    manner = Manner(
+        delimiter=delimiter,
+        encoding=encoding,
+        file=file,
+        comma_number=_settle_numbers(rows) if delimiter != "," else None,
+        foreign_text=_first_foreign(rows) if encoding == WINDOWS else None,
+    )
+    return RawSheet(name=name, rows=rows, numbers_are_texts=True, manner=manner)
+
+
+def _decoded(data: bytes) -> tuple[str, str]:
+    """Return a text and the name of its encoding."""
+    codec, encoding = next(
+        ((codec, name) for mark, codec, name in _MARKED if data.startswith(mark)), ("utf-8", "UTF-8")
+    )
+    try:
+        text = data.decode(codec)
+    except UnicodeDecodeError as fault:
+        if codec != "utf-8":
+            raise Refusal("E107") from fault
+        text, encoding = _as_windows(data), WINDOWS
+    if "\0" in text:
+        raise Refusal("E102")
+    return text, encoding
+
+
+def _as_windows(data: bytes) -> str:
+    """Return a text in the encoding of Excel's plain CSV, when every byte has a meaning there."""
+    try:
+        text = data.decode("cp1252")
+    except UnicodeDecodeError as fault:
+        raise Refusal("E107") from fault
+    if _NO_TEXT.search(text):
+        raise Refusal("E107")
+    return text
+
+
+def _table(text: str, delimiters: str) -> tuple[str, list[list[str]]]:
+    """Return the delimiter that makes the most even rows, and the records that it makes."""
+    tables = {sign: records for sign in delimiters if (records := _records(text, sign)) is not None}
+    delimiter = max(tables, key=lambda sign: _evenness(tables[sign]), default="")
+    if not delimiter or (len(tables) < len(delimiters) and not _evenness(tables[delimiter])):
+        raise Refusal("E102")
+    return delimiter, tables[delimiter]
 
 
 def _evenness(records: list[list[str]]) -> int:
@@ -52,3 +125,36 @@ def _records(text: str, delimiter: str) -> list[list[str]] | None:
         return list(csv.reader(io.StringIO(text, newline=None), delimiter=delimiter, strict=True))
     except csv.Error:
         return None
+
+
+def _texts(rows: _Rows) -> Iterator[tuple[int, int, str]]:
+    """Yield row, column and text of every cell that may be a number."""
+    for number, cells in rows.items():
+        for place, cell in cells.items():
+            if isinstance(cell, str):
+                yield number, place, cell.strip()
+
+
+def _settle_numbers(rows: _Rows) -> tuple[int, int] | None:
+    """Mark the numbers with a decimal comma; return the first, or None where there is none beyond doubt.
+
+    A comma before three digits may separate thousands, and a table that also holds points leaves everything open.
+    """
+    commas = [(number, place, text) for number, place, text in _texts(rows) if _COMMA.fullmatch(text)]
+    decimal = [(number, place) for number, place, text in commas if not _THOUSANDS.fullmatch(text)]
+    if not decimal:
+        return None
+    points = [(number, place, text) for number, place, text in _texts(rows) if _POINT.fullmatch(text)]
+    if not points:
+        for number, place, text in commas:
+            rows[number][place] = CommaNumber(text)
+        return decimal[0]
+    for number, place, text in points:
+        if _THOUSANDS.fullmatch(text):
+            rows[number][place] = DoubtfulNumber(text)
+    return None
+
+
+def _first_foreign(rows: _Rows) -> tuple[int, int] | None:
+    """Return where the first text stands that not every encoding shows alike."""
+    return next(((number, place) for number, place, text in _texts(rows) if not text.isascii()), None)

@@ -71,7 +71,7 @@ def _kind(data: bytes) -> Kind:
         locked = "EncryptedPackage".encode("utf-16-le") in data
         raise Refusal("E103") if locked else Refusal("E104", found="an old Excel file (.xls)")
     if data.startswith(_UTF_16):
-        raise Refusal("E107")
+        return "csv"
     if b"\0" in data[:4096] or data.startswith(_OTHERS):
         raise Refusal("E101", found="the content is neither a workbook nor a table")
     return "csv"

@@ -29,6 +29,9 @@ _SHORT = {
 }
 """Short headers that can mean nothing else; T, l and t could."""
 
+_LOST = frozenset({"?", "\ufffd"})
+"""What other programs make of Δ and ν where their encoding has no such letter."""
+
 _BRACKETS = re.compile(r"^(.*?)\s*[\[(]([^\])]*)[\])]\s*$", re.DOTALL)
 
 
@@ -82,7 +85,8 @@ def _spellings(columns: dict[str, Column]) -> dict[str, str]:
 def _split(header: str) -> tuple[str, str | None]:
     """Return a header's name and the unit in its brackets, None without brackets."""
     match = _BRACKETS.match(header)
-    return (match[1], match[2].strip()) if match else (header, None)
+    name, unit = (match[1], match[2].strip()) if match else (header, None)
+    return " ".join(word for word in name.split(" ") if word not in _LOST), unit
 
 
 def find_headings(sheet: RawSheet, schema: str, ledger: Ledger) -> Heading | None:

@@ -2,22 +2,45 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from flexlash.findings import Finding, finding
 
-__all__ = ["Ledger"]
+__all__ = ["Ledger", "Slip"]
 
 _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slip:
+    """A cell whose unit has slipped, with what to say of it: `suggestion` is what was probably meant.
+
+    `material` is the plain name of the material whose row it stands in, empty for a cell of Variants.
+    """
+
+    sheet: str
+    schema: str
+    cell: str
+    column: str
+    variant: str
+    material: str
+    row: int
+    shown: str
+    entered: Any
+    times: str
+    beside: str
+    suggestion: str
 
 
 class Ledger:
     """Findings so far, and what is not to be computed because of them.
 
     `rows` are rows of Variants; `materials` and `classes` names whose rows are faulty; `everything` is set
-    when a fault leaves no row computable.
+    when a fault leaves no row computable. `slips` are the cells whose unit has slipped, by sheet, row and column:
+    an error there gets the value that was meant, and no other warning is recorded there.
     """
 
     def __init__(self, file: str) -> None:
@@ -27,13 +50,32 @@ class Ledger:
         self.materials: set[str] = set()
         self.classes: set[str] = set()
         self.everything = False
+        self.slips: dict[tuple[str, int, str], Slip] = {}
 
     def add(self, code: str, *, rows: Iterable[int] = (), **facts: Any) -> None:
         """Record a finding; an error spoils the given rows of Variants."""
-        found = finding(code, file=self.file, **facts)
+        if slip := self._slip_at(facts):
+            if code[0] == "W" and code != "W420":
+                return
+            facts = {**facts, "suggestion": facts.get("suggestion") or slip.suggestion}
+        found = finding(code, **{"file": self.file, **facts})
         self.findings.append(found)
         if found.level == "error":
             self.rows.update(rows)
+
+    def _slip_at(self, facts: Mapping[str, Any]) -> Slip | None:
+        """Return the slip of the cell that a finding is about."""
+        digits = str(facts.get("cell", "")).lstrip(_LETTERS)
+        if not self.slips or not digits:
+            return None
+        return self.slips.get((facts["sheet"], int(digits), facts.get("column", "")))
+
+    def slips_by_owner(self) -> dict[int | str, list[Slip]]:
+        """Return the slips by row of Variants, or by plain name of the material."""
+        found: dict[int | str, list[Slip]] = defaultdict(list)
+        for slip in self.slips.values():
+            found[slip.material if slip.schema == "Materials" else slip.row].append(slip)
+        return found
 
     def name_variants(self, sheet: str, names: Mapping[int, str]) -> None:
         """Put the variant's name into the findings at cells of its row."""

@@ -6,7 +6,18 @@ import datetime
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-__all__ = ["ERROR_WORDS", "ErrorCell", "RawSheet", "RawValue", "Submission", "Unstored", "column_letters"]
+__all__ = [
+    "ERROR_WORDS",
+    "CommaNumber",
+    "DoubtfulNumber",
+    "ErrorCell",
+    "Manner",
+    "RawSheet",
+    "RawValue",
+    "Submission",
+    "Unstored",
+    "column_letters",
+]
 
 ERROR_WORDS = frozenset((
     "#REF!", "#DIV/0!", "#VALUE!", "#NAME?", "#N/A", "#NUM!", "#NULL!", "#SPILL!", "#CALC!", "#FIELD!", "#BLOCKED!",
@@ -27,17 +38,45 @@ class Unstored:
     """A formula whose result was never stored."""
 
 
+class CommaNumber(str):
+    """A text of a table that is a number with a decimal comma, beyond doubt."""
+
+    __slots__ = ()
+
+
+class DoubtfulNumber(str):
+    """A text of a table that is one of two numbers, such as 1.600 in a table that also holds 1,6."""
+
+    __slots__ = ()
+
+
 RawValue: TypeAlias = (
     str | float | int | bool | datetime.date | datetime.time | datetime.timedelta | ErrorCell | Unstored
 )
 
 
 @dataclass(frozen=True, kw_only=True)
+class Manner:
+    """How a delimited text was written: whatever of it was recognised rather than known.
+
+    `comma_number` and `foreign_text` are the addresses, row and column, of the first number with a decimal comma
+    and of the first text that another encoding would show otherwise; None where there is none.
+    """
+
+    delimiter: str
+    encoding: str
+    file: str = ""
+    comma_number: tuple[int, int] | None = None
+    foreign_text: tuple[int, int] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class RawSheet:
     """Cells by row and column number, both from 1 as the user counts; blank cells are absent.
 
-    `numbers_are_texts` tells a CSV sheet, in which a text may be a number. `hidden_rows` hold cells that Excel does
-    not show; `merged` are areas as (first row, first column, last row, last column).
+    `numbers_are_texts` tells a delimited text, in which a text may be a number, `manner` how it was written.
+    `hidden_rows` hold cells that Excel does not show; `merged` are areas as (first row, first column, last row, last
+    column).
     """
 
     name: str
@@ -46,11 +85,12 @@ class RawSheet:
     hidden: bool = False
     hidden_rows: frozenset[int] = frozenset()
     merged: tuple[tuple[int, int, int, int], ...] = ()
+    manner: Manner | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Submission:
-    """A submission as read. `role` is what its document properties say it is."""
+    """A submission as read, and its bytes. `role` is what its document properties say it is."""
 
     name: str
     sha256: str
@@ -59,7 +99,27 @@ class Submission:
     modified: datetime.datetime | None = None
     role: str = ""
     template_version: str = ""
-    delimiter: str = ""
+    data: bytes = field(default=b"", repr=False)
+
+    @property
+    def manner(self) -> Manner | None:
+        """How a delimited submission was written; None for workbooks."""
+        return next((sheet.manner for sheet in self.sheets.values() if self.kind == "csv" and sheet.manner), None)
+
+    @property
+    def delimiter(self) -> str:
+        """What separates the columns of a delimited text; an empty text for others."""
+        return self.manner.delimiter if self.manner else ""
+
+    @property
+    def encoding(self) -> str:
+        """The encoding of a delimited text; an empty text for others."""
+        return self.manner.encoding if self.manner else ""
+
+    @property
+    def decimal_comma(self) -> bool:
+        """Whether numbers of a delimited text were read with a decimal comma."""
+        return bool(self.manner and self.manner.comma_number)
 
 
 def column_letters(number: int) -> str:

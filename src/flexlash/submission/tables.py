@@ -102,7 +102,11 @@ def _check_constants(table: Table, ledger: Ledger, record: dict[str, Any], mater
             if value is None:
                 ledger.materials.add(material)
                 _blame(table, ledger, "E322", row, key)
-    elif young is not None and poisson is not None:
+    elif (
+        young is not None
+        and poisson is not None
+        and not any((table.sheet, row, key) in ledger.slips for key in _CONSTANTS)
+    ):
         implied = young / (2 * (1 + poisson))
         if abs(shear / implied - 1) > 5e-4:  # noqa: PLR2004
             _blame(table, ledger, "W404", row, "shear_modulus_GPa", value=shear, other=implied)
@@ -233,7 +237,8 @@ def settings_of(table: Table, ledger: Ledger) -> Settings:
         if not isinstance(value, Fault):
             values[name] = value
             continue
-        facts: dict[str, Any] = {"suggestion": value.suggestion, "requirement": column.requirement}
+        facts: dict[str, Any] = {"suggestion": value.suggestion, "repair": value.repair}
+        facts |= {"requirement": column.requirement}
         cell = table.address(row, "value")
         ledger.add(value.code, sheet=table.sheet, cell=cell, column=name, name=name, value=value.value, **facts)
     faulty = any((row, "setting") in table.faulty for row in table.frame["row"])
@@ -245,7 +250,7 @@ def settings_of(table: Table, ledger: Ledger) -> Settings:
 def _setting_value(column: Column, raw: RawValue, *, from_text: bool) -> str | float | Fault:
     """Return a setting's value within its bounds or list, or why it has none."""
     if column.is_number:
-        value = as_number(raw, from_text=from_text)
+        value = as_number(raw, column, from_text=from_text)
         return value if isinstance(value, Fault) else _number_fault(column, value) or value
     text = as_text(raw, longest=200)
     if isinstance(text, Fault) or text.casefold() in column.choices:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import polars as pl
 
-from flexlash.columns import Column, columns_of
+from flexlash.columns import DIMENSIONS, Column, columns_of
 from flexlash.submission.cells import Fault, as_number, as_text
 from flexlash.submission.headers import Heading, find_headings, plain
 from flexlash.submission.ledger import Ledger
+from flexlash.submission.number_texts import Measure
 from flexlash.submission.read import RawSheet, RawValue, Unstored, column_letters
+from flexlash.units import find_unit
 
 __all__ = ["Table", "tabulate"]
 
@@ -23,6 +25,7 @@ _MEANT_BESIDE = "setting"
 _JUDGED_LATER = ("Settings", "value")
 """The cell whose meaning depends on the cell beside it."""
 
+_DEVIATIONS = frozenset({"lower_deviation", "upper_deviation"})
 _BLANK = " \t\r\n\u00a0\u200b\ufeff"
 
 
@@ -70,7 +73,7 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
         record: dict[str, Any] = {"row": number}
         for place, value in cells.items():
             if place in read:
-                cell = _Cell(table=table, column=read[place], row=number, value=value)
+                cell = _Cell(table=table, column=read[place], row=number, value=value, beside=cells)
                 record[read[place].key] = _typed(cell, ledger)
             elif place in heading.doubtful:
                 _spoil(ledger, schema, number)
@@ -124,12 +127,13 @@ def _data_rows(
 
 @dataclass(frozen=True, kw_only=True)
 class _Cell:
-    """A raw cell with its row and column."""
+    """A raw cell with its row and column; `beside` are the raw cells of its row."""
 
     table: Table
     column: Column
     row: int
     value: RawValue
+    beside: Mapping[int, RawValue]
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -138,6 +142,23 @@ class _Cell:
         address = table.address(self.row, column.key)
         return {"sheet": table.sheet, "cell": address, "column": column.key, "name": column.name}
 
+    @property
+    def measure(self) -> Measure:
+        """What numbers of the cell stand for, by its header or, for a deviation, by the cells beside it."""
+        if self.column.key not in _DEVIATIONS:
+            return Measure.of(self.column, self.table.heading.factors[self.column.key])
+        places = self.table.heading.places
+        unit, dimension = (
+            str(self.beside.get(places.get(key, 0), "")).strip() for key in ("deviation_unit", "dimension")
+        )
+        if unit == "%":
+            return Measure(quantity="ratio", si=0.01)
+        column = DIMENSIONS.get(dimension.casefold())
+        if column is None or column.quantity == "ratio":
+            return Measure(quantity="", si=1.0)
+        found = find_unit(unit, column.quantity) if unit else column.si_unit
+        return Measure(quantity=column.quantity, si=found.si) if found else Measure(quantity="", si=1.0)
+
 
 def _typed(cell: _Cell, ledger: Ledger) -> str | float | None:
     """Return a cell's typed value; None, with a finding, when it has none."""
@@ -145,26 +166,35 @@ def _typed(cell: _Cell, ledger: Ledger) -> str | float | None:
     if (column.sheet, column.key) == _JUDGED_LATER:
         return _as_shown(value)
     found = (
-        as_number(value, from_text=cell.table.numbers_are_texts)
+        as_number(value, column, from_text=cell.table.numbers_are_texts, measure=cell.measure)
         if column.is_number
         else as_text(value, _longest(column))
     )
     if isinstance(found, float):
         factor = cell.table.heading.factors[column.key]
-        found = found if factor == 1 else found * factor
+        found = found if factor == 1 else _on_bound(column, found * factor)
         found = found if math.isfinite(found) else Fault(code="E212", value=value)
     if isinstance(found, Fault):
         cell.table.faulty.add((cell.row, column.key))
         rows = [cell.row] if cell.table.schema == "Variants" else []
-        facts = {"suggestion": found.suggestion, "requirement": column.requirement, **cell.facts}
+        meant = {"suggestion": found.suggestion, "repair": found.repair}
+        facts = {**meant, "requirement": column.requirement, **cell.facts}
         ledger.add(found.code, value=found.value, rows=rows, **facts)
         return None
     if isinstance(found, float):
         return found
-    meant = _choice(column, found)
-    if meant != found or (isinstance(value, str) and found != value):
-        ledger.add("I504", value=value, suggestion=meant, **cell.facts)
-    return meant or None
+    entry = _choice(column, found)
+    if entry != found or (isinstance(value, str) and found != value):
+        ledger.add("I504", value=value, suggestion=entry, repair=entry, **cell.facts)
+    return entry or None
+
+
+def _on_bound(column: Column, value: float) -> float:
+    """Return the bound of a column that a converted value misses by its last digits only, else the value."""
+    for bound in (column.minimum, column.maximum):
+        if bound is not None and math.isclose(value, bound, rel_tol=1e-12):
+            return float(bound)
+    return value
 
 
 def _longest(column: Column) -> int:

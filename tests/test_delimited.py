@@ -1,0 +1,207 @@
+"""Delimited texts of all countries: the right cells at the right addresses, and what was recognised is told."""
+
+from __future__ import annotations
+
+import pytest
+
+from flexlash.submission.delimited import WINDOWS, read_table
+from flexlash.submission.raw import CommaNumber, DoubtfulNumber, ErrorCell
+from flexlash.submission.reading.refusal import Refusal
+
+
+def _read(content):
+    """Return a text, or bytes, as a sheet."""
+    return read_table(content if isinstance(content, bytes) else content.encode(), "Variants", "a.csv")
+
+
+def _refused(content):
+    with pytest.raises(Refusal) as caught:
+        _read(content)
+    return caught.value.code
+
+
+TABLES = {
+    "plain": ("a,b\n1,2\n", {1: {1: "a", 2: "b"}, 2: {1: "1", 2: "2"}}),
+    "carriage returns": ("a,b\r\n1,2\r\n", {1: {1: "a", 2: "b"}, 2: {1: "1", 2: "2"}}),
+    "byte order mark": ("\ufeffa,b\n", {1: {1: "a", 2: "b"}}),
+    "semicolon": ("a;b\n1,5;2\n", {1: {1: "a", 2: "b"}, 2: {1: "1,5", 2: "2"}}),
+    "tab": ("a\tb\n1,5\t2\n", {1: {1: "a", 2: "b"}, 2: {1: "1,5", 2: "2"}}),
+    "blank lines": ("\n\na,b\n\n1,2\n\n", {3: {1: "a", 2: "b"}, 5: {1: "1", 2: "2"}}),
+    "blank cells": ("a,,c\n,,\n, ,3\n", {1: {1: "a", 3: "c"}, 3: {3: "3"}}),
+    "quoted line break": ('a,b\n"x\ny",2\nz,3\n', {1: {1: "a", 2: "b"}, 2: {1: "x\ny", 2: "2"}, 3: {1: "z", 2: "3"}}),
+    "quoted delimiter": ('a,b\n"x,y",2\n', {1: {1: "a", 2: "b"}, 2: {1: "x,y", 2: "2"}}),
+    "quoted quote": ('a,b\n"5"" pipe",2\n', {1: {1: "a", 2: "b"}, 2: {1: '5" pipe', 2: "2"}}),
+    "ragged": ("a,b,c\n1\n1,2,3,4\n", {1: {1: "a", 2: "b", 3: "c"}, 2: {1: "1"}, 3: {1: "1", 2: "2", 3: "3", 4: "4"}}),
+    "no last line end": ("a,b\n1,2", {1: {1: "a", 2: "b"}, 2: {1: "1", 2: "2"}}),
+    "one column": ("a\n1\n", {1: {1: "a"}, 2: {1: "1"}}),
+    "spaces kept": ("a,b\n x ,2\n", {1: {1: "a", 2: "b"}, 2: {1: " x ", 2: "2"}}),
+    "only white space": (" \n\t\n", {}),
+}
+
+
+@pytest.mark.parametrize("what", TABLES)
+def test_csv_rows_are_numbered_as_excel_shows_them(what):
+    """A CSV file's cells have the addresses that Excel would show, with the header in row 1 or where it stands."""
+    content, rows = TABLES[what]
+    assert _read(content).rows == rows
+
+
+@pytest.mark.parametrize(
+    ("content", "delimiter"),
+    [
+        ("a,b\n", ","),
+        ("a;b\n", ";"),
+        ("a\tb\n", "\t"),
+        ("a\n1;2;3\n", ";"),
+        ("a;b;c\n1,5;2,5;3,5\n1,6;2,6;3,6\n", ";"),
+        ("a\tb\n1,5;2\t3\n", "\t"),
+        ("a,b\nx;y;z,1\n", ","),
+        ('a,b\n"1;2;3","4;5;6"\n', ","),
+        ("a|b\n1,5|2\n", "|"),
+        ("a\n1\n", ","),
+        ("", ","),
+    ],
+)
+def test_the_delimiter_makes_even_rows(content, delimiter):
+    """Of comma, semicolon, tab and bar that is the delimiter which makes the most rows of one width."""
+    assert _read(content).manner.delimiter == delimiter
+
+
+DECIMAL_COMMAS = """a;b;c;d;e;f
+1,1;1,2;1,3;1,4;;
+2,1;2,2;2,3;2,4;x;
+3,1;3,2;3,3;3,4;;y
+"""
+
+
+def test_decimal_commas_do_not_pass_for_delimiters():
+    """A table with semicolons and decimal commas has semicolons, also where the last cells are blank."""
+    assert _read(DECIMAL_COMMAS).manner.delimiter == ";"
+
+
+@pytest.mark.parametrize("title", ["Study of spring", "Study, spring, 2026"])
+def test_a_title_above_does_not_tell_the_delimiter(title):
+    """A line of title above the header row does not hide that the table has semicolons."""
+    assert _read(f"{title}\nvariant;material\nA;20Cr2Ni4\n").rows[3] == {1: "A", 2: "20Cr2Ni4"}
+
+
+def test_lines_of_an_old_mac():
+    """A table saved as CSV (Macintosh) is read."""
+    assert _read("a,b\r1,2\r").rows == {1: {1: "a", 2: "b"}, 2: {1: "1", 2: "2"}}
+
+
+@pytest.mark.parametrize("content", ['a,b\n"x,2\n', 'a,b\n"x"y,2\n', f"a,b\n{'x' * 200_000},2\n"])
+def test_a_broken_table_is_damage(content):
+    """Quotes that do not match, and cells without end, make a table damaged."""
+    assert _refused(content) == "E102"
+
+
+def test_an_open_quote_in_a_later_column_is_damage():
+    """A quote that does not close makes a table damaged in whichever column it stands."""
+    assert _refused('variant,material,notes\nA,20Cr2Ni4,"open\nB,20Cr2Ni4,x\n') == "E102"
+
+
+@pytest.mark.parametrize("error", ["#REF!", "#N/A"])
+def test_error_words_of_a_table_are_errors(error):
+    """An Excel error that was saved as CSV is an error there too."""
+    assert _read(f"variant,material\n{error},20Cr2Ni4\n").rows[2][1] == ErrorCell(error)
+
+
+def test_a_table_beside_is_named_as_asked():
+    """A CSV file given beside a submission becomes the sheet that it stands for."""
+    sheet = read_table(b"a;b\n", "Tolerances", "fine.csv")
+    assert (sheet.name, sheet.manner.file) == ("Tolerances", "fine.csv")
+
+
+@pytest.mark.parametrize("line", ["sep=;", "SEP=;", '"sep=;"'])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+def test_a_line_for_excel_tells_the_delimiter_and_is_no_row(line, end, mark):
+    """The line sep=; wins over what the rows look like, and Excel counts the rows from below it."""
+    sheet = _read(f"{mark}{line}{end}a,b;c,d{end}1,2;3,4{end}")
+    assert sheet.manner.delimiter == ";"
+    assert sheet.rows[1] == {1: "a,b", 2: "c,d"}
+
+
+ENCODINGS = {
+    "utf-8": "UTF-8",
+    "utf-8-sig": "UTF-8",
+    "utf-16": "UTF-16",
+    "cp1252": WINDOWS,
+    "latin-1": WINDOWS,
+}
+
+
+@pytest.mark.parametrize("encoding", ENCODINGS)
+def test_encodings_of_excel_are_read_and_told(encoding):
+    """A table in UTF-8, in UTF-16 with its mark or in Windows-1252 is read letter by letter and says which it was."""
+    sheet = _read("Länge [µm]\tb\nMüller\t5\n".encode(encoding))
+    assert sheet.rows == {1: {1: "Länge [µm]", 2: "b"}, 2: {1: "Müller", 2: "5"}}
+    assert sheet.manner.encoding == ENCODINGS[encoding]
+
+
+@pytest.mark.parametrize("order", ["utf-16-le", "utf-16-be"])
+def test_both_byte_orders(order):
+    """UTF-16 is read in the order of bytes that its mark tells."""
+    assert _read("\ufeffa\tΔ\n".encode(order)).rows == {1: {1: "a", 2: "Δ"}}
+
+
+def test_a_text_that_other_encodings_would_show_otherwise_has_an_address():
+    """In Windows-1252 the first cell beyond ASCII is named, in Unicode none."""
+    table = "a,b\nx,Müller\ny,Möller\n"
+    assert _read(table.encode("cp1252")).manner.foreign_text == (2, 2)
+    assert _read(table).manner.foreign_text is None
+
+
+UNREADABLE = {
+    "no letter of Windows-1252": ("E107", b"a,b\nx," + b"\x81\x8d\n"),
+    "control characters and no Unicode": ("E107", b"a,b\n\x01\xe4,2\n"),
+    "Unicode cut off": ("E107", "a,b\n".encode("utf-16")[:-1]),
+    "UTF-8 with its mark and a wrong byte": ("E107", b"\xef\xbb\xbfa,b\n\xe4,2\n"),
+    "UTF-32": ("E102", "a,b\n".encode("utf-32")),
+    "a zero far down": ("E102", b"a,b\n" * 2000 + b"\0,2\n"),
+}
+
+
+@pytest.mark.parametrize("what", UNREADABLE)
+def test_what_is_no_text_is_refused(what):
+    """Bytes that have no meaning as a table's text are refused, never shown as other letters."""
+    code, content = UNREADABLE[what]
+    assert _refused(content) == code
+
+
+NUMBERS = {
+    "one comma is beyond doubt": ("a;b\n1,6;800\n", [(2, 1)], []),
+    "thousandths beside it": ("a;b\n1,6;1,234\n", [(2, 1), (2, 2)], []),
+    "signs and powers": ("a;b\n-0,02;1,5e3\n", [(2, 1), (2, 2)], []),
+    "below one": ("a;b\n0,125;,5\n", [(2, 1), (2, 2)], []),
+    "more digits before": ("a;b\n1600,125;2\n", [(2, 1)], []),
+    "tab": ("a\tb\n1,6\t800\n", [(2, 1)], []),
+    "bar": ("a|b\n1,6|800\n", [(2, 1)], []),
+    "spaces around": ("a;b\n 1,6 ;800\n", [(2, 1)], []),
+    "texts with commas are no numbers": ("a;b\n1,6 mm;x,5\n", [], []),
+    "only thousands or thousandths": ("a;b\n1,234;800\n", [], []),
+    "a point elsewhere": ("a;b\n1,6;2.5\n", [], []),
+    "a point that may be thousands": ("a;b\n1,6;1.600\n", [], [(2, 2)]),
+    "a point before thousandths": ("a;b\n1,6;0.600\n", [], []),
+    "points alone": ("a;b\n1.600;2.5\n", [], []),
+    "comma-separated": ('a,b\n"1,6",800\n', [], []),
+}
+
+
+@pytest.mark.parametrize("what", NUMBERS)
+def test_numbers_with_a_decimal_comma(what):
+    """Numbers have a decimal comma where one can be nothing else and no point contradicts; doubt marks its numbers."""
+    content, commas, doubtful = NUMBERS[what]
+    sheet = _read(content)
+    found = {CommaNumber: [], DoubtfulNumber: []}
+    for number, cells in sheet.rows.items():
+        for place, cell in cells.items():
+            found.get(type(cell), []).append((number, place))
+    assert (found[CommaNumber], found[DoubtfulNumber]) == (commas, doubtful)
+    assert sheet.manner.comma_number == (commas[0] if commas else None)
+
+
+def test_the_first_number_named_is_beyond_doubt():
+    """The example that is told of a table is no number that might mean thousands."""
+    assert _read("a;b\n1,234;1,6\n").manner.comma_number == (2, 2)
