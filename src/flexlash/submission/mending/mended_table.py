@@ -1,0 +1,43 @@
+"""A delimited text and its repairs → the same table with these cells replaced."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+
+from flexlash.submission.mending.repair import Repair
+from flexlash.submission.raw import ErrorCell, RawSheet, RawValue, column_letters
+
+__all__ = ["mended_table"]
+
+
+def mended_table(sheet: RawSheet, repairs: Sequence[Repair]) -> bytes:
+    """Return a table as text that every Excel opens (UTF-8 with its mark), the repairs made.
+
+    Rows, columns, delimiter and decimal sign are those of the submission.
+    """
+    comma = bool(sheet.manner and sheet.manner.comma_number)
+    now = {repair.cell: _written(repair.value, comma=comma) for repair in repairs}
+    width = max((max(cells) for cells in sheet.rows.values()), default=0)
+    letters = [column_letters(place) for place in range(1, width + 1)]
+    buffer = io.StringIO(newline="")
+    writer = csv.writer(buffer, delimiter=sheet.manner.delimiter if sheet.manner else ",", lineterminator="\r\n")
+    for number in range(1, max(sheet.rows, default=0) + 1):
+        cells = sheet.rows.get(number, {})
+        own = [now.get(f"{letter}{number}", _text(cells.get(place))) for place, letter in enumerate(letters, start=1)]
+        writer.writerow(own)
+    return buffer.getvalue().encode("utf-8-sig")
+
+
+def _written(value: str | float, *, comma: bool) -> str:
+    if isinstance(value, str):
+        return value
+    return repr(value).replace(".", ",") if comma else repr(value)
+
+
+def _text(value: RawValue | None) -> str:
+    """Return a cell as it stood."""
+    if value is None:
+        return ""
+    return value.text if isinstance(value, ErrorCell) else str(value)
