@@ -294,28 +294,6 @@ def test_a_faulty_tolerance_row_is_named(change, told):
     assert not ledger.everything
 
 
-@pytest.mark.parametrize(
-    ("entered", "meant"),
-    [
-        ("it7", "IT7"),
-        ("IT 7", "IT7"),
-        ("7", "IT7"),
-        ("h 7", "h7"),
-        ("Js7", "JS7"),
-        ("2768m", "2768-m"),
-        ("2768-M", "2768-m"),
-        ("ISO 2768-m", "2768-m"),
-        ("IT13", ""),
-        ("fine", ""),
-    ],
-)
-def test_the_grade_that_was_meant(entered, meant):
-    """A grade with a slip of case, space or hyphen gets the right one as a suggestion; h and H are not exchanged."""
-    _, ledger = _classes(GRADE | {"grade": entered})
-    (found,) = ledger.findings
-    assert (found.code, found.suggestion) == ("E210", meant)
-
-
 def test_messages_of_tolerances():
     """Messages name the dimension, what it takes, and the deviation that collides."""
     _, ledger = _classes(

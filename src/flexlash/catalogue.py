@@ -172,6 +172,14 @@ CATALOGUE = _rules(
         "Files are read by a separate process with little memory and time, so that a faulty file stops only itself.",
     ),
     (
+        "E119",
+        "misspelt sheet",
+        "{place}: this sheet has the headers of {suggestion}, but not its name, and was not read.",
+        "Rename the sheet to {suggestion}; delete it if it is not meant to be used.",
+        "Without the sheet its built-in table would be used and your own values left out without a word, so nothing is "
+        "computed.",
+    ),
+    (
         "E201",
         "required cell empty",
         "{place} {name} is empty: {requirement} is required.",

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 from flexlash.catalogue import CATALOGUE, Level
 
-__all__ = ["CATALOGUE", "Finding", "finding", "shown"]
+__all__ = ["CATALOGUE", "Finding", "cell_ranges", "finding", "shown"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,3 +81,27 @@ def shown(value: Any, longest: int = 60) -> str:
     text = f"{value:.10g}" if isinstance(value, float) else str(value)
     plain = "".join(character if character.isprintable() else "·" for character in text)
     return plain if len(plain) <= longest else plain[: longest - 1] + "…"
+
+
+def cell_ranges(cells: Sequence[str], most: int = 20) -> str:
+    """Return cell addresses with runs in a column drawn together, as many of them as a line may hold.
+
+    >>> cell_ranges(["D6", "D7", "D8", "D14", "E3"])
+    'D6:D8, D14, E3'
+    """
+    by_column: dict[str, list[int]] = defaultdict(list)
+    for cell in cells:
+        letters = cell.rstrip("0123456789")
+        by_column[letters].append(int(cell[len(letters) :] or 0))
+    found = []
+    for letters, numbers in by_column.items():
+        start = last = None
+        for number in [*sorted(set(numbers)), math.inf]:
+            if last is not None and number == last + 1:
+                last = number
+                continue
+            if start is not None:
+                found.append(f"{letters}{start}" if start == last else f"{letters}{start}:{letters}{last}")
+            start = last = number
+    more = f" and {len(found) - most} more" if len(found) > most else ""
+    return ", ".join(found[:most]) + more

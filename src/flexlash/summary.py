@@ -8,11 +8,10 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from flexlash.columns import DIMENSIONS
-from flexlash.findings import CATALOGUE, Finding, shown
+from flexlash.findings import CATALOGUE, Finding, cell_ranges, shown
 from flexlash.outcome import Outcome
 
 __all__ = [
-    "cell_ranges",
     "dimension_words",
     "finding_lines",
     "points_words",
@@ -27,29 +26,6 @@ _SHOWN_MESSAGES = 3
 _NAME = 30
 """Most characters of a name in a sentence."""
 _LEVELS = ("error", "warning", "info")
-
-
-def cell_ranges(cells: Sequence[str]) -> str:
-    """Return cell addresses with runs in a column drawn together.
-
-    >>> cell_ranges(["D6", "D7", "D8", "D14", "E3"])
-    'D6:D8, D14, E3'
-    """
-    by_column: dict[str, list[int]] = defaultdict(list)
-    for cell in cells:
-        letters = cell.rstrip("0123456789")
-        by_column[letters].append(int(cell[len(letters) :] or 0))
-    found = []
-    for letters, numbers in by_column.items():
-        start = last = None
-        for number in [*sorted(set(numbers)), math.inf]:
-            if last is not None and number == last + 1:
-                last = number
-                continue
-            if start is not None:
-                found.append(f"{letters}{start}" if start == last else f"{letters}{start}:{letters}{last}")
-            start = last = number
-    return ", ".join(found)
 
 
 def dimension_words(name: str) -> str:

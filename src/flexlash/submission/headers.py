@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import difflib
 import re
-import unicodedata
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,9 +10,10 @@ from flexlash.columns import Column, columns_of
 from flexlash.findings import shown
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.read import ErrorCell, RawSheet, RawValue, Unstored, column_letters
+from flexlash.submission.spellings import closest, misspelt, plain
 from flexlash.units import Unit, find_unit
 
-__all__ = ["STATUS_HEADER", "Heading", "closest", "find_headings", "plain"]
+__all__ = ["STATUS_HEADER", "Heading", "closest", "count_headings", "find_headings", "plain"]
 
 STATUS_HEADER = "Row status"
 """Header of the template's own formula column, which is never data."""
@@ -31,6 +30,9 @@ _SHORT = {
 
 _LOST = frozenset({"?", "\ufffd"})
 """What other programs make of Δ and ν where their encoding has no such letter."""
+
+_RESEMBLING = 0.85
+"""Likeness from which on an unknown header is taken for a misspelt one."""
 
 _BRACKETS = re.compile(r"^(.*?)\s*[\[(]([^\])]*)[\])]\s*$", re.DOTALL)
 
@@ -49,19 +51,6 @@ class Heading:
     extra: dict[int, str] = field(default_factory=dict)
     doubtful: dict[int, str] = field(default_factory=dict)
     ignored: set[int] = field(default_factory=set)
-
-
-def plain(text: str) -> str:
-    """Return a text without case, spaces, underscores and hyphens, in one Unicode form."""
-    folded = unicodedata.normalize("NFKC", text).casefold().replace("’", "'")
-    return "".join(character for character in folded if not character.isspace() and character not in "_-\u200b")
-
-
-def closest(text: str, names: list[str], cutoff: float = 0.6) -> str:
-    """Return the name that a text most resembles, or an empty text."""
-    by_plain = {plain(name): name for name in names}
-    near = difflib.get_close_matches(plain(text), list(by_plain), n=1, cutoff=cutoff)
-    return by_plain[near[0]] if near else ""
 
 
 def _as_header(cell: RawValue) -> str:
@@ -94,6 +83,11 @@ def find_headings(sheet: RawSheet, schema: str, ledger: Ledger) -> Heading | Non
     return _Recogniser(sheet, schema, ledger).recognise()
 
 
+def count_headings(sheet: RawSheet, schema: str) -> int:
+    """Return how many headers of a schema stand in one of a sheet's first rows."""
+    return max(_Recogniser(sheet, schema, Ledger("")).known_by_row().values(), default=0)
+
+
 class _Recogniser:
     """Recognises the header row of one sheet."""
 
@@ -105,22 +99,26 @@ class _Recogniser:
 
     def recognise(self) -> Heading | None:
         """Return the headings of the row, within the first fifteen, that has most of them."""
-        rows = {number: cells for number, cells in self.sheet.rows.items() if number <= _LAST_HEADER_ROW}
-        known = {number: sum(map(self._is_known, cells.values())) for number, cells in rows.items()}
+        known = self.known_by_row()
         best = max(known, key=lambda number: known[number], default=0)
         if not known or known[best] < min(2, len(self.columns)):
             self.ledger.add("E109", sheet=self.sheet.name, cell="A1")
             self.ledger.everything = True
             return None
         heading = Heading(row=best)
-        for place, cell in rows[best].items():
+        for place, cell in self.sheet.rows[best].items():
             header = _as_header(cell)
             if plain(header) == plain(STATUS_HEADER):
                 heading.ignored.add(place)
             elif header.strip():
                 self._place(heading, place, header)
-        self._require(heading, max(rows[best]) + 1)
+        self._require(heading, max(self.sheet.rows[best]) + 1)
         return heading
+
+    def known_by_row(self) -> dict[int, int]:
+        """Return how many known headers each of the first rows holds."""
+        rows = {number: cells for number, cells in self.sheet.rows.items() if number <= _LAST_HEADER_ROW}
+        return {number: sum(map(self._is_known, cells.values())) for number, cells in rows.items()}
 
     def _is_known(self, cell: RawValue) -> bool:
         return isinstance(cell, str) and plain(_split(cell)[0]) in self.spellings
@@ -140,7 +138,7 @@ class _Recogniser:
         """Recognise one header cell, or say what is wrong with it."""
         name, unit_text = _split(header)
         key = self.spellings.get(plain(name))
-        meant = key or _resembled(name, self.spellings)
+        meant = key or self.spellings.get(closest(name, list(self.spellings), _RESEMBLING))
         place_facts: dict[str, Any] = {
             "sheet": self.sheet.name,
             "cell": f"{column_letters(place)}{heading.row}",
@@ -160,7 +158,9 @@ class _Recogniser:
         unit = _unit(column, unit_text, by_key=plain(name) == plain(meant))
         if key is None:
             heading.doubtful[place] = meant
-            self.ledger.add("E112", suggestion=column.label, **facts)
+            label = f"{column.name} [{unit_text}]" if unit and unit != column.si_unit else column.label
+            sure = misspelt(name, self.spellings) == meant and (unit is not None or column.unit in {"", "-"})
+            self.ledger.add("E112", suggestion=label, repair=label if sure else None, **facts)
         elif key in heading.places:
             heading.doubtful[place] = key
             self.ledger.add("E114", other=column_letters(heading.places[key]), **facts)
@@ -188,9 +188,3 @@ def _unit(column: Column, text: str | None, *, by_key: bool) -> Unit | None:
     if text is None:
         return column.si_unit if by_key else None
     return find_unit(text, column.quantity)
-
-
-def _resembled(name: str, spellings: dict[str, str]) -> str | None:
-    """Return the key that an unknown header resembles closely, or None."""
-    near = difflib.get_close_matches(plain(name), list(spellings), n=1, cutoff=0.85)
-    return spellings[near[0]] if near else None

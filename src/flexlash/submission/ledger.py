@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 from flexlash.findings import Finding, finding
 
 __all__ = ["Ledger", "Slip"]
+
+_UNKNOWN = frozenset({"E209", "E210", "E211", "E307", "E309"})
+"""Codes of names that are unknown however they are spelt."""
 
 _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
@@ -38,9 +41,10 @@ class Slip:
 class Ledger:
     """Findings so far, and what is not to be computed because of them.
 
-    `rows` are rows of Variants; `materials` and `classes` names whose rows are faulty; `everything` is set
-    when a fault leaves no row computable. `slips` are the cells whose unit has slipped, by sheet, row and column:
-    an error there gets the value that was meant, and no other warning is recorded there.
+    `rows` are rows of Variants; `materials` and `classes` names whose rows are faulty, `sources` the sheets and rows
+    in which they are; `everything` is set when a fault leaves no row computable. `slips` are the cells whose unit has
+    slipped, by sheet, row and column: an error there gets the value that was meant, and no other warning is recorded
+    there.
     """
 
     def __init__(self, file: str) -> None:
@@ -49,6 +53,7 @@ class Ledger:
         self.rows: set[int] = set()
         self.materials: set[str] = set()
         self.classes: set[str] = set()
+        self.sources: dict[tuple[str, str], list[tuple[str, int]]] = defaultdict(list)
         self.everything = False
         self.slips: dict[tuple[str, int, str], Slip] = {}
 
@@ -63,10 +68,37 @@ class Ledger:
         if found.level == "error":
             self.rows.update(rows)
 
+    def spoil(self, kind: Literal["material", "class"], name: str, sheet: str, row: int) -> None:
+        """Record a row that makes a material or a class, by its plain name, unusable."""
+        (self.materials if kind == "material" else self.classes).add(name)
+        self.sources[kind, name].append((sheet, row))
+
+    def settle(self) -> None:
+        """Leave one finding per cell and cause: a spelling is not repaired twice, nor where the name is unknown."""
+        unknown = {(found.sheet, found.cell) for found in self.findings if found.code in _UNKNOWN}
+        first: dict[tuple[str, str], str] = {}
+        last: dict[tuple[str, str], int] = {}
+        for place, found in enumerate(self.findings):
+            if found.code == "I504":
+                first.setdefault((found.sheet, found.cell), found.value)
+                last[found.sheet, found.cell] = place
+        self.findings = [
+            self._respelt(found, first[found.sheet, found.cell]) if found.code == "I504" else found
+            for place, found in enumerate(self.findings)
+            if found.code != "I504"
+            or (place == last[found.sheet, found.cell] and (found.sheet, found.cell) not in unknown)
+        ]
+
+    @staticmethod
+    def _respelt(found: Finding, value: str) -> Finding:
+        """Return a repaired spelling with the value as it was entered."""
+        message = found.message.replace(f'"{found.value}"', f'"{value}"', 1)
+        return replace(found, value=value, message=message)
+
     def _slip_at(self, facts: Mapping[str, Any]) -> Slip | None:
         """Return the slip of the cell that a finding is about."""
         digits = str(facts.get("cell", "")).lstrip(_LETTERS)
-        if not self.slips or not digits:
+        if not self.slips or not digits.isdecimal():
             return None
         return self.slips.get((facts["sheet"], int(digits), facts.get("column", "")))
 

@@ -9,9 +9,10 @@ from flexlash import tables
 from flexlash.column import Column
 from flexlash.columns import DIMENSIONS, ENTRY_SHEETS, MATERIALS, SETTINGS, TOLERANCES
 from flexlash.submission.cells import Fault, as_number, as_text
-from flexlash.submission.headers import closest, plain
+from flexlash.submission.grade_texts import meant_grade
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.read import RawSheet, RawValue
+from flexlash.submission.spellings import closest, misspelt, plain, spelt_alike
 from flexlash.submission.tabulate import Table
 from flexlash.tolerance.grades import is_grade
 from flexlash.units import find_unit
@@ -85,7 +86,7 @@ def materials_of(table: Table, ledger: Ledger) -> dict[str, Material]:
             continue
         key = plain(name)
         if row in doubled or any((row, column) in table.faulty for column in _MATERIAL):
-            ledger.materials.add(key)
+            ledger.spoil("material", key, table.sheet, row)
         found.setdefault(key, _material(record, name))
         _check_constants(table, ledger, record, key)
     return found
@@ -100,7 +101,7 @@ def _check_constants(table: Table, ledger: Ledger, record: dict[str, Any], mater
     if shear is None:
         for key, value in (("youngs_modulus_GPa", young), ("poisson_ratio", poisson)):
             if value is None:
-                ledger.materials.add(material)
+                ledger.spoil("material", material, table.sheet, row)
                 _blame(table, ledger, "E322", row, key)
     elif (
         young is not None
@@ -118,9 +119,8 @@ def _tell_doubled(table: Table, ledger: Ledger, keys: tuple[str, ...], code: str
     for row, *names in table.frame.select("row", *keys).iter_rows():
         if all(name is not None for name in names):
             groups[tuple(plain(name) for name in names)].append(row)
-    doubled = {row: rows for rows in groups.values() if len(rows) > 1 for row in rows}
-    for row, rows in doubled.items():
-        others = ", ".join(table.address(other, keys[-1]) for other in rows if other != row)
+    doubled = {row: others for rows in groups.values() for row, others in table.partners(rows, keys[-1])}
+    for row, others in doubled.items():
         _blame(table, ledger, code, row, keys[-1], value=table.entered(row, keys[-1]), other=others)
     return set(doubled)
 
@@ -179,7 +179,7 @@ def tolerance_classes_of(table: Table, ledger: Ledger) -> dict[str, list[Toleran
         if sound and _check_tolerance(table, ledger, record):
             classes[key].append(_tolerance_row(record))
         else:
-            ledger.classes.add(key)
+            ledger.spoil("class", key, table.sheet, row)
     return dict(classes)
 
 
@@ -196,7 +196,9 @@ def _check_tolerance(table: Table, ledger: Ledger, record: dict[str, Any]) -> bo
         if lower is not None or upper is not None:
             _blame(table, ledger, "E316", row, "grade", value=grade)
         elif not is_grade(grade):
-            _blame(table, ledger, "E210", row, "grade", value=grade, suggestion=_meant_grade(grade))
+            meant = meant_grade(grade)
+            repair = None if grade.isdecimal() else meant or None
+            _blame(table, ledger, "E210", row, "grade", value=grade, suggestion=meant, repair=repair)
         elif column.quantity != "length" or dimension in _UNGRADED:
             _blame(table, ledger, "E320", row, "grade", value=grade, other=dimension)
     else:
@@ -209,15 +211,6 @@ def _check_tolerance(table: Table, ledger: Ledger, record: dict[str, Any]) -> bo
     if sound and lower and lower == upper:
         _blame(table, ledger, "W410", row, "upper_deviation", value=upper)
     return sound
-
-
-def _meant_grade(text: str) -> str:
-    """Return the grade that a text probably means, or an empty text."""
-    kept = text.replace(" ", "").replace("ISO", "")
-    for candidate in (kept, kept.upper(), kept.lower(), kept.replace("2768", "2768-"), f"IT{kept}"):
-        if is_grade(candidate):
-            return candidate
-    return ""
 
 
 def settings_of(table: Table, ledger: Ledger) -> Settings:
@@ -255,7 +248,8 @@ def _setting_value(column: Column, raw: RawValue, *, from_text: bool) -> str | f
     text = as_text(raw, longest=200)
     if isinstance(text, Fault) or text.casefold() in column.choices:
         return text if isinstance(text, Fault) else text.casefold()
-    return Fault(code="E209", value=text, suggestion=closest(text, list(column.choices)))
+    repair = misspelt(text, spelt_alike(column.choices))
+    return Fault(code="E209", value=text, suggestion=closest(text, list(column.choices)), repair=repair)
 
 
 def _number_fault(column: Column, value: float) -> Fault | None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import polars as pl
 
 from flexlash.columns import DIMENSIONS, Column, columns_of
+from flexlash.findings import cell_ranges
 from flexlash.submission.cells import Fault, as_number, as_text
 from flexlash.submission.headers import Heading, find_headings, plain
 from flexlash.submission.ledger import Ledger
@@ -26,6 +27,9 @@ _JUDGED_LATER = ("Settings", "value")
 """The cell whose meaning depends on the cell beside it."""
 
 _DEVIATIONS = frozenset({"lower_deviation", "upper_deviation"})
+_MANY = 100
+"""Rows of one name from which on each is told the range of all instead of its partners."""
+
 _BLANK = " \t\r\n\u00a0\u200b\ufeff"
 
 
@@ -52,6 +56,13 @@ class Table:
     def address(self, row: int, key: str) -> str:
         """Return a cell's address; a column that the sheet lacks stands at the row's first cell."""
         return f"{column_letters(self.heading.places.get(key, 1))}{row}"
+
+    def partners(self, rows: Sequence[int], key: str) -> Iterator[tuple[int, str]]:
+        """Yield rows that hold the same entry, each with the addresses of the others; of many rows, those of all."""
+        every = cell_ranges([self.address(row, key) for row in rows])
+        for row in rows if len(rows) > 1 else ():
+            few = len(rows) <= _MANY
+            yield row, cell_ranges([self.address(other, key) for other in rows if other != row]) if few else every
 
 
 def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
