@@ -7,7 +7,10 @@ from flexlash.assessment import assess
 from flexlash.pipeline import check, run
 
 BORE = {"mean_radius_mm": "", "bore_diameter_mm": 128}
-ALONE = {"E314", "E315", "W402", "W403", "W405", "W407", "W411", "W412", "W415", "I506"}
+PLAUSIBILITY = {f"W{number}" for number in range(418, 425)}
+"""What `test_plausibility` looks at; odd rows that serve other rules have such findings as well."""
+
+ALONE = PLAUSIBILITY | {"E314", "E315", "W402", "W403", "W405", "W407", "W411", "W412", "W415", "I506"}
 
 
 @pytest.fixture
@@ -32,9 +35,9 @@ def judge(table, tmp_path, sound):
 
 
 def _found(outcome):
-    """Return code and column of the findings that only assessment and the wall's proportion can give."""
+    """Return code and column of the findings that only assessment and the wall's proportion can give, doubts aside."""
     assert {found.code for found in outcome.findings} <= ALONE
-    return [(found.code, found.column) for found in outcome.findings]
+    return [(found.code, found.column) for found in outcome.findings if found.code not in PLAUSIBILITY]
 
 
 def test_a_sound_row_has_nothing_to_tell(judge):
@@ -45,10 +48,11 @@ def test_a_sound_row_has_nothing_to_tell(judge):
     assert outcome.exit_code == 0
 
 
-@pytest.mark.parametrize(("torque", "told"), [(10029, False), (10030.5, True)])
-def test_beyond_yield(judge, torque, told):
-    """A von Mises stress above the yield strength is a warning: 86.145 MPa at 800 N·m reach 1080 MPa at 10029.6."""
-    outcome = judge({"torque_Nm": torque})
+@pytest.mark.parametrize(("strength", "told"), [(86.15, False), (86.14, True)])
+def test_beyond_yield(judge, strength, told):
+    """A von Mises stress above the yield strength is a warning: 800 N·m give 86.145 MPa."""
+    materials = f"material,youngs_modulus_GPa,poisson_ratio,yield_MPa\n20Cr2Ni4,211,0.3,{strength}\n"
+    outcome = judge({}, materials=materials)
     assert _found(outcome) == [("W402", "torque_Nm")][:told]
     assert outcome.results["status"].to_list() == ["warning" if told else "ok"]
     assert outcome.results["backlash_arcmin"][0] > 0
@@ -58,7 +62,7 @@ def test_beyond_yield(judge, torque, told):
         assert found.place == "Variants!D2"
         assert found.variant == "V1"
         assert (
-            found.message == "Variants!D2: von Mises stress 1080 MPa in the disk exceeds the yield strength 1080 MPa."
+            found.message == "Variants!D2: von Mises stress 86.15 MPa in the disk exceeds the yield strength 86.14 MPa."
         )
 
 
@@ -140,13 +144,14 @@ def test_resonance_beyond_the_catalogue(judge):
 def test_without_a_yield_strength(judge):
     """Of a material without yield strength nothing is said, whatever the stress."""
     materials = "material,youngs_modulus_GPa,poisson_ratio\n20Cr2Ni4,211,0.3\n"
-    assert judge({"torque_Nm": 20000}, materials=materials).findings == []
+    assert _found(judge({"torque_Nm": 20000}, materials=materials)) == []
 
 
 @pytest.mark.parametrize(
     ("change", "told", "status"),
     [
-        ({"wall_thickness_mm": 8}, [], "ok"),
+        ({"wall_thickness_mm": 3.2}, [], "ok"),
+        ({"wall_thickness_mm": 8}, [("W418", "wall_thickness_mm")], "warning"),
         ({"wall_thickness_mm": 8.1}, [("I506", "wall_thickness_mm")], "ok"),
         ({"wall_thickness_mm": 16}, [("I506", "wall_thickness_mm")], "ok"),
         ({"wall_thickness_mm": 16.1}, [("W403", "wall_thickness_mm")], "warning"),
@@ -155,9 +160,9 @@ def test_without_a_yield_strength(judge):
     ],
 )
 def test_thick_walls(judge, change, told, status):
-    """A wall above 0.1 of the mean radius is noted, above 0.2 warned of; both are computed."""
+    """A wall above 0.1 of the mean radius is noted, above 0.2 warned of; both are computed, and told once."""
     outcome = judge(change)
-    assert _found(outcome) == told
+    assert [(found.code, found.column) for found in outcome.findings] == told
     assert outcome.results["status"].to_list() == [status]
     assert outcome.results["backlash_arcmin"][0] > 0
 
@@ -233,7 +238,7 @@ def test_limits_that_reach_an_impossible_shape(judge, change, tolerance, expecte
     column, value, words = expected
     outcome = judge(change, tolerances=[tolerance])
     # A hat's flange off its wall is told as well.
-    (found,) = [one for one in outcome.findings if one.code != "W401"]
+    (found,) = [one for one in outcome.findings if one.code not in {"W401", "W420"}]
     assert (found.code, found.column) == ("E314", column)
     assert found.value == value
     assert found.message.endswith(f" = {value}: its tolerance in class own {words}")
@@ -255,7 +260,7 @@ def test_limits_that_reach_an_impossible_shape(judge, change, tolerance, expecte
 )
 def test_limits_that_stay_possible(judge, change, tolerance):
     """Limits just short of an impossible shape, and rows for dimensions that the variant lacks, are no fault."""
-    assert judge(change, tolerances=[tolerance]).findings == []
+    assert _found(judge(change, tolerances=[tolerance])) == []
 
 
 @pytest.mark.parametrize(
@@ -279,16 +284,16 @@ def test_a_grade_without_entry(judge, change, tolerance, told):
     # A cylinder of half a metre is softer than a whole drive, which W412 says as well.
     assert [found for found in _found(outcome) if found[0] != "W412"] == [("E315", column)][: bool(told)]
     assert outcome.exit_code == (4 if told else 0)
-    assert not told or told in outcome.findings[0].message
+    assert not told or told in next(found.message for found in outcome.findings if found.code == "E315")
 
 
 def test_one_row_stops_alone(judge):
     """Of three rows in one class only that whose limits are impossible is stopped."""
-    changes = [{}, {"wall_thickness_mm": 0.3}, {"wall_thickness_mm": 2}]
-    outcome = judge(*changes, tolerances=["wall_thickness,-0.4,0.4,mm,,uniform"])
-    assert [(found.code, found.cell, found.variant) for found in outcome.findings] == [("E314", "G3", "V2")]
+    changes = [{}, {"disk_inner_radius_mm": 79}, {"disk_inner_radius_mm": 50}]
+    outcome = judge(*changes, tolerances=["disk_inner_radius,-1.5,1.5,mm,,uniform"])
+    assert [(found.code, found.cell, found.variant) for found in outcome.findings] == [("E314", "H3", "V2")]
     assert outcome.results["status"].to_list() == ["ok", "error", "ok"]
-    assert outcome.results["findings"].to_list() == [None, "E314 G3", None]
+    assert outcome.results["findings"].to_list() == [None, "E314 H3", None]
     assert outcome.exit_code == 3
 
 
@@ -321,7 +326,7 @@ def test_every_problem_of_the_limits_at_once(judge):
 )
 def test_calibration_with_refinements(tmp_path, sound, setting, change, told):
     """A calibration other than 1 together with a fillet, taper or rim is a warning; both are computed."""
-    row = {**sound, **change}
+    row = {**sound, "backlash_limit_arcmin": 9, **change}
     book = openpyxl.Workbook()
     book.active.title = "Variants"
     book.active.append(list(row))

@@ -28,6 +28,24 @@ LEAST = {
 """Least K3 [N·m/rad] of each size, read off the catalogue."""
 
 
+GREATEST_TORQUE = {
+    14: 6.9,
+    17: 12.0,
+    20: 25.0,
+    25: 48.0,
+    32: 108.0,
+    40: 196.0,
+    45: 275.0,
+    50: 382.0,
+    58: 598.0,
+    65: 843.0,
+    80: 1570.0,
+    90: 2260.0,
+    100: 3040.0,
+}
+"""Greatest T2 [N·m] of each size, read off the catalogue."""
+
+
 def of_size(size):
     """Return what the catalogue says to a flexspline whose mean diameter is a size times 2.54 mm."""
     return stiffness.catalogue_stiffness(size * 0.00254 / 2)
@@ -134,3 +152,27 @@ def test_a_smaller_radius_counts_with_its_cube():
     assert drive.at_radius(80 * 2.54e-3 / 2) == pytest.approx(1.45e6, rel=1e-12)
     assert drive.at_radius(0.0925) == pytest.approx(1.45e6 * (185 / 203.2) ** 3, rel=1e-12)
     assert drive.at_radius(0.11) == 1.45e6
+
+
+@pytest.mark.parametrize(("size", "torque"), GREATEST_TORQUE.items())
+def test_torque_of_the_nearest_size(size, torque):
+    """Each size, and a radius a little beside it, has the greatest T2 of that size."""
+    for beside in (size, max(14, size - 0.4), min(100, size + 0.4)):
+        assert stiffness.catalogue_torque(beside * 0.00254 / 2) == (size, torque)
+
+
+@pytest.mark.parametrize("size", [0, 13.9, 100.1, 1e300, math.inf, math.nan])
+def test_no_torque_beyond_the_catalogue(size):
+    """Outside sizes 14 to 100 no drive is listed."""
+    assert stiffness.catalogue_torque(size * 0.00254 / 2) is None
+
+
+def test_greatest_torque_where_ratios_differ(monkeypatch):
+    """The greatest T2 over the ratios counts, a blank does not, and a size without any says nothing."""
+    rows = [("20", "25"), ("20", ""), ("20", "30"), ("40", "")]
+    listed = [{"size": size, "T2_Nm": torque} for size, torque in rows]
+    monkeypatch.setattr(tables, "rows", lambda _: listed)
+    stiffness._greatest_torque.cache_clear()
+    assert stiffness.catalogue_torque(0.0254) == (20, 30.0)
+    assert stiffness.catalogue_torque(0.0508) is None
+    stiffness._greatest_torque.cache_clear()

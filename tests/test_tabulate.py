@@ -5,6 +5,7 @@ import datetime
 import polars as pl
 import pytest
 
+from flexlash.submission.checks import check_cells
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.read import ErrorCell, RawSheet, Unstored
 from flexlash.submission.tabulate import tabulate
@@ -363,6 +364,27 @@ def test_a_header_that_is_an_error(header):
     (found,) = ledger.findings
     assert "Cell(" not in found.message
     assert "Unstored" not in found.message
+
+
+@pytest.mark.parametrize(
+    ("unit", "value", "found", "expected"),
+    [
+        ("rad", 1.570796326794897, [], 90.0),
+        ("rad", 1.570796326794897 * (1 + 1e-11), ["E208"], None),
+        ("mrad", 1570.796326794897, [], 90.0),
+        ("rad", 0.5235987755982988, [], 30.0),
+        ("rad", 0.5235987755982988 * (1 - 1e-11), ["E207"], None),
+        ("°", 90.00000000000001, ["E208"], None),
+    ],
+)
+def test_a_converted_value_on_a_bound(unit, value, found, expected):
+    """A right angle in radians is within 90°; what is over by more than the last digits, or entered so, is not."""
+    rows = {1: {1: "Variant", 2: f"Disk cone angle [{unit}]"}, 2: {1: "A", 2: value}}
+    ledger = Ledger("a.xlsx")
+    table = tabulate(RawSheet(name="Variants", rows=rows), "Variants", ledger)
+    check_cells(table, ledger)
+    assert [one.code for one in ledger.findings if one.code in {"E207", "E208"}] == found
+    assert expected is None or table.frame["disk_cone_angle_deg"].to_list() == [expected]
 
 
 def test_a_unit_makes_no_number_infinite():

@@ -158,11 +158,12 @@ def test_a_hub_fillet_that_yields(table, sound, torque, told):
     """A peak von Mises stress above yield along the hub fillet is a warning, also where the section does not yield."""
     row = {**sound, "torque_Nm": torque, "hub_fillet_radius_mm": 1.0}
     outcome = run(table([row]), elasticity=True, **QUICK)
-    assert [found.code for found in outcome.findings] == ["W417"][:told]
+    peaks = [found for found in outcome.findings if found.code == "W417"]
+    assert len(peaks) == told
     peak = 3**0.5 * _rows(outcome)[sound["variant"]]["elasticity_hub_fillet_shear_MPa"]
     assert (peak > 1080) == told
     if told:
-        assert f"{peak:.4g} MPa exceeds the yield strength 1080 MPa" in outcome.findings[0].message
+        assert f"{peak:.4g} MPa exceeds the yield strength 1080 MPa" in peaks[0].message
 
 
 def test_a_junction_fillet_that_yields(table, sound):

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from flexlash.columns import DIMENSIONS, VARIANTS
+from flexlash.columns import DIMENSIONS, VARIANTS, columns_of
 from flexlash.mechanics.nominal import Numbers, nominal_numbers
+from flexlash.mechanics.stiffness import catalogue_torque
 from flexlash.submission.headers import plain
+from flexlash.submission.ledger import Slip
+from flexlash.submission.plausibility import settle
 from flexlash.submission.validate import Validated
 from flexlash.tolerance.limits import Limits, LimitsProblem, limits_of, shape_problems
 from flexlash.tolerance.variation import Variation
-from flexlash.units import RPM
-from flexlash.variant import Settings, Variant
+from flexlash.units import ARCMIN, RPM
+from flexlash.variant import Settings, ToleranceRow, Variant
 
 __all__ = ["Computed", "assess", "blame"]
 
@@ -22,6 +26,16 @@ _LEAST, _GREATEST = 1e-12, 10.0
 
 _USUAL_SPEED = 3000 * RPM
 """Input speed [rad/s] that usual motors reach."""
+
+_WIDE, _COARSE = 0.1, 0.02
+"""Half the width of the limits as a share of the value: unusual for any dimension, too much for a thin part."""
+
+_ROUNDING = 1e-9
+"""Shares miss a threshold by their last digits; so much counts as on it."""
+
+_THICKNESSES = frozenset({"wall_thickness", "disk_thickness", "disk_hub_thickness", "rim_thickness"})
+_TORQUE_SHARE = 2.0
+"""Torque over the greatest T2 of catalogue drives beyond which it is unusual for the size."""
 
 _CODES = {"impossible": "E314", "untabulated": "E315", "cut": "W405", "overlap": "W409"}
 
@@ -45,16 +59,23 @@ def assess(validated: Validated, settings: Settings) -> dict[int, Computed]:
         kept, misshapen = shape_problems(variant, found)
         for problem in (*untabulated, *misshapen):
             _blame_limits(validated, variant, problem)
+        blamed = {problem.dimension for problem in (*untabulated, *misshapen) if problem.kind != "overlap"}
+        _warn_tolerances(validated, variant, rows, {name: one for name, one in found.items() if name not in blamed})
         limits[variant.row] = kept
     sound = [variant for variant in validated.variants if variant.row not in validated.ledger.rows]
     numbers = nominal_numbers(sound, settings.lost_motion_percent / 100)
+    slips = validated.ledger.slips_by_owner()
     for variant, nominal in zip(sound, numbers, strict=True):
+        slipped = [*slips.get(variant.row, ()), *slips.get(plain(variant.material), ())]
         if not _LEAST < nominal["backlash"] < _GREATEST:  # type: ignore[operator]
-            blame(validated, "E324", variant, "torque_Nm", value=f"{nominal['backlash']:.3g}")
+            _blame_backlash(validated, variant, nominal, slipped)
             continue
-        _warn_strength(validated, variant, nominal)
-        _warn_stiffness(validated, variant, nominal)
         _warn_calibration(validated, variant)
+        if not slipped:
+            _warn_strength(validated, variant, nominal)
+            _warn_stiffness(validated, variant, nominal)
+            _warn_limit(validated, variant, nominal)
+    settle(validated.ledger)
     return {
         variant.row: Computed(variant=variant, limits=limits[variant.row], nominal=nominal)
         for variant, nominal in zip(sound, numbers, strict=True)
@@ -88,8 +109,48 @@ def _details(problem: LimitsProblem) -> Iterator[tuple[str, str]]:
     yield "impossible", "the other radius of the disk" if radius else problem.detail
 
 
+def _warn_tolerances(
+    validated: Validated, variant: Variant, rows: Sequence[ToleranceRow], limits: dict[str, Limits]
+) -> None:
+    """Warn of limits that are wide beside their dimension, and of general tolerances on thin parts."""
+    general = {row.dimension for row in rows if (row.grade or "").startswith("2768")}
+    for name, limit in limits.items():
+        column, nominal = DIMENSIONS[name], variant.dimensions[name]
+        share = (limit.high - limit.low) / 2 / abs(nominal) if nominal else 0.0
+        coarse = name in general & _THICKNESSES and share > _COARSE + _ROUNDING
+        if column.sheet == "Settings" or not (coarse or share > _WIDE + _ROUNDING):
+            continue
+        unit = "" if column.unit in {"", "-"} else f" {column.unit}"
+        blame(
+            validated,
+            "W422" if coarse else "W421",
+            variant,
+            column.key if column.sheet == "Variants" else "material",
+            name=column.name,
+            value=f"{nominal / column.si_unit.si:.10g}{unit}",
+            other=variant.tolerance_class,
+            detail=f"{100 * share:.3g}",
+        )
+
+
+def _blame_backlash(validated: Validated, variant: Variant, nominal: Numbers, slipped: Sequence[Slip]) -> None:
+    """Record a backlash that no flexspline has: where a unit slipped, once for all rows of a material; else here."""
+    value = f"{nominal['backlash']:.3g}"
+    cause = next((slip for slip in slipped if slip.column != "yield_MPa"), None)
+    if cause is None:
+        blame(validated, "E324", variant, "torque_Nm", value=value)
+        return
+    ledger = validated.ledger
+    ledger.rows.add(variant.row)
+    if cause.material not in ledger.materials:
+        place: dict[str, Any] = {"sheet": cause.sheet, "cell": cause.cell, "column": cause.column}
+        ledger.add("E324", variant=cause.variant, value=value, entered=cause.entered, **place)
+    if cause.material:
+        ledger.materials.add(cause.material)
+
+
 def _warn_strength(validated: Validated, variant: Variant, nominal: Numbers) -> None:
-    """Warn when the part yields or buckles."""
+    """Warn when the part yields or buckles, or else when its torque is unusual for its size."""
     stress, strength = nominal["von_mises"], variant.yield_strength
     if strength is not None and _exceeds(stress, strength):
         facts = {"value": _megapascals(stress), "other": strength / 1e6, "detail": nominal["governing_section"]}
@@ -97,6 +158,14 @@ def _warn_strength(validated: Validated, variant: Variant, nominal: Numbers) -> 
     shear, buckling = nominal["wall_shear"], nominal.get("buckling_shear")
     if _exceeds(shear, buckling):
         blame(validated, "W411", variant, "torque_Nm", value=_megapascals(shear), other=_megapascals(buckling))
+    listed, torque = catalogue_torque(float(nominal["mean_radius"] or 0)), variant.dimensions["torque"]
+    if (
+        listed
+        and torque > _TORQUE_SHARE * listed.torque
+        and not (_exceeds(stress, strength) or _exceeds(shear, buckling))
+    ):
+        facts = {"value": f"{torque:.10g}", "other": listed.torque, "detail": listed.size}
+        blame(validated, "W424", variant, "torque_Nm", name=_name("torque_Nm"), **facts)
 
 
 def _warn_stiffness(validated: Validated, variant: Variant, nominal: Numbers) -> None:
@@ -112,6 +181,21 @@ def _warn_stiffness(validated: Validated, variant: Variant, nominal: Numbers) ->
         span = high if low == high else f"{low} to {high}"
         value = f"{nominal['natural_frequency']:.2g}"
         blame(validated, "W415", variant, "load_inertia_kg_m2", value=value, other=span)
+
+
+def _warn_limit(validated: Validated, variant: Variant, nominal: Numbers) -> None:
+    """Warn when the nominal backlash is over the limit already."""
+    if _exceeds(nominal["backlash"], variant.backlash_limit):
+        key = "backlash_limit_arcmin"
+        limit, backlash = (
+            f"{float(angle or 0) / ARCMIN:.5g}" for angle in (variant.backlash_limit, nominal["backlash"])
+        )
+        blame(validated, "W423", variant, key, name=_name(key), value=limit, other=backlash)
+
+
+def _name(key: str) -> str:
+    """Return the name of a column of Variants."""
+    return columns_of("Variants")[key].name
 
 
 def _exceeds(one: float | str | None, other: float | str | None) -> bool:

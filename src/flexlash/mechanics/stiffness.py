@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
+from collections.abc import Collection
 from functools import cache
 from typing import NamedTuple
 
 from flexlash import tables
 
-__all__ = ["WholeDrive", "catalogue_stiffness", "natural_frequency", "resonance_speed"]
+__all__ = [
+    "DriveTorque",
+    "WholeDrive",
+    "catalogue_stiffness",
+    "catalogue_torque",
+    "natural_frequency",
+    "resonance_speed",
+]
 
 _METRES_PER_SIZE = 2.54e-3
 """A maker's size counts tenths of an inch of pitch diameter."""
@@ -68,13 +77,42 @@ def catalogue_stiffness(mean_radius: float) -> WholeDrive | None:
     >>> catalogue_stiffness(0.0178), catalogue_stiffness(0.2)
     (WholeDrive(size=14, stiffness=3400.0), None)
     """
-    size = 2 * mean_radius / _METRES_PER_SIZE
     listed = _least_stiffness()
+    nearest = _nearest(mean_radius, listed)
+    stiffness = None if nearest is None else listed[nearest]
+    return None if nearest is None or stiffness is None else WholeDrive(size=nearest, stiffness=stiffness)
+
+
+class DriveTorque(NamedTuple):
+    """A catalogue drive: its size [-] and the greatest torque listed where its second slope ends [N·m]."""
+
+    size: int
+    torque: float
+
+
+def catalogue_torque(mean_radius: float) -> DriveTorque | None:
+    """Nearest drive of a maker's catalogue with the torque T2 where its second slope ends [N·m]; None if unlisted.
+
+    Equation: size = 2 r_m / 2.54 mm; T2 the greatest over the listed ratios
+    Arguments: mean_radius r_m of the wall [m].
+    Valid: sizes 14 to 100; T2 ends a slope of the stiffness curve and is no rated torque.
+    Source: a maker's catalogue, `tables/catalogue_stiffness.csv`.
+
+    >>> catalogue_torque(0.08), catalogue_torque(0.2)
+    (DriveTorque(size=65, torque=843.0), None)
+    """
+    listed = _greatest_torque()
+    nearest = _nearest(mean_radius, listed)
+    torque = None if nearest is None else listed[nearest]
+    return None if nearest is None or torque is None else DriveTorque(size=nearest, torque=torque)
+
+
+def _nearest(mean_radius: float, listed: Collection[int]) -> int | None:
+    """Return the listed size nearest to a mean radius [m], the smaller of two; None beyond the listed ones."""
+    size = 2 * mean_radius / _METRES_PER_SIZE
     if not min(listed) - _SLACK <= size <= max(listed) + _SLACK:
         return None
-    nearest = min(listed, key=lambda one: (abs(one - size), one))
-    stiffness = listed[nearest]
-    return None if stiffness is None else WholeDrive(size=nearest, stiffness=stiffness)
+    return min(listed, key=lambda one: (abs(one - size), one))
 
 
 _SLACK = 1e-9
@@ -83,10 +121,20 @@ _SLACK = 1e-9
 @cache
 def _least_stiffness() -> dict[int, float | None]:
     """Return the least K3 [N·m/rad] of each size over its ratios, None where none is listed."""
-    found: dict[int, float | None] = {}
+    return {size: min(listed, default=None) for size, listed in _listed("K3_Nm_per_rad").items()}
+
+
+@cache
+def _greatest_torque() -> dict[int, float | None]:
+    """Return the greatest T2 [N·m] of each size over its ratios, None where none is listed."""
+    return {size: max(listed, default=None) for size, listed in _listed("T2_Nm").items()}
+
+
+def _listed(column: str) -> dict[int, list[float]]:
+    """Return the entries of a catalogue column by size, over the ratios that have one."""
+    found: dict[int, list[float]] = defaultdict(list)
     for row in tables.rows("catalogue_stiffness"):
-        size, text = int(row["size"]), row["K3_Nm_per_rad"]
-        listed = float(text) if text else None
-        known = found.get(size)
-        found[size] = known if listed is None else listed if known is None else min(known, listed)
+        entries = found[int(row["size"])]
+        if row[column]:
+            entries.append(float(row[column]))
     return found

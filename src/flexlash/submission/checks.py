@@ -12,6 +12,7 @@ from pandera.errors import SchemaErrors
 from flexlash.columns import Column, columns_of
 from flexlash.submission.headers import closest
 from flexlash.submission.ledger import Ledger
+from flexlash.submission.plausibility import find_slips
 from flexlash.submission.relations import RELATIONS, Relation
 from flexlash.submission.tabulate import Table
 
@@ -63,7 +64,7 @@ def _failures(schema: pa.DataFrameSchema, frame: pl.DataFrame) -> Iterator[tuple
 
 
 def check_cells(table: Table, ledger: Ledger) -> None:
-    """Check every cell by itself: required, bounds, lists."""
+    """Check every cell by itself: required, bounds, lists; and find the units that slipped."""
     columns = columns_of(table.schema)
     for check, key, index in _failures(_cell_schema(table.schema), table.frame):
         row = table.frame["row"][index]
@@ -83,6 +84,7 @@ def check_cells(table: Table, ledger: Ledger) -> None:
             suggestion=closest(value, list(column.choices)) if check == "E209" else "",
             rows=[row] if table.schema == "Variants" else [],
         )
+    find_slips(table, ledger)
 
 
 def check_relations(table: Table, ledger: Ledger) -> None:
@@ -94,6 +96,8 @@ def check_relations(table: Table, ledger: Ledger) -> None:
         record = table.frame.row(index, named=True)
         row = record["row"]
         if any((row, key) in table.faulty for key in relation.keys):
+            continue
+        if relation.code[0] != "E" and any((table.sheet, row, key) in ledger.slips for key in relation.keys):
             continue
         value = record[relation.key]
         facts = {

@@ -32,6 +32,12 @@ class Relation:
 _FLAT = 89.9999
 """Angle to the axis [°] from which on a disk counts as flat; 90° in radians rarely is 90."""
 
+_WALL_SHARES = (0.006, 0.02)
+"""Wall over mean diameter outside which a flexspline is not expected; 0.01 to 0.015 is usual."""
+
+_HUB_SHARE = 0.7
+"""Hub radius over bore radius above which a diameter was probably entered as a radius."""
+
 _EDGE = 1e-9
 """Sums of decimals miss an edge [mm] by their last binary digit; so much counts as on it."""
 
@@ -78,6 +84,8 @@ def _fillet_on_a_cone(key: str) -> Relation:
         facts=lambda row: {"other": f"{row['disk_cone_angle_deg']:g}"},
     )
 
+
+_WALL_SHARE = pl.col("wall_thickness_mm") / (2 * _RADIUS)
 
 RELATIONS = (
     Relation(
@@ -209,6 +217,24 @@ RELATIONS = (
         & (pl.col("disk_inner_radius_mm") < pl.col("disk_outer_radius_mm"))
         & ((pl.col("disk_inner_radius_mm") - _RADIUS).abs() > pl.col("wall_thickness_mm") / 2 + _EDGE),
         facts=lambda row: {"other": radius(row)},
+    ),
+    Relation(
+        code="W419",
+        key="disk_inner_radius_mm",
+        broken=_is("cup")
+        & (pl.col("disk_inner_radius_mm") < _OUTER)
+        & (pl.col("disk_inner_radius_mm") > _HUB_SHARE * _BORE + _EDGE),
+        facts=lambda row: {"other": radius(row) - row["wall_thickness_mm"] / 2},
+    ),
+    Relation(
+        code="W418",
+        key="wall_thickness_mm",
+        broken=(pl.col("wall_thickness_mm") / _RADIUS <= 0.1)  # noqa: PLR2004
+        & ~_WALL_SHARE.is_between(_WALL_SHARES[0] - _EDGE, _WALL_SHARES[1] + _EDGE),
+        facts=lambda row: {
+            "detail": f"{row['wall_thickness_mm'] / (2 * radius(row)):.2g}",
+            "other": 2 * radius(row),
+        },
     ),
     Relation(
         code="W403",
