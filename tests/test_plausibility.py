@@ -198,6 +198,8 @@ def test_a_slipped_material_beyond_all_meaning(judge):
     outcome = judge(*rows, materials=_material(youngs_modulus_GPa=2.11e11))
     assert _told(outcome) == [("E324", "youngs_modulus_GPa", "211")]
     assert outcome.results["status"].to_list() == ["error", "error", "ok"]
+    assert all("E324" in listed for listed in outcome.results["findings"][:2])
+    assert outcome.results["findings"][2] is None
 
 
 @pytest.mark.parametrize(

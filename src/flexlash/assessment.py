@@ -142,11 +142,12 @@ def _blame_backlash(validated: Validated, variant: Variant, nominal: Numbers, sl
         return
     ledger = validated.ledger
     ledger.rows.add(variant.row)
-    if cause.material not in ledger.materials:
-        place: dict[str, Any] = {"sheet": cause.sheet, "cell": cause.cell, "column": cause.column}
-        ledger.add("E324", variant=cause.variant, value=value, entered=cause.entered, **place)
+    if cause.material in ledger.materials:
+        return
+    place: dict[str, Any] = {"sheet": cause.sheet, "cell": cause.cell, "column": cause.column}
+    ledger.add("E324", variant=cause.variant, value=value, entered=cause.entered, **place)
     if cause.material:
-        ledger.materials.add(cause.material)
+        ledger.spoil("material", cause.material, cause.sheet, cause.row)
 
 
 def _warn_strength(validated: Validated, variant: Variant, nominal: Numbers) -> None:
