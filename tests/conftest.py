@@ -8,15 +8,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from here import AskedHere
+from here import AskedHere, ask_here
 
 from flexlash.submission.template import Filling, template_bytes
+
 
 @pytest.fixture(autouse=True)
 def _read_here(request, monkeypatch):
     """Read workbooks in this process, unless a test is about the process that does so."""
     if "limited_process" not in request.keywords:
         monkeypatch.setattr("flexlash.submission.read.Asked", AskedHere)
+        monkeypatch.setattr("flexlash.handback.ask", ask_here)
 
 
 SOUND: dict[str, Any] = {

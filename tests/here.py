@@ -20,3 +20,8 @@ class AskedHere:
             code, facts = self.found["refusal"]
             raise Refusal(code, **facts)
         return self.found, self.payload
+
+
+def ask_here(task, data, limits, **facts):
+    """Take the place of `isolated.ask`."""
+    return AskedHere(task, data, limits, **facts).answer()

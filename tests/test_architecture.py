@@ -33,12 +33,15 @@ ALLOWED = {
     "verification": CORE | {"assessment", "elasticity", "mechanics", "submission"},
     "results": CORE | {"tolerance"},
     "outcome": CORE | {"assessment", "elasticity", "submission"},
-    "summary": CORE | {"outcome"},
+    "targets": CORE,
+    "handback": CORE | {"outcome", "submission"},
+    "summary": CORE | {"outcome", "submission"},
     "report": CORE | {"assessment", "elasticity", "outcome", "summary", "submission", "tolerance"},
     "pipeline": CORE
     | {
         "assessment",
         "elasticity",
+        "handback",
         "mechanics",
         "outcome",
         "report",
@@ -48,7 +51,7 @@ ALLOWED = {
         "tolerance",
         "verification",
     },
-    "cli": CORE | {"elasticity", "outcome", "pipeline", "report", "submission", "summary"},
+    "cli": CORE | {"elasticity", "outcome", "pipeline", "report", "submission", "summary", "targets"},
     "__main__": {"cli"},
     "__init__": {"outcome", "pipeline"},
 }

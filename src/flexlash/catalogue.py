@@ -73,9 +73,9 @@ CATALOGUE = _rules(
     (
         "E105",
         "unsafe content",
-        "{file} holds a document type declaration, which no Excel workbook needs.",
+        "{file} holds hidden instructions for other programs, which no Excel workbook needs.",
         "Copy the cells into a fresh template and submit that.",
-        "Such declarations are used to attack programs that read the file. Excel never writes them.",
+        "Such instructions are used to attack programs that read the file. Excel never writes them.",
     ),
     (
         "E106",
@@ -246,9 +246,10 @@ CATALOGUE = _rules(
     (
         "E210",
         "unknown grade",
-        '{place} {name} = "{value}": IT5 to IT12, js, h or H with 5 to 12, or 2768-f, -m, -c, -v is required.',
+        '{place} {name} = "{value}" is no grade; IT7, js7, h7, H7 or 2768-m, for instance, is required.',
         "Enter such a grade, or lower and upper deviation instead.",
-        "h lies below the nominal value, H above, js and IT on both sides. Letter case matters: h is not H.",
+        "Grades are IT, js, h or H with 5 to 12, and 2768-f, -m, -c, -v. h lies below the nominal value, H above, js and "
+        "IT on both sides. Letter case matters: h is not H.",
     ),
     (
         "E211",
@@ -668,7 +669,7 @@ CATALOGUE = _rules(
     (
         "W426",
         "hidden sheet",
-        "{place}: the sheet is hidden, but its {value} rows with data are used.",
+        "{place}: the sheet is hidden, but its rows with data ({value}) are used.",
         "Show the sheet and check it, or delete it.",
         "Nobody sees what a hidden sheet says, yet its entries hold.",
     ),
@@ -710,7 +711,7 @@ CATALOGUE = _rules(
     (
         "I505",
         "built-in table used",
-        "{file} brings no {value}; the built-in {other} is used.",
+        "{file} brings no {value}; used instead: the built-in {other}.",
         "Nothing to do, or add the sheet from the template.",
         "Built-in are the materials of the template and the tolerance class standard.",
     ),
@@ -734,6 +735,14 @@ CATALOGUE = _rules(
         "{file} is a report of flexlash, not a submission; it was skipped.",
         "Submit the filled template.",
         "Reports carry a mark by which they are recognised when a whole folder is submitted.",
+    ),
+    (
+        "I513",
+        "marked copy skipped",
+        "{file} is a marked copy of a submission; it was skipped.",
+        "Mend and submit your own file, or take the copy itself with --marked-copies.",
+        "Marked copies carry a mark by which they are recognised when a whole folder is submitted. What a copy could "
+        "not take over, such as charts, is only in your own file.",
     ),
     (
         "I509",

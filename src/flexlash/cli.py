@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexlash import __version__
-from flexlash.findings import CATALOGUE, shown
+from flexlash.findings import CATALOGUE, finding, shown
+from flexlash.targets import beside, mended_targets, report_targets
 
 if TYPE_CHECKING:
     from flexlash.outcome import Outcome
     from flexlash.pipeline import Progress
+    from flexlash.submission.mending.repair import Repair
     from flexlash.submission.reading.limits import ReadingLimits
 
 __all__ = ["cli", "main"]
@@ -50,21 +52,65 @@ def cli() -> None:
 
 @cli.command()
 @click.option(
-    "-o", "--output", type=click.Path(dir_okay=False, path_type=Path), default="flexlash-template.xlsx",
-    show_default=True, help="Where to write it.",
+    "-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE.xlsx",
+    help="Where to write it. Default: flexlash-template.xlsx; with --upgrade OLD-v2.xlsx beside OLD.",
 )  # fmt: skip
 @click.option("--example", is_flag=True, help="Fill it with the published B3-160 study.")
+@click.option(
+    "--upgrade", "old", type=click.Path(dir_okay=False, path_type=Path), metavar="OLD",
+    help="Fill it with everything of an older template, or of a table (.csv, .parquet).",
+)  # fmt: skip
 @click.option("--force", is_flag=True, help="Replace an existing file.")
-def template(output: Path, *, example: bool, force: bool) -> None:
+def template(output: Path | None, *, example: bool, old: Path | None, force: bool) -> None:
     """Write the Excel template that submissions are made from."""
-    if output.exists() and not force:
-        raise click.UsageError(f"{_named(output)} exists and may be filled; choose another -o, or --force.")
+    if example and old:
+        raise click.UsageError("--example and --upgrade both fill the template; choose one.")
+    target = _template_target(output, old, force=force)
     from flexlash.report.output import write_bytes
     from flexlash.submission.template import study, template_bytes
 
-    written = write_bytes(template_bytes(study() if example else None), output)
+    if old:
+        written = write_bytes(_upgraded(old), target)
+    else:
+        written = write_bytes(template_bytes(study() if example else None), target)
     click.echo(f"Template written: {_named(written)}")
-    click.echo(f"Fill it in, then: flexlash run {_named(written)}", err=True)
+    follow = "Look it over, then: flexlash check" if old else "Fill it in, then: flexlash run"
+    click.echo(f"{follow} {_named(written)}", err=True)
+
+
+def _template_target(output: Path | None, old: Path | None, *, force: bool) -> Path:
+    """Return where the template goes; refuse what would overwrite a filled one."""
+    from flexlash.submission.versions import TEMPLATE_VERSION
+
+    beside = old.with_name(f"{old.stem}-v{TEMPLATE_VERSION}.xlsx") if old else Path("flexlash-template.xlsx")
+    target = output or beside
+    if old and target.exists() and old.exists() and target.samefile(old):
+        raise click.UsageError("-o is the old file, which flexlash never overwrites.")
+    if target.exists() and not force:
+        raise click.UsageError(f"{_named(target)} exists and may be filled; choose another -o, or --force.")
+    return target
+
+
+def _upgraded(old: Path) -> bytes:
+    """Return a new template filled with what an old file holds, and say what it could not hold."""
+    from flexlash.submission.reading.refusal import Refusal
+    from flexlash.submission.upgrade import upgraded
+
+    try:
+        upgrade = upgraded(old)
+    except Refusal as refusal:
+        facts: dict[str, Any] = {"file": old.name, **refusal.facts}
+        found = finding(refusal.code, **facts)
+        click.secho(f"{found.code} {found.message}", fg="red", err=True)
+        click.echo(f"Mend: {found.fix}", err=True)
+        sys.exit(NOTHING)
+    made = f", made from template version {upgrade.version}" if upgrade.version else ""
+    click.echo(
+        f"{_named(old)}{made}: {upgrade.rows} {'row' if upgrade.rows == 1 else 'rows'} of Variants carried over."
+    )
+    for remark in upgrade.remarks:
+        click.echo(f"  {shown(remark, longest=400)}", err=True)
+    return upgrade.data
 
 
 @cli.command()
@@ -122,6 +168,9 @@ _LIMITS = click.option(
     "--limit", "limits", multiple=True, metavar="NAME=NUMBER", envvar="FLEXLASH_LIMIT", callback=_limits,
     help="Read more, or less, of a file than usual: cells=2000000. A refusal names the limit.",
 )  # fmt: skip
+_MARKED = click.option(
+    "--marked-copies", is_flag=True, help="Take marked copies (<name>-checked.xlsx) as submissions, too."
+)
 _STRICT = click.option("--strict", is_flag=True, help="Compute nothing when any row has an error.")
 
 
@@ -136,24 +185,51 @@ def _table_option(name: str) -> Callable[[Command], Command]:
 
 @cli.command()
 @_SUBMISSIONS
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="OUT",
+    help="The mended file, or the folder for marked and mended files. Default: beside the submission.",
+)  # fmt: skip
+@click.option("--annotate", is_flag=True, help="Write <name>-checked.xlsx: your file with the cells to mend marked.")
+@click.option("--apply-fixes", is_flag=True, help="Write a new file in which the certain suggestions are applied.")
 @_STRICT
 @_LIMITS
+@_MARKED
 @_JSON
 @_table_option("tolerances")
 @_table_option("materials")
-def check(submissions: tuple[Path, ...], *, as_json: bool, **options: Any) -> None:
-    """Validate submissions and print what was found; nothing is sampled or written."""
+def check(
+    submissions: tuple[Path, ...],
+    output: Path | None,
+    *,
+    annotate: bool,
+    apply_fixes: bool,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Validate submissions and print what was found; nothing is sampled.
+
+    Nothing is written without --annotate or --apply-fixes.
+    """
     from flexlash.submission.read import Reading
 
+    if output and not (annotate or apply_fixes):
+        raise click.UsageError("-o needs --apply-fixes or --annotate; check alone writes nothing.")
+    targets = _planned(mended_targets, submissions, output)
+    options["marked_copies"] |= annotate
     codes: list[int] = []
-    for path in submissions:
+    for path, target, copy in zip(submissions, targets, beside(submissions, targets), strict=True):
         with _one_submission(path, codes, as_json=as_json):
             reading = Reading(path, options["limits"])
             # Loading the libraries takes as long as reading the file does: both at once.
             from flexlash.pipeline import check as check_one
+            from flexlash.pipeline import mend
 
-            outcome = check_one(reading, **options)
-            _tell(outcome, path, as_json=as_json)
+            repairs: list[Repair] | None = None
+            if apply_fixes:
+                outcome, repairs = mend(reading, target, marked_copy=copy if annotate else None, **options)
+            else:
+                outcome = check_one(reading, marked_copy=copy if annotate else None, **options)
+            _tell(outcome, path, as_json=as_json, repairs=repairs)
             codes += [] if outcome.skipped else [outcome.exit_code]
     sys.exit(_worst(codes))
 
@@ -177,27 +253,51 @@ def check(submissions: tuple[Path, ...], *, as_json: bool, **options: Any) -> No
 @_LIMITS
 @_JSON
 @click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")
+@click.option(
+    "--annotate/--no-annotate", default=True, show_default=True,
+    help="Write <name>-checked.xlsx, your file with the cells to mend marked, when there are errors or warnings.",
+)  # fmt: skip
+@_MARKED
 @_table_option("tolerances")
 @_table_option("materials")
-def run(submissions: tuple[Path, ...], output: Path | None, *, as_json: bool, quiet: bool, **options: Any) -> None:
+def run(
+    submissions: tuple[Path, ...],
+    output: Path | None,
+    *,
+    annotate: bool,
+    as_json: bool,
+    quiet: bool,
+    **options: Any,
+) -> None:
     """Validate, compute the tolerance spread, write the report."""
     from flexlash.elasticity import MISSING, is_available
     from flexlash.submission.read import Reading
 
     if options["elasticity"] and not is_available():
         raise click.UsageError(MISSING)
-    targets = _targets(submissions, output)
+    targets = _planned(report_targets, submissions, output)
     codes: list[int] = []
-    for path, target in zip(submissions, targets, strict=True):
+    for path, target, copy in zip(submissions, targets, beside(submissions, targets), strict=True):
         with _one_submission(path, codes, as_json=as_json), _progress(quiet=quiet or as_json) as progress:
             reading = Reading(path, options["limits"])
             from flexlash.pipeline import run as run_one
 
+            options["marked_copy"] = copy if annotate else None
             outcome = run_one(reading, target, progress=progress, **options)
             if not quiet or outcome.exit_code:
                 _tell(outcome, path, as_json=as_json, ran=True)
             codes += [] if outcome.skipped else [outcome.exit_code]
     sys.exit(_worst(codes))
+
+
+def _planned(
+    plan: Callable[[tuple[Path, ...], Path | None], list[Path]], submissions: tuple[Path, ...], output: Path | None
+) -> list[Path]:
+    """Return where outputs go; raise a usage error for an output that cannot be meant."""
+    try:
+        return plan(submissions, output)
+    except ValueError as fault:
+        raise click.UsageError(shown(fault, longest=400)) from fault
 
 
 def _named(path: object) -> str:
@@ -215,6 +315,8 @@ def _one_submission(path: Path, codes: list[int], *, as_json: bool) -> Iterator[
     """Turn what stops one submission into its exit code, so that the others go on."""
     try:
         yield
+    except BrokenPipeError:
+        raise
     except OSError as fault:
         named = _named(fault.filename or path)
         why = fault.strerror or str(fault)
@@ -239,47 +341,18 @@ def _progress(*, quiet: bool) -> Iterator[Progress | None]:
         yield advance
 
 
-def _targets(submissions: tuple[Path, ...], output: Path | None) -> list[Path]:
-    """Return where each submission's output goes; refuse what would overwrite a submission."""
-    from flexlash.report.output import ENDINGS
-
-    if output is None:
-        targets = [path.with_name(f"{path.stem}-report.xlsx") for path in submissions]
-    elif output.is_dir() or not output.suffix or str(output).endswith(("/", "\\")):
-        output.mkdir(parents=True, exist_ok=True)
-        targets = [output / f"{path.stem}-report.xlsx" for path in submissions]
-    elif len(submissions) > 1:
-        raise click.UsageError("Several submissions need a folder as OUT.")
-    elif output.suffix.lower() not in ENDINGS:
-        raise click.UsageError(f"OUT must end in {', '.join(ENDINGS)} or be a folder, not {shown(output.suffix)}.")
-    else:
-        targets = [output]
-    inputs = {path.resolve() for path in submissions}
-    if any(target.resolve() in inputs for target in targets):
-        raise click.UsageError("OUT is one of the submissions, which flexlash never overwrites.")
-    return _distinct(targets)
-
-
-def _distinct(targets: list[Path]) -> list[Path]:
-    """Give equal names a number: ` (2)`, ` (3)`."""
-    used: set[Path] = set()
-    found = []
-    for target in targets:
-        distinct, copy = target, 1
-        while distinct in used:
-            copy += 1
-            distinct = target.with_name(f"{target.stem} ({copy}){target.suffix}")
-        used.add(distinct)
-        found.append(distinct)
-    return found
-
-
-def _tell(outcome: Outcome, path: Path, *, as_json: bool, ran: bool = False) -> None:
+def _tell(
+    outcome: Outcome, path: Path, *, as_json: bool, ran: bool = False, repairs: list[Repair] | None = None
+) -> None:
     """Print an outcome: as one JSON object, or findings grouped by rule and then the summary."""
     if as_json:
-        click.echo(json.dumps(outcome.as_dictionary(), ensure_ascii=False))
+        fixes = {} if repairs is None else {"fixes": [repair.as_dictionary() for repair in repairs]}
+        click.echo(json.dumps({**outcome.as_dictionary(), **fixes}, ensure_ascii=False))
         return
-    from flexlash.summary import finding_lines, summary_lines
+    from flexlash.summary import finding_lines, repair_lines, summary_lines
+
+    for line in () if repairs is None else repair_lines(repairs):
+        click.echo(line)
 
     colours = {"error": "red", "warning": "yellow", "info": "cyan"}
     for level, line in finding_lines(outcome.findings):

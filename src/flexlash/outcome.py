@@ -32,7 +32,8 @@ class Outcome:
     `results` is the Results table; `findings` all findings in the order of the submission; `outputs` the
     files written. `computed` holds, by row number, what the report draws on.
     `pictured` holds, by variant, the elasticity checks that the report draws.
-    `skipped` says that the file is a report or a marked copy, not a submission.
+    `skipped` says that the file is a report or a marked copy, not a submission; `marked_copy` is
+    where its findings were marked, `not_carried` what of it that copy could not take over.
     """
 
     submission: Submission
@@ -44,6 +45,8 @@ class Outcome:
     outputs: list[Path] = field(default_factory=list)
     pictured: dict[str, ElasticityCheck] = field(default_factory=dict)
     skipped: bool = False
+    marked_copy: Path | None = None
+    not_carried: tuple[str, ...] = ()
 
     @property
     def counts(self) -> dict[str, int]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -11,13 +12,16 @@ from typing import TYPE_CHECKING, Any
 from flexlash.assessment import assess
 from flexlash.elasticity import MISSING, is_available
 from flexlash.findings import Finding, finding
+from flexlash.handback import certain_repairs, marked, mended, worth_marking
 from flexlash.mechanics.flexspline import backlash
 from flexlash.outcome import PICTURED, Outcome
 from flexlash.results import result_record, results_frame
 from flexlash.submission.gate import kind_of, read_bytes
-from flexlash.submission.read import RawSheet, Submission, read_submission, read_table
+from flexlash.submission.mending.repair import Repair
+from flexlash.submission.read import RawSheet, Reading, Submission, read_table
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
+from flexlash.submission.stops import stopped_by
 from flexlash.submission.validate import Validated, validate
 from flexlash.summary import worst_first
 from flexlash.tolerance.spreading import spread_rows
@@ -27,16 +31,25 @@ from flexlash.variant import Settings
 if TYPE_CHECKING:
     import polars as pl
 
-__all__ = ["Options", "Outcome", "check", "run"]
+__all__ = ["Options", "Outcome", "check", "mend", "run"]
 
 Progress = Callable[[int, int], None]
 
-_ELSEWHERE = "stopped by an error of another row or sheet, see Findings"
+_HELD_BACK = "held back by --strict, since other rows have errors"
+_PASSES = 3
+"""Most times that a mended submission is looked at again, since one repair may uncover another fault."""
+
+_NAMED = 3
+"""Most errors elsewhere that a row of Results names."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """What the caller decides; None leaves it to the submission's settings."""
+    """What the caller decides; None leaves it to the submission's settings.
+
+    `marked_copy` is where the submission goes with its errors and warnings marked, when there are any;
+    `marked_copies` takes such copies as submissions as well.
+    """
 
     seed: int | None = None
     method: str | None = None
@@ -47,25 +60,50 @@ class Options:
     jobs: int = 1
     tolerances: str | Path | None = None
     materials: str | Path | None = None
-    limits: Mapping[str, object] = field(default_factory=dict)
+    limits: ReadingLimits = field(default_factory=ReadingLimits)
+    marked_copy: str | Path | None = None
+    marked_copies: bool = False
     progress: Progress | None = None
 
-    @property
-    def reading_limits(self) -> ReadingLimits:
-        """How much of a file is read; raises ValueError for a limit that does not exist."""
-        return ReadingLimits.of(self.limits)
 
+def check(submission: str | Path | Reading, **options: Any) -> Outcome:
+    """Return the outcome of validation and nominal calculation alone; nothing is sampled.
 
-def check(submission: str | Path, **options: Any) -> Outcome:
-    """Return the outcome of validation and nominal calculation alone; nothing is sampled or written.
-
-    Raises OSError when the file cannot be opened. A file that is no submission gives an outcome whose only
-    finding says why.
+    Nothing is written but the marked copy, when `marked_copy` says where. Raises OSError when a file cannot be opened
+    or written. A file that is no submission gives an outcome whose only finding says why.
     """
-    return _examine(Path(submission), Options(**options))
+    chosen = Options(**options)
+    outcome = _examine(submission, chosen)
+    _mark(outcome, chosen)
+    return outcome
 
 
-def run(submission: str | Path, output: str | Path | None = None, **options: Any) -> Outcome:
+def mend(submission: str | Path | Reading, output: str | Path, **options: Any) -> tuple[Outcome, list[Repair]]:
+    """Write a submission with the certain repairs made; return the outcome of checking that, and the repairs.
+
+    Nothing is written when there is no certain repair. Options are those of `check`. Raises OSError when a file cannot
+    be opened or written.
+    """
+    chosen = Options(**options)
+    reading = submission if isinstance(submission, Reading) else Reading(Path(submission), chosen.limits)
+    original = outcome = _examine(reading, chosen)
+    repairs: dict[str, Repair] = {}
+    for _ in range(_PASSES):
+        wanted = {repair.place: repair for repair in certain_repairs(outcome.findings)}
+        if not wanted.keys() - repairs.keys():
+            break
+        data, made = mended(original, [*(wanted | repairs).values()], chosen.limits)
+        repairs |= {repair.place: repair for repair in made}
+        if not made:
+            break
+        outcome = _examine(Reading(reading.path, chosen.limits, data), chosen)
+    if repairs:
+        outcome.outputs.append(_write_bytes(data, Path(output)))
+    _mark(outcome, chosen)
+    return outcome, list(repairs.values())
+
+
+def run(submission: str | Path | Reading, output: str | Path | None = None, **options: Any) -> Outcome:
     """Return the outcome of a submission and write it to `output`, unless that is None.
 
     Options are those of the command line: seed, method, samples, cross_check, elasticity, strict, jobs,
@@ -77,7 +115,7 @@ def run(submission: str | Path, output: str | Path | None = None, **options: Any
     chosen = Options(**options)
     if chosen.elasticity and not is_available():
         raise ModuleNotFoundError(MISSING)
-    outcome = _examine(Path(submission), chosen)
+    outcome = _examine(submission, chosen)
     _spread(outcome, chosen)
     if chosen.elasticity:
         _verify(outcome, chosen)
@@ -87,15 +125,18 @@ def run(submission: str | Path, output: str | Path | None = None, **options: Any
         from flexlash.report.output import write_outcome
 
         outcome.outputs.append(write_outcome(outcome, Path(output)))
+    _mark(outcome, chosen)
     return outcome
 
 
-def _examine(path: Path, options: Options) -> Outcome:
+def _examine(given: str | Path | Reading, options: Options) -> Outcome:
     """Read, validate and compute at the entered dimensions."""
+    reading = given if isinstance(given, Reading) else Reading(Path(given), options.limits)
+    path = reading.path
     try:
-        submission = read_submission(path, options.reading_limits)
-        if submission.role and submission.role != "template":
-            skipped = [finding("I508", file=path.name)]
+        submission = reading.submission()
+        if submission.role in {"report"} | (set() if options.marked_copies else {"checked"}):
+            skipped = [finding("I508" if submission.role == "report" else "I513", file=path.name)]
             return Outcome(
                 submission=submission,
                 results=results_frame([]),
@@ -106,7 +147,8 @@ def _examine(path: Path, options: Options) -> Outcome:
         return _validated(_with_tables(submission, options), options)
     except Refusal as refusal:
         facts: dict[str, Any] = {"file": path.name, **refusal.facts}
-        refused = Submission(name=path.name, sha256="", kind="refused")
+        digest = hashlib.sha256(reading.data).hexdigest() if reading.data else ""
+        refused = Submission(name=path.name, sha256=digest, kind="refused")
         return Outcome(
             submission=refused,
             results=results_frame([]),
@@ -115,12 +157,26 @@ def _examine(path: Path, options: Options) -> Outcome:
         )
 
 
+def _mark(outcome: Outcome, options: Options) -> None:
+    """Write the marked copy, when it is wanted and there is something to mark."""
+    if options.marked_copy is not None and worth_marking(outcome):
+        data, outcome.not_carried = marked(outcome, options.limits)
+        outcome.marked_copy = _write_bytes(data, Path(options.marked_copy))
+        outcome.outputs.append(outcome.marked_copy)
+
+
+def _write_bytes(data: bytes, path: Path) -> Path:
+    from flexlash.report.output import write_bytes
+
+    return write_bytes(data, path)
+
+
 def _with_tables(submission: Submission, options: Options) -> Submission:
     """Put the tables given beside a submission in the place of its own."""
     given: dict[str, RawSheet] = {}
     for name, path in (("Tolerances", options.tolerances), ("Materials", options.materials)):
         if path is not None:
-            given[name] = _table_beside(Path(path), name, options.reading_limits)
+            given[name] = _table_beside(Path(path), name, options.limits)
     return replace(submission, sheets=submission.sheets | given)
 
 
@@ -129,14 +185,14 @@ def _table_beside(path: Path, name: str, limits: ReadingLimits) -> RawSheet:
     try:
         data = read_bytes(path, limits)
         kind_of(data, only="csv")
-        return read_table(data, name)[0]
+        return read_table(data, name, path.name)
     except Refusal as refusal:
         raise Refusal(refusal.code, **{"file": path.name, **refusal.facts}) from refusal
 
 
 def _validated(submission: Submission, options: Options) -> Outcome:
     """Validate, set the limits and compute at the entered dimensions."""
-    validated = validate(submission, options.reading_limits)
+    validated = validate(submission, options.limits)
     overrides = {
         name: getattr(options, name) for name in ("seed", "method", "samples") if getattr(options, name) is not None
     }
@@ -239,16 +295,25 @@ def _results(outcome: Outcome, *, cross_check: bool = False, elasticity: bool = 
         if found.sheet == sheet and found.cell and found.level != "info":
             row = int(found.cell.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
             by_row.setdefault(row, []).append(found)
+    stops = stopped_by(outcome.validated)
     records = []
     for row, name, notes in outcome.validated.submitted:
         mine = by_row.get(row, [])
         one = outcome.computed.get(row)
         listed = ", ".join(f"{found.code} {found.cell}" for found in mine)
         if one is None and not any(found.level == "error" for found in mine):
-            listed = ", ".join(filter(None, [listed, _ELSEWHERE]))
+            listed = ", ".join(filter(None, [listed, _stopped(stops.get(row, []))]))
         record = result_record(one.variant, one.nominal, one.variation) if one else {}
         status = "error" if one is None else "warning" if mine else "ok"
         records.append(
             {**record, "variant": name, "status": status, "notes": notes or None, "findings": listed or None}
         )
     return results_frame(records, cross_check=cross_check, elasticity=elasticity)
+
+
+def _stopped(errors: list[Finding]) -> str:
+    """Return what stops a row that has no error itself: `stopped by E317 Tolerances!F7`."""
+    if not errors:
+        return _HELD_BACK
+    more = f" and {len(errors) - _NAMED} more" if len(errors) > _NAMED else ""
+    return f"stopped by {', '.join(f'{found.code} {found.place}' for found in errors[:_NAMED])}{more}"

@@ -5,20 +5,24 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 from flexlash.columns import DIMENSIONS
 from flexlash.findings import CATALOGUE, Finding, cell_ranges, shown
 from flexlash.outcome import Outcome
+from flexlash.submission.mending.repair import Repair
 
 __all__ = [
     "dimension_words",
     "finding_lines",
     "points_words",
+    "repair_lines",
     "rounded",
     "share_words",
     "spread_notes",
     "summary_lines",
+    "to_fix_words",
     "worst_first",
 ]
 
@@ -39,14 +43,14 @@ def dimension_words(name: str) -> str:
 
 
 def finding_lines(findings: Sequence[Finding]) -> Iterator[tuple[str, str]]:
-    """Yield level (empty for details) and line: findings grouped by rule, worst first, with their ranges."""
+    """Yield level (empty for details) and line: findings grouped by rule, worst first, with count and ranges."""
     groups: dict[tuple[int, str, str], list[Finding]] = defaultdict(list)
     for found in findings:
         groups[_LEVELS.index(found.level), found.code, found.sheet].append(found)
     for (_, code, sheet), group in sorted(groups.items()):
         level = group[0].level
-        places = cell_ranges([found.cell for found in group if found.cell])
-        where = f": {sheet}!{places}" if places else ""
+        cells = {found.cell: None for found in group if found.cell}
+        where = f", {_counted(len(cells), 'cell')}: {sheet}!{cell_ranges(list(cells))}" if cells else ""
         yield level, f"{level} {code} {CATALOGUE[code].title}{where}"
         if level == "info" and len(group) > 1:
             continue
@@ -55,7 +59,8 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[tuple[str, str]]:
         if len(group) > _SHOWN_MESSAGES:
             yield "", f"    … and {len(group) - _SHOWN_MESSAGES} more of the same kind"
         if level != "info":
-            yield "", f"    Mend: {group[0].fix}"
+            for fix in dict.fromkeys(found.fix for found in group[:_SHOWN_MESSAGES]):
+                yield "", f"    Mend: {fix}"
 
 
 def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
@@ -63,26 +68,64 @@ def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
     counts = outcome.counts
     if outcome.skipped:
         return
-    if not counts["rows"]:
-        yield f"{name}: nothing to compute."
-        return
-    ready = f"{counts['computed']} of {counts['rows']} rows {'computed' if ran else 'ready'}"
-    fixes = f"; {counts['errors']} error{_s(counts['errors'])} to fix" if counts["errors"] else ""
-    warned = f"; {counts['warnings']} warning{_s(counts['warnings'])}" if counts["warnings"] else ""
-    yield f"{name}: {ready}{fixes}{warned}."
-    if ran:
+    rows, computed = counts["rows"], counts["computed"]
+    ready = f"{computed} of {rows} rows {'computed' if ran else 'ready'}" if rows else "nothing to compute"
+    fixes = to_fix_words(outcome.findings)
+    warned = _counted(counts["warnings"], "warning") if counts["warnings"] else ""
+    yield f"{name}: {'; '.join(filter(None, [ready, fixes, warned]))}."
+    if ran and rows:
         yield from over_limit_lines(outcome)
         yield from spread_notes(outcome)
-        for path in outcome.outputs:
-            yield f"Written: {shown(path, longest=4096)}"
-        if not outcome.outputs:
-            yield "Nothing was written: there is no computed row."
-    elif outcome.computed:
-        yield f"Next: flexlash run {name}"
+    if ran and not computed:
+        yield "No report was written: there is no computed row."
+    for path in outcome.outputs:
+        yield _written(outcome, path)
+    if not ran:
+        quoted = f'"{name}"' if " " in name else name
+        yield f"Next: {_next_step(computed, rows, quoted)}"
 
 
-def _s(count: int) -> str:
-    return "" if count == 1 else "s"
+def _written(outcome: Outcome, path: Path) -> str:
+    """Return the sentence about a file that was written."""
+    named = shown(path, longest=4096)
+    if path != outcome.marked_copy:
+        return f"Written: {named}"
+    without = f", without its {', '.join(outcome.not_carried)}" if outcome.not_carried else ""
+    return f"Marked copy of your file{without}: {named}"
+
+
+def repair_lines(repairs: Sequence[Repair]) -> Iterator[str]:
+    """Yield what was changed in a mended submission, every cell of it."""
+    yield (
+        f"{_counted(len(repairs), 'cell')} mended:"
+        if repairs
+        else "There is nothing that could be mended with certainty."
+    )
+    for repair in repairs:
+        yield f'    {repair.place}: "{repair.found}" → {repair.written} ({repair.code})'
+
+
+def _next_step(computed: int, rows: int, name: str) -> str:
+    """Return what to do after a check, the command last."""
+    if not computed:
+        return f"mend that, then: flexlash check {name}"
+    if computed < rows:
+        return f"mend that and check again, or compute the {_counted(computed, 'row')}: flexlash run {name}"
+    return f"flexlash run {name}"
+
+
+def to_fix_words(findings: Sequence[Finding]) -> str:
+    """Return how much there is to fix: `5 cells to fix`, an empty text where there is nothing."""
+    errors = [found for found in findings if found.level == "error"]
+    cells = len({(found.sheet, found.cell) for found in errors if found.cell})
+    others = sum(not found.cell for found in errors)
+    words = [_counted(cells, "cell") if cells else "", f"{_counted(others, 'problem')} of the file" if others else ""]
+    return f"{' and '.join(filter(None, words))} to fix" if errors else ""
+
+
+def _counted(count: int, what: str) -> str:
+    """Return a number with its noun: `1 cell`, `5 cells`."""
+    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 def over_limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:

@@ -31,10 +31,11 @@ __all__ = [
 class Reading:
     """A submission being read; where another process does so, its caller can do something else meanwhile.
 
-    Raises OSError when the file cannot be opened; what else is wrong with it is told by `submission`.
+    `data` takes the place of the file's own bytes. Raises OSError when the file cannot be opened; what else is wrong
+    with it is told by `submission`.
     """
 
-    def __init__(self, path: Path, limits: ReadingLimits | None = None) -> None:
+    def __init__(self, path: Path, limits: ReadingLimits | None = None, data: bytes | None = None) -> None:
         self.path = path
         self.limits = limits or ReadingLimits()
         self.kind = ""
@@ -42,7 +43,7 @@ class Reading:
         self.refusal: Refusal | None = None
         self.asked: Asked | None = None
         try:
-            self.data = read_bytes(path, self.limits)
+            self.data = read_bytes(path, self.limits) if data is None else data
             self.kind = kind_of(self.data)
             if self.kind != "csv":
                 self.asked = Asked(self.kind, self.data, self.limits)

@@ -1,0 +1,72 @@
+"""Where outputs go: a path for each submission's report, marked copy and mended file, none of them a submission."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+__all__ = ["MARKED", "beside", "mended_targets", "report_targets"]
+
+MARKED = "-checked"
+MENDED = "-mended"
+REPORTS = (".xlsx", ".csv", ".parquet", ".json")
+"""Forms in which results are written, by the ending of their path."""
+
+
+def report_targets(submissions: Sequence[Path], output: Path | None) -> list[Path]:
+    """Return where each submission's report goes; raise ValueError for an output that cannot be meant."""
+    return _targets(submissions, output, "-report", REPORTS)
+
+
+def mended_targets(submissions: Sequence[Path], output: Path | None) -> list[Path]:
+    """Return where each mended submission goes; raise ValueError for an output that cannot be meant."""
+    return _targets(submissions, output, MENDED, (".xlsx", ".xlsm", ".csv"), own_ending=True)
+
+
+def _targets(
+    submissions: Sequence[Path],
+    output: Path | None,
+    suffix: str,
+    endings: tuple[str, ...],
+    *,
+    own_ending: bool = False,
+) -> list[Path]:
+    names = [f"{path.stem}{suffix}{path.suffix if own_ending else '.xlsx'}" for path in submissions]
+    if output is None:
+        targets = [path.with_name(name) for path, name in zip(submissions, names, strict=True)]
+    elif output.is_dir() or not output.suffix or str(output).endswith(("/", "\\")):
+        output.mkdir(parents=True, exist_ok=True)
+        targets = [output / name for name in names]
+    elif len(submissions) > 1:
+        raise ValueError("Several submissions need a folder as OUT.")
+    elif output.suffix.lower() not in endings:
+        raise ValueError(f"OUT must end in {', '.join(endings)} or be a folder, not {output.suffix}.")
+    else:
+        targets = [output]
+    inputs = {path.resolve() for path in submissions}
+    if any(target.resolve() in inputs for target in targets):
+        raise ValueError("OUT is one of the submissions, which flexlash never overwrites.")
+    return _distinct(targets)
+
+
+def beside(submissions: Sequence[Path], targets: Sequence[Path]) -> list[Path]:
+    """Return where each submission's marked copy goes: into the folder of its target, under its own name.
+
+    The marked copy of a marked copy takes its place.
+    """
+    stems = [path.stem.removesuffix(MARKED) for path in submissions]
+    return _distinct([target.with_name(f"{stem}{MARKED}.xlsx") for stem, target in zip(stems, targets, strict=True)])
+
+
+def _distinct(targets: list[Path]) -> list[Path]:
+    """Give equal names a number: ` (2)`, ` (3)`."""
+    used: set[Path] = set()
+    found = []
+    for target in targets:
+        distinct, copy = target, 1
+        while distinct in used:
+            copy += 1
+            distinct = target.with_name(f"{target.stem} ({copy}){target.suffix}")
+        used.add(distinct)
+        found.append(distinct)
+    return found
