@@ -2,8 +2,9 @@
 
     python tests/benchmarks/corpus.py FOLDER ...
 
-Each file is checked and run with 2 GB of address space, its outputs in a temporary folder. Printed are the exit codes, whatever is not 0, 3, 4 or 5,
-any traceback, the slowest and the largest. Exits with 1 when something is wrong.
+Each file is checked and run with 2 GB of address space, its outputs in a temporary folder. Printed are the exit codes,
+what ends otherwise than with 0, 3, 4 or 5, any traceback, the slowest and the largest; it exits with 1 when something
+is wrong.
 """
 
 from __future__ import annotations
