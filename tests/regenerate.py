@@ -1,18 +1,23 @@
-"""Everything in the tree that is generated: the template, the example submissions, the README's tables.
+"""Everything in the tree that is generated: template, example submissions, the README's tables, the list of findings.
 
 `python tests/regenerate.py` writes what is stale; `--check` only says so and exits with 1.
 """
 
 from __future__ import annotations
 
+import csv
 import datetime
+import io
 import re
 import sys
 import tempfile
+from functools import cache
 from pathlib import Path
 
+from finding_examples import examples
 from flexlash import tables
 from flexlash.columns import SETTINGS, VARIANTS
+from flexlash.explanations import EXAMPLES, findings_page
 from flexlash.findings import CATALOGUE
 from flexlash.pipeline import run
 from flexlash.submission.read import ErrorCell, Unstored
@@ -220,6 +225,21 @@ def readme() -> bytes:
     return text.encode()
 
 
+@cache
+def messages() -> dict[str, str]:
+    """Return a real message of each finding by its code."""
+    return {code: found.message for code, found in examples().items()}
+
+
+def _as_table(entries: dict[str, str]) -> bytes:
+    """Return messages by code as a CSV table."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(("code", "message"))
+    writer.writerows(entries.items())
+    return buffer.getvalue().encode()
+
+
 def generated() -> dict[str, bytes]:
     """Return every generated file by its path in the tree."""
     return {
@@ -230,6 +250,8 @@ def generated() -> dict[str, bytes]:
         "data/b3-160-proof.xlsx": template_bytes(proof()),
         "data/b3-160-calibrated.xlsx": template_bytes(calibrated()),
         "README.md": readme(),
+        f"src/flexlash/tables/{EXAMPLES}.csv": _as_table(messages()),
+        "docs/findings.md": findings_page(messages()).encode(),
     }
 
 
@@ -249,6 +271,7 @@ def main() -> int:
     for name, data in files.items():
         print(f"{name} is stale")
         if "--check" not in sys.argv:
+            (ROOT / name).parent.mkdir(exist_ok=True)
             (ROOT / name).write_bytes(data)
     return 1 if files and "--check" in sys.argv else 0
 

@@ -17,6 +17,7 @@ CORE = {
     "catalogue",
     "column",
     "columns",
+    "explanations",
     "findings",
     "result_columns",
     "tables",

@@ -72,11 +72,11 @@ def test_check_prints_findings_and_the_next_command(table, sound, capsys, main_i
     assert main_in("check", path) == 3
     lines = capsys.readouterr().out.splitlines()
     assert lines == [
-        "error E202 text instead of a number: Variants!G3",
+        "error E202 text instead of a number, 1 cell: Variants!G3",
         '    Variants!G3 Wall thickness Δ = "1,6": a number in mm greater than 0 is required; did you mean 1.6?',
         "    Mend: Type the number alone, without unit, with the decimal sign that your Excel uses.",
-        f"{path}: 1 of 2 rows ready; 1 error to fix.",
-        f"Next: flexlash run {path}",
+        f"{path}: 1 of 2 rows ready; 1 cell to fix.",
+        f"Next: mend that and check again, or compute the 1 row: flexlash run {path}",
     ]
 
 
@@ -85,7 +85,7 @@ def test_findings_of_one_rule_are_drawn_together(table, sound, capsys, main_in):
     rows = [{**sound, "variant": f"v{number}", "torque_Nm": ""} for number in range(500)]
     assert main_in("check", table([*rows, sound])) == 3
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == "error E201 required cell empty: Variants!D2:D501"
+    assert lines[0] == "error E201 required cell empty, 500 cells: Variants!D2:D501"
     assert "    … and 497 more of the same kind" in lines
     assert len(lines) < 10
 
@@ -94,7 +94,7 @@ def test_repairs_of_one_kind_are_one_line(table, sound, capsys, main_in):
     """Information of one kind is drawn together without its messages, which are in the report."""
     rows = [{**sound, "variant": f"v{number}", "flexspline_type": "Cup"} for number in range(4)]
     assert main_in("check", table(rows)) == 0
-    assert capsys.readouterr().out.splitlines()[0] == "info I504 spelling repaired: Variants!B2:B5"
+    assert capsys.readouterr().out.splitlines()[0] == "info I504 spelling repaired, 4 cells: Variants!B2:B5"
 
 
 def test_run_keeps_results_and_messages_apart(table, sound, capsys, main_in):
@@ -104,7 +104,7 @@ def test_run_keeps_results_and_messages_apart(table, sound, capsys, main_in):
     streams = capsys.readouterr()
     assert "E207" in streams.err
     assert "E207" not in streams.out
-    assert "1 of 2 rows computed; 1 error to fix." in streams.out
+    assert "1 of 2 rows computed; 1 cell to fix." in streams.out
 
 
 def test_run_names_the_worst_variants(table, sound, capsys, main_in):

@@ -9,15 +9,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flexlash.findings import Finding, cell_ranges
 from flexlash.pipeline import check, run
 from flexlash.summary import (
-    cell_ranges,
+    finding_lines,
     over_limit_lines,
     points_words,
     rounded,
     share_words,
     spread_notes,
     summary_lines,
+    to_fix_words,
     worst_first,
 )
 from flexlash.tolerance.capability import clopper_pearson
@@ -117,6 +119,8 @@ def test_numbers_in_words_have_no_more_digits_than_their_error():
 def test_cells_are_drawn_together():
     """Runs of a column become ranges, doubles one cell, a sheet's column alone stays itself."""
     assert cell_ranges(["D6", "D8", "D7", "D14", "E3", "D14"]) == "D6:D8, D14, E3"
+    assert cell_ranges(["AA2", "F3", "C4", "C5"]) == "C4:C5, F3, AA2"
+    assert cell_ranges([f"A{row}" for row in range(2, 60, 2)], most=3) == "A2, A4, A6 and 26 more"
     assert cell_ranges([]) == ""
 
 
@@ -216,4 +220,74 @@ def test_a_check_says_nothing_of_the_spread(table, sound):
     assert list(summary_lines(outcome, "x.csv", ran=False)) == [
         "x.csv: 1 of 1 rows ready.",
         "Next: flexlash run x.csv",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("changes", "name", "lines"),
+    [
+        ([{}], "x.csv", ["1 of 1 rows ready.", "flexlash run x.csv"]),
+        ([{}], "my x.csv", ["1 of 1 rows ready.", 'flexlash run "my x.csv"']),
+        (
+            [{}, {}, {"torque_Nm": -1, "wall_thickness_mm": "1,6"}],
+            "x.csv",
+            [
+                "2 of 3 rows ready; 2 cells to fix.",
+                "mend that and check again, or compute the 2 rows: flexlash run x.csv",
+            ],
+        ),
+        ([{"torque_Nm": ""}], "x.csv", ["0 of 1 rows ready; 1 cell to fix.", "mend that, then: flexlash check x.csv"]),
+        ([{"torque_Nm": 12000}], "x.csv", ["1 of 1 rows ready; 1 warning.", "flexlash run x.csv"]),
+    ],
+)
+def test_a_check_ends_with_what_is_ready_and_the_next_command(table, sound, changes, name, lines):
+    """The last lines count rows, cells to fix and warnings, and end with the command to type next."""
+    row = {**sound, "backlash_limit_arcmin": ""}
+    path = table([{**row, "variant": f"v{number}", **one} for number, one in enumerate(changes)])
+    assert list(summary_lines(check(path), name, ran=False)) == [f"{name}: {lines[0]}", f"Next: {lines[1]}"]
+
+
+def test_an_unreadable_file_is_one_problem(tmp_path):
+    """A file that is refused has one problem of the file to fix, and nothing else is counted."""
+    path = tmp_path / "a.xlsx"
+    path.write_bytes(b"PK\x03\x04half")
+    assert list(summary_lines(check(path), "a.xlsx", ran=False)) == [
+        "a.xlsx: nothing to compute; 1 problem of the file to fix.",
+        "Next: mend that, then: flexlash check a.xlsx",
+    ]
+
+
+def _error(cell, sheet="Variants"):
+    return Finding(level="error", code="E201", sheet=sheet, cell=cell, message="", fix="")
+
+
+@pytest.mark.parametrize(
+    ("findings", "words"),
+    [
+        ([], ""),
+        ([_error("D6")], "1 cell to fix"),
+        ([_error("D6"), _error("D6"), _error("D7"), _error("D6", "Materials")], "3 cells to fix"),
+        ([_error("")], "1 problem of the file to fix"),
+        ([_error("D6"), _error("", "Tolerance"), _error("")], "1 cell and 2 problems of the file to fix"),
+        ([Finding(level="warning", code="W402", message="", fix="")], ""),
+    ],
+)
+def test_cells_are_counted_once(findings, words):
+    """However many errors a cell has, it is one cell to fix; errors without a cell are problems of the file."""
+    assert to_fix_words(findings) == words
+
+
+def test_groups_have_their_count_and_their_mends():
+    """Findings of one rule are one group with the number of its cells; different mends are all said."""
+    group = [
+        Finding(level="error", code="E112", sheet="Variants", cell=cell, message=f"message {cell}", fix=f"Write {fix}.")
+        for cell, fix in (("D1", "a"), ("F1", "b"), ("E1", "a"))
+    ]
+    assert [line for _, line in finding_lines(group)] == [
+        "error E112 misspelt header, 3 cells: Variants!D1, E1, F1",
+        "    message D1",
+        "    message F1",
+        "    message E1",
+        "    Mend: Write a.",
+        "    Mend: Write b.",
     ]

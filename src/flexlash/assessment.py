@@ -175,12 +175,12 @@ def _warn_stiffness(validated: Validated, variant: Variant, nominal: Numbers) ->
     if _exceeds(least, stiffness):
         key = "mean_radius_mm" if "mean_radius" in variant.dimensions else "bore_diameter_mm"
         size = f"{nominal['catalogue_size']:.0f}"
-        blame(validated, "W412", variant, key, value=f"{stiffness:.4g}", other=f"{least:.4g}", detail=size)
+        blame(validated, "W412", variant, key, value=_digits(stiffness, 4), other=_digits(least, 4), detail=size)
     speeds = [nominal.get("resonance_speed_low"), nominal.get("resonance_speed")]
     if _exceeds(_USUAL_SPEED, speeds[0]):
-        low, high = (f"{float(speed or 0) / RPM:.2g}" for speed in speeds)
+        low, high = (_digits(float(speed or 0) / RPM, 2) for speed in speeds)
         span = high if low == high else f"{low} to {high}"
-        value = f"{nominal['natural_frequency']:.2g}"
+        value = _digits(nominal["natural_frequency"], 2)
         blame(validated, "W415", variant, "load_inertia_kg_m2", value=value, other=span)
 
 
@@ -197,6 +197,11 @@ def _warn_limit(validated: Validated, variant: Variant, nominal: Numbers) -> Non
 def _name(key: str) -> str:
     """Return the name of a column of Variants."""
     return columns_of("Variants")[key].name
+
+
+def _digits(value: float | str | None, digits: int) -> str:
+    """Return a number rounded to so many digits, without a power of ten."""
+    return f"{float(f'{float(value or 0):.{digits}g}'):.15g}"
 
 
 def _exceeds(one: float | str | None, other: float | str | None) -> bool:

@@ -248,8 +248,8 @@ CATALOGUE = _rules(
         "unknown grade",
         '{place} {name} = "{value}" is no grade; IT7, js7, h7, H7 or 2768-m, for instance, is required.',
         "Enter such a grade, or lower and upper deviation instead.",
-        "Grades are IT, js, h or H with 5 to 12, and 2768-f, -m, -c, -v. h lies below the nominal value, H above, js and "
-        "IT on both sides. Letter case matters: h is not H.",
+        "Grades are IT, js, h or H with 5 to 12, and 2768-f, -m, -c, -v. h lies below the nominal value, H above, js "
+        "and IT on both sides. Letter case matters: h is not H.",
     ),
     (
         "E211",
@@ -737,14 +737,6 @@ CATALOGUE = _rules(
         "Reports carry a mark by which they are recognised when a whole folder is submitted.",
     ),
     (
-        "I513",
-        "marked copy skipped",
-        "{file} is a marked copy of a submission; it was skipped.",
-        "Mend and submit your own file, or take the copy itself with --marked-copies.",
-        "Marked copies carry a mark by which they are recognised when a whole folder is submitted. What a copy could "
-        "not take over, such as charts, is only in your own file.",
-    ),
-    (
         "I509",
         "values without a header",
         "{place}: the values of column {value} have no header and were not read.",
@@ -773,5 +765,13 @@ CATALOGUE = _rules(
         "{file} was made from template version {found}; version {known} adds {added}.",
         "Nothing to do. To enter them, move the file into a new template: flexlash template --upgrade FILE.",
         "An older template is read as before; what it has no column for counts as blank.",
+    ),
+    (
+        "I513",
+        "marked copy skipped",
+        "{file} is a marked copy of a submission; it was skipped.",
+        "Mend and submit your own file, or take the copy itself with --marked-copies.",
+        "Marked copies carry a mark by which they are recognised when a whole folder is submitted. What a copy could "
+        "not take over, such as charts, is only in your own file.",
     ),
 )

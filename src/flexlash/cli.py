@@ -140,15 +140,13 @@ def explain(code: str | None) -> None:
         for rule in CATALOGUE.values():
             click.echo(f"{rule.code}  {rule.level:8} {rule.title}")
         return
-    found = CATALOGUE.get(code.strip().upper())
-    if found is None:
+    known = code.strip().upper()
+    if known not in CATALOGUE:
         raise click.UsageError(f"{shown(code)} is not a finding's code. flexlash explain lists them all.")
-    click.echo(f"{found.code} {found.level}: {found.title}\n\n{found.explanation}\n\nMend: {_generally(found.fix)}")
+    from flexlash.explanations import explanation_of
 
-
-def _generally(fix: str) -> str:
-    """Return a mend without a cell at hand."""
-    return fix.format(label="the header of the template", unit="the template's unit", dimension="the dimension")
+    for line in explanation_of(known).lines():
+        click.echo(line)
 
 
 def _limits(_: click.Context, __: click.Parameter, given: tuple[str, ...]) -> ReadingLimits:

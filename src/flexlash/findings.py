@@ -94,7 +94,7 @@ def cell_ranges(cells: Sequence[str], most: int = 20) -> str:
         letters = cell.rstrip("0123456789")
         by_column[letters].append(int(cell[len(letters) :] or 0))
     found = []
-    for letters, numbers in by_column.items():
+    for letters, numbers in sorted(by_column.items(), key=lambda entry: (len(entry[0]), entry[0])):
         start = last = None
         for number in [*sorted(set(numbers)), math.inf]:
             if last is not None and number == last + 1:

@@ -10,10 +10,10 @@ import polars as pl
 from pandera.errors import SchemaErrors
 
 from flexlash.columns import Column, columns_of
-from flexlash.submission.headers import closest
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.plausibility import find_slips
 from flexlash.submission.relations import RELATIONS, Relation
+from flexlash.submission.spellings import closest, misspelt, spelt_alike
 from flexlash.submission.tabulate import Table
 
 __all__ = ["check_cells", "check_relations"]
@@ -82,6 +82,7 @@ def check_cells(table: Table, ledger: Ledger) -> None:
             requirement=column.requirement,
             value=table.entered(row, key),
             suggestion=closest(value, list(column.choices)) if check == "E209" else "",
+            repair=misspelt(value, spelt_alike(column.choices)) if check == "E209" else None,
             rows=[row] if table.schema == "Variants" else [],
         )
     find_slips(table, ledger)

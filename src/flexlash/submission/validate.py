@@ -7,13 +7,16 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 from typing import Any
 
-from flexlash.columns import ENTRY_SHEETS, columns_of
+from flexlash.columns import columns_of
 from flexlash.submission.checks import check_cells, check_relations
-from flexlash.submission.headers import closest, plain
+from flexlash.submission.entry_sheets import entry_sheets, tell_misspelt_sheets
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.read import RawSheet, Submission
+from flexlash.submission.manners import tell_manner
+from flexlash.submission.overlooked import tell_overlooked
+from flexlash.submission.read import Submission
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
+from flexlash.submission.spellings import closest, misspelt, plain, spelt_alike
 from flexlash.submission.tables import (
     built_in_materials,
     materials_of,
@@ -64,17 +67,19 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     ledger = Ledger(submission.name)
     result = Validated(ledger=ledger)
     _check_version(submission)
-    sheets = _entry_sheets(submission, limits or ReadingLimits())
+    sheets = entry_sheets(submission, limits or ReadingLimits())
+    misspelt_sheets = tell_misspelt_sheets(submission, sheets, ledger)
     tables: dict[str, Table] = {}
     for schema, sheet in sheets.items():
         table = tabulate(sheet, schema, ledger)
         if table is not None:
+            tell_overlooked(sheet, table, ledger)
             check_cells(table, ledger)
             result.header_rows[schema] = table.heading.row
             tables[schema] = table
-    if submission.delimiter not in {"", ","}:
-        ledger.add("I507", value={";": "semicolon", "\t": "tab"}[submission.delimiter])
-    _fill_tables(result, submission, sheets.keys(), tables)
+    for sheet in sheets.values():
+        tell_manner(sheet, ledger)
+    _fill_tables(result, submission, sheets.keys() | misspelt_sheets, tables)
     result.table = tables.get("Variants")
     if result.table is not None:
         _check_rows(result, result.table)
@@ -85,6 +90,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
             for record in result.table.frame.iter_rows(named=True)
             if record["row"] not in ledger.rows
         ]
+    ledger.settle()
     ledger.name_variants(result.table.sheet if result.table else "", {row: name for row, name, _ in result.submitted})
     return result
 
@@ -94,30 +100,6 @@ def _check_version(submission: Submission) -> None:
     version = submission.template_version
     if version.isdecimal() and int(version) > TEMPLATE_VERSION:
         raise Refusal("E116", found=version, known=TEMPLATE_VERSION)
-
-
-def _entry_sheets(submission: Submission, limits: ReadingLimits) -> dict[str, RawSheet]:
-    """Return the entry sheets by schema; letter case and spaces of their names do not matter."""
-    by_plain: dict[str, RawSheet] = {}
-    for name, sheet in submission.sheets.items():
-        if plain(name) in by_plain and plain(name) in map(plain, ENTRY_SHEETS):
-            raise Refusal("E117", found=name, other=by_plain[plain(name)].name)
-        by_plain[plain(name)] = sheet
-    if plain("Variants") not in by_plain:
-        names = list(submission.sheets)
-        listed = "the sheets " + ", ".join(names[:8]) if names else "no sheet"
-        raise Refusal("E108", found=listed, suggestion=closest("Variants", names))
-    found = {schema: by_plain[plain(schema)] for schema in ENTRY_SHEETS if plain(schema) in by_plain}
-    if submission.kind == "workbook":
-        for sheet in found.values():
-            _check_size(sheet, limits)
-    return found
-
-
-def _check_size(sheet: RawSheet, limits: ReadingLimits) -> None:
-    """Refuse a sheet that holds more than a submission can mean."""
-    limits.require("rows", len(sheet.rows))
-    limits.require("columns", max((max(cells) for cells in sheet.rows.values()), default=0))
 
 
 def _fill_tables(result: Validated, submission: Submission, present: Collection[str], tables: dict[str, Table]) -> None:
@@ -151,6 +133,7 @@ def _check_rows(result: Validated, table: Table) -> None:
     _check_duplicates(table, ledger)
     known_materials = [material.name for material in result.materials.values()]
     known_classes = [rows[0].tolerance_class if rows else key for key, rows in result.classes.items()]
+    meant: dict[tuple[str, str], dict[str, str | None]] = {}
     for record in table.frame.iter_rows(named=True):
         row = record["row"]
         for key, code, known, faulty, names in (
@@ -161,11 +144,15 @@ def _check_rows(result: Validated, table: Table) -> None:
             if value is None or (row, key) in table.faulty or (ledger.everything and not known):
                 continue
             if plain(value) not in known:
-                _blame(table, ledger, code, row, key, value=value, suggestion=closest(value, names, 0.5))
+                if (key, value) not in meant:
+                    repair = misspelt(value, spelt_alike(names))
+                    meant[key, value] = {"suggestion": closest(value, names, 0.5), "repair": repair}
+                _blame(table, ledger, code, row, key, value=value, **meant[key, value])
             elif plain(value) in faulty:
                 ledger.rows.add(row)
             elif value not in names:
-                _blame(table, ledger, "I504", row, key, value=value, suggestion=closest(value, names))
+                name = spelt_alike(names)[plain(value)]
+                _blame(table, ledger, "I504", row, key, value=value, suggestion=name, repair=name)
         if record["tolerance_class"] is None and "standard" in ledger.classes:
             ledger.rows.add(row)
 
@@ -177,10 +164,8 @@ def _check_duplicates(table: Table, ledger: Ledger) -> None:
         if name is not None:
             partners[name.casefold()].append(row)
     for rows in partners.values():
-        for row in rows if len(rows) > 1 else ():
-            others = [table.address(other, "variant") for other in rows if other != row]
-            listed = ", ".join(others[:10]) + (f" and {len(others) - 10} more" if len(others) > 10 else "")  # noqa: PLR2004
-            _blame(table, ledger, "E308", row, "variant", value=table.entered(row, "variant"), other=listed)
+        for row, others in table.partners(rows, "variant"):
+            _blame(table, ledger, "E308", row, "variant", value=table.entered(row, "variant"), other=others)
 
 
 def _blame(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts: Any) -> None:

@@ -3,7 +3,8 @@
 `materials.csv` (elastic constants, density, yield strength, each with its source), `iso286.csv` (tolerance
 widths IT5 to IT12 in µm, over a size up to and including the next), `iso2768.csv` (± deviations in mm),
 `standard_class.csv` (the built-in tolerance class), `catalogue_stiffness.csv` (K1, K2, K3 of a maker's
-catalogue by size and ratio) and `study.csv` (the published B3-160 case and its variations).
+catalogue by size and ratio), `study.csv` (the published B3-160 case and its variations) and `finding_examples.csv`
+(a real message of each finding).
 """
 
 from __future__ import annotations
