@@ -17,7 +17,7 @@ _FEW = 8
 
 @dataclass(frozen=True, kw_only=True)
 class Column:
-    """One field of one sheet; bounds are in the printed unit."""
+    """One field of one sheet; bounds are in the printed unit, `since` is the template version that brought it."""
 
     sheet: str
     key: str
@@ -33,6 +33,7 @@ class Column:
     choices: tuple[str, ...] = ()
     default: str | float | None = None
     group: str = ""
+    since: int = 1
 
     @cached_property
     def name(self) -> str:
@@ -86,7 +87,9 @@ class Column:
         entry = asdict(self)
         entry["choices"] = list(self.choices)
         order = ("sheet", "key", "label", "unit", "type", "required", "minimum", "maximum")
-        return {key: entry[key] for key in (*order, "choices", "default", "help", "exclusive_minimum", "group")}
+        return {
+            key: entry[key] for key in (*order, "choices", "default", "help", "exclusive_minimum", "group", "since")
+        }
 
 
 def _is_symbol(word: str) -> bool:

@@ -149,6 +149,7 @@ VARIANTS = (
         minimum=0,
         maximum=10,
         group="Refinements",
+        since=2,
     ),
     _variant(
         "disk_cone_angle_deg",
@@ -159,6 +160,7 @@ VARIANTS = (
         minimum=30,
         maximum=90,
         group="Refinements",
+        since=2,
     ),
     _variant(
         "hub_fillet_radius_mm",
@@ -200,6 +202,7 @@ VARIANTS = (
         quantity="inertia",
         **_POSITIVE,
         group="Requirements",
+        since=2,
     ),
     _variant(
         "backlash_limit_arcmin",

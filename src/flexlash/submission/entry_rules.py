@@ -69,8 +69,11 @@ def cell_rule(column: Column, place: int) -> dict[str, Any]:
     return rule
 
 
-def write_lists(workbook: Any, sheet: Any, classes: Sequence[str]) -> None:
-    """Write the hidden lists behind the drop-downs and name them; `classes` are those in Tolerances, in order."""
+def write_lists(workbook: Any, sheet: Any, classes: Sequence[str], rows: int = SIDE_ROWS) -> None:
+    """Write the hidden lists behind the drop-downs and name them.
+
+    `classes` are the names in Tolerances, row by row; `rows` is how many rows of Materials and Tolerances are listed.
+    """
     choices = {column.key: column.choices for columns in ENTRY_SHEETS.values() for column in columns}
     lists = {
         "fl_flexspline_types": choices["flexspline_type"],
@@ -86,23 +89,23 @@ def write_lists(workbook: Any, sheet: Any, classes: Sequence[str]) -> None:
         sheet.write_string(0, place, name)
         sheet.write_column(1, place, entries)
         workbook.define_name(name, f"=Lists!${letter}$2:${letter}${len(entries) + 1}")
-    first, last = FIRST_ROW + 1, FIRST_ROW + SIDE_ROWS
+    first, last = FIRST_ROW + 1, FIRST_ROW + rows
     for name, title in (("Materials", "fl_materials"), ("Tolerances", "fl_tolerance_rows")):
         block = f"{name}!$A${first}:$A${last}"
         end = f"INDEX({block},MAX(1,COUNTA({block})))"
         workbook.define_name(title, f"={name}!$A${first}:{end}")
-    _write_classes(workbook, sheet, len(lists), classes)
+    _write_classes(workbook, sheet, len(lists), classes, last)
     sheet.hide()
     sheet.protect()
 
 
-def _write_classes(workbook: Any, sheet: Any, place: int, classes: Sequence[str]) -> None:
+def _write_classes(workbook: Any, sheet: Any, place: int, classes: Sequence[str], last: int) -> None:
     """Write the formulas that collect the names of the tolerance classes, each once."""
     letter = xl_col_to_name(place)
-    rows = f"Tolerances!$A${FIRST_ROW + 1}:$A${FIRST_ROW + SIDE_ROWS}"
+    rows = f"Tolerances!$A${FIRST_ROW + 1}:$A${last}"
     # LOOKUP finds the last name that is not listed yet, so the names after the first stand in reverse.
-    first, *others = dict.fromkeys(classes)
-    names = [first, *reversed(others)]
+    first, *others = dict.fromkeys(classes) or ("",)
+    names = [first, *(name for name in reversed(others) if name)]
     sheet.write_string(0, place, "fl_tolerance_classes")
     sheet.write_formula(1, place, f'={rows.split(":", maxsplit=1)[0]}&""', None, names[0])
     for row in range(2, _LIST_ROWS + 2):

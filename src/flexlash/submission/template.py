@@ -5,14 +5,14 @@ from __future__ import annotations
 import datetime
 import io
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
 import xlsxwriter
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
-from flexlash import tables
-from flexlash.columns import ENTRY_SHEETS, MATERIALS, SETTINGS, SETTINGS_SHEET, TOLERANCES, VARIANTS, Column
+from flexlash.columns import ENTRY_SHEETS, SETTINGS, Column
+from flexlash.submission.cell_writer import DATE_FORMATS, CellWriter
+from flexlash.submission.dictionary_sheet import write_dictionary
 from flexlash.submission.entry_rules import (
     FIRST_ROW,
     HEADER_ROW,
@@ -22,15 +22,30 @@ from flexlash.submission.entry_rules import (
     header_note,
     write_lists,
 )
+from flexlash.submission.filling import Entries, Filling, study
 from flexlash.submission.headers import STATUS_HEADER
-from flexlash.submission.read import ErrorCell, Unstored
-from flexlash.submission.status import COMPLETE, status_formula, status_text
-from flexlash.submission.validate import TEMPLATE_VERSION
+from flexlash.submission.status import COMPLETE, status_formula
+from flexlash.submission.stored_status import listed_name, stored_statuses
+from flexlash.submission.versions import TEMPLATE_VERSION
 
-__all__ = ["Filling", "study", "template_bytes"]
+__all__ = ["TITLES", "Filling", "study", "template_bytes"]
+
+TITLES = {
+    "Variants": (
+        "flexlash: one row per flexspline variant",
+        "Yellow columns are required. Each header has a note; each cell says what it takes.",
+    ),
+    "Materials": ("Materials", "One row per material. Add rows for your own."),
+    "Tolerances": (
+        "Tolerances",
+        "One row per class and dimension: a grade, or lower and upper deviation. No row: exact.",
+    ),
+    "Settings": ("Settings", "Blank values take the default."),
+}
+"""Title and hint above each entry sheet."""
 
 _PRINTED_ROWS = 100
-_UNSTORED_FORMULA = "=0.8*2"
+_OWN_WIDTH = 16
 _DATE = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=None)
 
 _WIDTHS = {
@@ -44,30 +59,6 @@ _WIDTHS = {
 }
 
 
-@dataclass(frozen=True, kw_only=True)
-class Filling:
-    """Rows to fill a template with, each by key; `None` keeps what the empty template holds."""
-
-    variants: Sequence[Mapping[str, Any]] = ()
-    tolerances: Sequence[Mapping[str, Any]] = ()
-    materials: Sequence[Mapping[str, Any]] = ()
-    settings: Mapping[str, Any] = field(default_factory=dict)
-
-
-def study() -> Filling:
-    """Return the published B3-160 study with its screening tolerances, as `--example` fills it in."""
-    return Filling(variants=_typed("study", VARIANTS), tolerances=_typed("study_class", TOLERANCES))
-
-
-def _typed(table: str, columns: Sequence[Column]) -> list[dict[str, Any]]:
-    """Return the rows of a packaged table with its numbers as numbers and its blanks left out."""
-    numeric = {column.key for column in columns if column.is_number}
-    return [
-        {key: float(text) if key in numeric else text for key, text in row.items() if text}
-        for row in tables.rows(table)
-    ]
-
-
 def template_bytes(filling: Filling | None = None) -> bytes:
     """Return the template as an .xlsx file, empty or filled."""
     buffer = io.BytesIO()
@@ -76,7 +67,8 @@ def template_bytes(filling: Filling | None = None) -> bytes:
         {"title": "flexlash template", "comments": f"Template version {TEMPLATE_VERSION}", "created": _DATE}
     )
     workbook.set_custom_property("flexlash", "template")
-    workbook.set_custom_property("flexlash_template_version", TEMPLATE_VERSION, "number_int")
+    # A text, since LibreOffice makes whole numbers decimal ones.
+    workbook.set_custom_property("flexlash_template_version", str(TEMPLATE_VERSION), "text")
     _Template(workbook, filling or Filling()).write()
     workbook.close()
     return buffer.getvalue()
@@ -114,7 +106,7 @@ class _Template:
                 "number required": {**entry, "bg_color": "#FFF5D6"},
                 "text required": {**entry, "num_format": "@", "bg_color": "#FFF5D6"},
                 "status": {**base, "italic": True, "font_color": "#595959", "indent": 1},
-                "date": {**entry, "num_format": "d mmm"},
+                **{kind: {**entry, "num_format": form} for kind, form in DATE_FORMATS.items()},
                 "good": {"font_color": "#006100", "bg_color": "#D5EBDD"},
                 "open": {"font_color": "#7F4F00", "bg_color": "#FFE3B3"},
                 "wrap": {**base, "text_wrap": True, "valign": "top"},
@@ -124,29 +116,26 @@ class _Template:
 
     def write(self) -> None:
         """Write all sheets."""
-        materials = self.filling.materials or _typed("materials", MATERIALS)
-        standard = [{"tolerance_class": "standard", **row} for row in _typed("standard_class", TOLERANCES)]
-        tolerances = [*standard, *self.filling.tolerances]
-        classes = [row["tolerance_class"] for row in tolerances]
-        write_lists(self.workbook, self.sheets["Lists"], classes)
-        self._variants([row["material"] for row in materials], classes)
-        self._side("Materials", MATERIALS, materials, "One row per material. Add rows for your own.")
-        self._side(
-            "Tolerances",
-            TOLERANCES,
-            tolerances,
-            "One row per class and dimension: a grade, or lower and upper deviation. No row: exact.",
-        )
-        self._settings()
-        self._dictionary()
+        entries = {name: self.filling.entries(name) for name in ENTRY_SHEETS}
+        materials, tolerances = entries["Materials"], entries["Tolerances"]
+        names = [listed_name(row.get("material")) for row in materials.rows]
+        classes = [listed_name(row.get("tolerance_class")) for row in tolerances.rows]
+        rows = max(SIDE_ROWS, len(materials.rows), len(tolerances.rows))
+        write_lists(self.workbook, self.sheets["Lists"], classes, rows)
+        self._variants(entries["Variants"], names, classes)
+        self._side("Materials", materials)
+        self._side("Tolerances", tolerances)
+        self._settings(entries["Settings"])
+        write_dictionary(self.sheets["Dictionary"], self.formats)
 
     def _format(self, column: Column) -> Any:
         kind = "number" if column.is_number else "text"
         return self.formats[f"{kind} required" if column.required else kind]
 
-    def _heading(self, name: str, title: str, hint: str, columns: Sequence[Column]) -> Any:
+    def _heading(self, name: str, entries: Entries) -> Any:
         """Write title, hint and header row of an entry sheet; return the sheet."""
-        sheet = self.sheets[name]
+        title, hint = TITLES[name]
+        sheet, columns = self.sheets[name], entries.columns
         for row in range(HEADER_ROW):
             for place in range(len(columns) + 1):
                 sheet.write_blank(row, place, None, self.formats["plain"])
@@ -184,54 +173,54 @@ class _Template:
     def _outline(column: Column) -> dict[str, int]:
         return {"level": 1} if column.group == "Refinements" else {}
 
-    def _variants(self, materials: Sequence[str], classes: Sequence[str]) -> None:
+    def _variants(self, entries: Entries, materials: Sequence[str], classes: Sequence[str]) -> None:
         """Write the Variants sheet: entries, hints, live status."""
-        hint = "Yellow columns are required. Each header has a note; each cell says what it takes."
-        sheet = self._heading("Variants", "flexlash: one row per flexspline variant", hint, VARIANTS)
+        sheet = self._heading("Variants", entries)
+        columns, status = entries.columns, len(entries.columns)
         sheet.write_string(0, 9, f"Template version {TEMPLATE_VERSION}", self.formats["hint"])
         sheet.set_row(2, 18)
         groups: list[str] = []
-        for place, column in enumerate(VARIANTS):
+        for place, column in enumerate(columns):
             sheet.write_string(2, place, "" if column.group in groups else column.group, self.formats["group"])
             groups.append(column.group)
-        status = len(VARIANTS)
         sheet.write_string(2, status, "", self.formats["group"])
         sheet.write_string(HEADER_ROW, status, STATUS_HEADER, self.formats["header"])
         sheet.write_comment(HEADER_ROW, status, "Calculated while you type: what the row still lacks.")
         sheet.set_column(status, status, 36, self.formats["status"])
-        letters = {column.key: xl_col_to_name(place) for place, column in enumerate(VARIANTS)}
-        rows = self.filling.variants
-        texts = [_stored_status(row, rows, materials, classes) for row in rows]
-        for place, row in enumerate(rows):
-            self._fill(sheet, FIRST_ROW + place, VARIANTS, row)
-        for place in range(max(PREPARED_ROWS, len(rows))):
+        self._fill(sheet, entries, status + 1)
+        letters = {column.key: xl_col_to_name(place) for place, column in enumerate(columns)}
+        texts = stored_statuses(entries, materials, classes)
+        prepared = max(PREPARED_ROWS, len(texts))
+        for place in range(prepared):
             text = texts[place] if place < len(texts) else ""
-            formula = status_formula(FIRST_ROW + place + 1, letters)
-            sheet.write_formula(FIRST_ROW + place, status, formula, self.formats["status"], text)
-        self._progress(sheet, xl_col_to_name(status), texts)
-        self._entry_rules(sheet, VARIANTS, PREPARED_ROWS)
-        self._shading(sheet, status)
-        sheet.print_area(0, 0, HEADER_ROW + max(_PRINTED_ROWS, len(rows)), status)
+            if text or place < PREPARED_ROWS:
+                formula = status_formula(FIRST_ROW + place + 1, letters)
+                sheet.write_formula(FIRST_ROW + place, status, formula, self.formats["status"], text)
+        self._progress(sheet, xl_col_to_name(status), texts, prepared)
+        self._entry_rules(sheet, columns, prepared)
+        self._shading(sheet, columns, prepared)
+        sheet.print_area(0, 0, HEADER_ROW + max(_PRINTED_ROWS, len(texts)), status + len(entries.own))
         sheet.activate()
 
-    def _progress(self, sheet: Any, letter: str, texts: Sequence[str]) -> None:
+    def _progress(self, sheet: Any, letter: str, texts: Sequence[str], prepared: int) -> None:
         """Write the live sentence that says how many rows are complete and where the first gap is."""
-        block = f"${letter}${FIRST_ROW + 1}:${letter}${FIRST_ROW + PREPARED_ROWS}"
-        names = f"$A${FIRST_ROW + 1}:$A${FIRST_ROW + PREPARED_ROWS}"
+        block = f"${letter}${FIRST_ROW + 1}:${letter}${FIRST_ROW + prepared}"
+        names = f"$A${FIRST_ROW + 1}:$A${FIRST_ROW + prepared}"
         done, started = f'COUNTIF({block},"{COMPLETE}")', f'COUNTIF({block},"?*")'
         sentence = f'{done}&" of "&{started}&" rows complete"'
-        ready = sum(text == COMPLETE for text in texts)
-        shown = f"{ready} of {len(texts)} rows complete" if texts else "No row entered yet"
+        entered = [text for text in texts if text]
+        shown = f"{entered.count(COMPLETE)} of {len(entered)} rows complete" if entered else "No row entered yet"
         formula = f'=IF({started}=0,"No row entered yet",{sentence})'
         sheet.write_formula(1, 9, formula, self.formats["live"], shown)
         self.workbook.define_name("fl_variants", f"=Variants!{names}")
 
-    def _shading(self, sheet: Any, status: int) -> None:
+    def _shading(self, sheet: Any, columns: Sequence[Column], prepared: int) -> None:
         """Colour what is missing, what is double, and the status."""
-        last = FIRST_ROW + PREPARED_ROWS - 1
-        first, end = xl_col_to_name(0), xl_col_to_name(len(VARIANTS) - 1)
+        status = len(columns)
+        last = FIRST_ROW + prepared - 1
+        first, end = xl_col_to_name(0), xl_col_to_name(status - 1)
         row = FIRST_ROW + 1
-        for place, column in enumerate(VARIANTS):
+        for place, column in enumerate(columns):
             if column.required:
                 cell = xl_rowcol_to_cell(FIRST_ROW, place)
                 criteria = f'=AND(COUNTA(${first}{row}:${end}{row})>0,{cell}="")'
@@ -239,31 +228,26 @@ class _Template:
                 sheet.conditional_format(FIRST_ROW, place, last, place, rule)
         sheet.conditional_format(FIRST_ROW, 0, last, 0, {"type": "duplicate", "format": self.formats["open"]})
         cell = f"${xl_col_to_name(status)}{row}"
-        for criteria, style in ((f'={cell}="{COMPLETE}"', "good"), (f"=LEN({cell})>0", "open")):
-            rule = {
-                "type": "formula",
-                "criteria": criteria,
-                "format": self.formats[style],
-                "stop_if_true": True,
-            }
+        # Each rule excludes the other, since LibreOffice forgets which of them would stop the next.
+        unfinished = f'=AND(LEN({cell})>0,{cell}<>"{COMPLETE}")'
+        for criteria, style in ((f'={cell}="{COMPLETE}"', "good"), (unfinished, "open")):
+            rule = {"type": "formula", "criteria": criteria, "format": self.formats[style]}
             sheet.conditional_format(FIRST_ROW, status, last, status, rule)
 
-    def _fill(self, sheet: Any, row: int, columns: Sequence[Column], values: Mapping[str, Any]) -> None:
-        """Write the given values of a row, texts as texts."""
-        for place, column in enumerate(columns):
-            value = values.get(column.key)
-            if isinstance(value, str):
-                sheet.write_string(row, place, value, self._format(column))
-            elif isinstance(value, bool):
-                sheet.write_boolean(row, place, value, self._format(column))
-            elif isinstance(value, datetime.date):
-                sheet.write_datetime(row, place, value, self.formats["date"])
-            elif isinstance(value, ErrorCell):
-                sheet.write_formula(row, place, f"={value.text}", self._format(column), value.text)
-            elif isinstance(value, Unstored):
-                sheet.write_formula(row, place, _UNSTORED_FORMULA, self._format(column), "")
-            elif value is not None:
-                sheet.write_number(row, place, value, self._format(column))
+    def _fill(self, sheet: Any, entries: Entries, own: int, styles: Mapping[str, Any] | None = None) -> None:
+        """Write the given rows, and the user's own columns from the place `own` on; `styles` are formats by key."""
+        cells = CellWriter(sheet, self.formats)
+        styles = styles or {column.key: self._format(column) for column in entries.columns}
+        places: dict[str | int, tuple[int, Any]] = {
+            column.key: (place, styles[column.key]) for place, column in enumerate(entries.columns)
+        }
+        for number, header in enumerate(entries.own):
+            places[number] = (own + number, self.formats["number"])
+            sheet.set_column(own + number, own + number, _OWN_WIDTH, self.formats["number"])
+            cells.write(HEADER_ROW, own + number, header, self.formats["header"])
+        for row, values in enumerate(entries.rows, start=FIRST_ROW):
+            for key, (place, style) in places.items() if values else ():
+                cells.write(row, place, values.get(key), style)
 
     def _entry_rules(self, sheet: Any, columns: Sequence[Column], rows: int) -> None:
         """Give every cell of every column its hint and its rule."""
@@ -271,80 +255,25 @@ class _Template:
             rule = cell_rule(column, place)
             sheet.data_validation(FIRST_ROW, place, FIRST_ROW + rows - 1, place, rule)
 
-    def _side(self, name: str, columns: Sequence[Column], rows: Sequence[Mapping[str, Any]], hint: str) -> None:
+    def _side(self, name: str, entries: Entries) -> None:
         """Write Materials or Tolerances."""
-        sheet = self._heading(name, name, hint, columns)
-        for place, row in enumerate(rows):
-            self._fill(sheet, FIRST_ROW + place, columns, row)
-        self._entry_rules(sheet, columns, SIDE_ROWS)
+        sheet = self._heading(name, entries)
+        self._fill(sheet, entries, len(entries.columns))
+        self._entry_rules(sheet, entries.columns, max(SIDE_ROWS, len(entries.rows)))
 
-    def _settings(self) -> None:
+    def _settings(self, entries: Entries) -> None:
         """Write Settings: fixed names, free values, what they mean beside them."""
-        sheet = self._heading("Settings", "Settings", "Blank values take the default.", SETTINGS_SHEET)
+        sheet = self._heading("Settings", entries)
+        meaning = len(entries.columns)
+        for place in range(len(entries.rows)):
+            sheet.write_blank(FIRST_ROW + place, 1, None, self.formats["number"])
+        self._fill(sheet, entries, meaning + 1, {"setting": self.formats["plain"], "value": self.formats["number"]})
         for place, column in enumerate(SETTINGS):
             row = FIRST_ROW + place
-            sheet.write_string(row, 0, column.key, self.formats["plain"])
-            value = self.filling.settings.get(column.key, column.default)
-            style = self.formats["number"]
-            if isinstance(value, str):
-                sheet.write_string(row, 1, value, style)
-            elif value is None:
-                sheet.write_blank(row, 1, None, style)
-            else:
-                sheet.write_number(row, 1, value, style)
-            sheet.write_string(row, 2, f"{column.help} Allowed: {column.requirement}.", self.formats["meaning"])
+            sheet.write_string(row, meaning, f"{column.help} Allowed: {column.requirement}.", self.formats["meaning"])
             rule = cell_rule(column, 1)
             if column.choices:
                 rule |= {"validate": "list", "value": "=fl_methods"}
             sheet.data_validation(row, 1, row, 1, rule)
-        sheet.set_column(2, 2, 110, self.formats["hint"])
+        sheet.set_column(meaning, meaning, 110, self.formats["hint"])
         sheet.protect("", {"format_columns": True})
-
-    def _dictionary(self) -> None:
-        """Write the data dictionary."""
-        sheet = self.sheets["Dictionary"]
-        headings = {
-            "Sheet": 12,
-            "Column": 28,
-            "Key": 24,
-            "Required": 10,
-            "Holds": 44,
-            "Default": 12,
-            "Meaning": 90,
-        }
-        for place, (heading, width) in enumerate(headings.items()):
-            sheet.set_column(place, place, width)
-            sheet.write_string(0, place, heading, self.formats["header"])
-        entries = [column for columns in ENTRY_SHEETS.values() for column in columns]
-        for row, column in enumerate(entries, start=1):
-            default = "" if column.default is None else f"{column.default}"
-            required = "yes" if column.required else ""
-            texts = (
-                column.sheet,
-                column.label,
-                column.key,
-                required,
-                column.requirement,
-                default,
-                column.help,
-            )
-            for place, text in enumerate(texts):
-                sheet.write_string(row, place, text, self.formats["wrap"])
-        sheet.freeze_panes(1, 0)
-        sheet.set_landscape()
-        sheet.set_paper(9)
-        sheet.fit_to_pages(1, 0)
-        sheet.repeat_rows(0)
-        sheet.set_footer("&L&A&C&P / &N&Rflexlash template")
-        sheet.protect("", {"format_columns": True})
-
-
-def _stored_status(
-    row: Mapping[str, Any], rows: Sequence[Mapping[str, Any]], materials: Sequence[str], classes: Sequence[str]
-) -> str:
-    """Return what Excel would show as a row's status; an error in the row shows through."""
-    error = next((value.text for value in row.values() if isinstance(value, ErrorCell)), None)
-    if error is not None:
-        return error
-    as_excel = {key: 1.0 if isinstance(value, datetime.date | Unstored) else value for key, value in row.items()}
-    return status_text(as_excel, rows, materials, classes)

@@ -15,7 +15,6 @@ from flexlash.submission.manners import tell_manner
 from flexlash.submission.overlooked import tell_overlooked
 from flexlash.submission.read import Submission
 from flexlash.submission.reading.limits import ReadingLimits
-from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.spellings import closest, misspelt, plain, spelt_alike
 from flexlash.submission.tables import (
     built_in_materials,
@@ -25,11 +24,10 @@ from flexlash.submission.tables import (
     tolerance_classes_of,
 )
 from flexlash.submission.tabulate import Table, tabulate
+from flexlash.submission.versions import TEMPLATE_VERSION, check_version, tell_additions
 from flexlash.variant import Material, Settings, ToleranceRow, Variant
 
 __all__ = ["TEMPLATE_VERSION", "Validated", "validate"]
-
-TEMPLATE_VERSION = 1
 
 _OTHER_SOURCES = "Other sources"
 
@@ -66,7 +64,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     """
     ledger = Ledger(submission.name)
     result = Validated(ledger=ledger)
-    _check_version(submission)
+    check_version(submission)
     sheets = entry_sheets(submission, limits or ReadingLimits())
     misspelt_sheets = tell_misspelt_sheets(submission, sheets, ledger)
     tables: dict[str, Table] = {}
@@ -79,6 +77,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
             tables[schema] = table
     for sheet in sheets.values():
         tell_manner(sheet, ledger)
+    tell_additions(submission, {schema: table.heading for schema, table in tables.items()}, ledger)
     _fill_tables(result, submission, sheets.keys() | misspelt_sheets, tables)
     result.table = tables.get("Variants")
     if result.table is not None:
@@ -93,13 +92,6 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     ledger.settle()
     ledger.name_variants(result.table.sheet if result.table else "", {row: name for row, name, _ in result.submitted})
     return result
-
-
-def _check_version(submission: Submission) -> None:
-    """Refuse a template of a later version."""
-    version = submission.template_version
-    if version.isdecimal() and int(version) > TEMPLATE_VERSION:
-        raise Refusal("E116", found=version, known=TEMPLATE_VERSION)
 
 
 def _fill_tables(result: Validated, submission: Submission, present: Collection[str], tables: dict[str, Table]) -> None:

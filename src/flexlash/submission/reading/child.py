@@ -43,10 +43,17 @@ def _parquet(data: bytes, limits: ReadingLimits) -> Answer:  # noqa: ARG001
     return to_wire(read_parquet(data)), b""
 
 
-TASKS: dict[str, Callable[..., Answer]] = {"workbook": _workbook, "parquet": _parquet}
+def _leftovers(data: bytes, limits: ReadingLimits) -> Answer:
+    from flexlash.submission.leftovers import leftovers
+
+    return leftovers(data, limits), b""
+
+
+TASKS: dict[str, Callable[..., Answer]] = {"workbook": _workbook, "parquet": _parquet, "leftovers": _leftovers}
 _NEEDED = {
     "workbook": ("flexlash.submission.reading.wire", "openpyxl"),
     "parquet": ("flexlash.submission.reading.wire", "polars"),
+    "leftovers": ("flexlash.submission.leftovers",),
 }
 """What each task imports, before writing is forbidden."""
 
