@@ -19,6 +19,8 @@ from flexlash.submission.raw import RawSheet
 
 __all__ = ["MarkedCopy", "findings_workbook", "marked_copy", "marked_table"]
 
+_TO_DO = "Mend the coloured cells in your own file and submit that. This copy is skipped, unless it is run with --marked-copies."
+
 
 @dataclass(frozen=True, kw_only=True)
 class MarkedCopy:
@@ -37,9 +39,8 @@ def marked_copy(data: bytes, findings: Sequence[Finding], name: str) -> MarkedCo
     earlier = take_record(workbook)
     unmark(workbook, earlier.marks)
     lost = tuple(dict.fromkeys([*earlier.lost, *losses(data, workbook)]))
-    lines = ["Mend the coloured cells in your own file (or here) and submit it again."]
+    lines = [_TO_DO]
     if lost:
-        lines = ["Mend the coloured cells in your own file and submit it again."]
         lines.append(f"Your own file holds what this copy could not take over: {', '.join(lost)}.")
     _mark(workbook, findings, name, lines, lost)
     return MarkedCopy(data=pack(workbook), lost=lost)
@@ -50,7 +51,7 @@ def marked_table(sheets: Mapping[str, RawSheet], findings: Sequence[Finding], na
     workbook = fresh()
     for title, raw in sheets.items():
         add_table(workbook, title, raw)
-    _mark(workbook, findings, name, ["Mend the coloured cells in your own file (or here) and submit it again."], ())
+    _mark(workbook, findings, name, [_TO_DO], ())
     return pack(workbook)
 
 
