@@ -13,7 +13,7 @@ from flexlash.findings import CATALOGUE, Finding, finding, shown
 SOURCE = Path(flexlash.__file__).parent
 JARGON = re.compile(
     r"\b(schema|dtype|null|none|nan|dataframe|frame|exception|traceback|parse[dr]?|regex|string|float|boolean|"
-    r"reference variable|tuple|index|expat|openpyxl|pandera|polars)\b",
+    r"reference variable|tuple|index|expat|openpyxl|pandera|polars|xlsxwriter|zip|unicode error)\b",
     re.IGNORECASE,
 )
 FACTS = {
