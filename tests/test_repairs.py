@@ -69,6 +69,7 @@ def test_a_header_keeps_its_unit(table, sound, header, repair):
     """A misspelt header is repaired with the unit that its author gave, and not where the unit would be a guess."""
     found = _only(check(_renamed(table([sound]), "wall_thickness_mm", header)), "E112")
     assert repair_of(found) == repair
+    assert found.fix.startswith(f"Write {found.suggestion},")
     if repair:
         mended = check(_renamed(table([sound]), "wall_thickness_mm", repair))
         assert "E112" not in {one.code for one in mended.findings}

@@ -160,7 +160,7 @@ class _Recogniser:
             heading.doubtful[place] = meant
             label = f"{column.name} [{unit_text}]" if unit and unit != column.si_unit else column.label
             sure = misspelt(name, self.spellings) == meant and (unit is not None or column.unit in {"", "-"})
-            self.ledger.add("E112", suggestion=label, repair=label if sure else None, **facts)
+            self.ledger.add("E112", suggestion=label, repair=label if sure else None, **facts | {"label": label})
         elif key in heading.places:
             heading.doubtful[place] = key
             self.ledger.add("E114", other=column_letters(heading.places[key]), **facts)
