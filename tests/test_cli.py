@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 
+import openpyxl
 import pytest
 from click.testing import CliRunner
 
@@ -300,6 +301,75 @@ def test_template_never_overwrites_a_filled_one(tmp_path, capsys, main_in):
     assert "--force" in capsys.readouterr().err
     assert main_in("template", "--example", "-o", path, "--force") == 0
     assert path.read_bytes() == (regenerate.ROOT / "data" / "b3-160-study.xlsx").read_bytes()
+
+
+def test_template_upgrade_moves_an_old_file(table, sound, capsys, main_in):
+    """--upgrade writes a filled template beside the old file, says how many rows moved, and ends with the next step."""
+    old = table([{**sound, "day": "1"}, {**sound, "variant": "b", "torque_Nm": ""}])
+    new = old.with_name("submission-v2.xlsx")
+    assert main_in("template", "--upgrade", old) == 0
+    said = capsys.readouterr()
+    assert said.out.splitlines() == [f"{old}: 2 rows of Variants carried over.", f"Template written: {new}"]
+    assert said.err.splitlines() == [f"Look it over, then: flexlash check {new}"]
+    assert main_in("check", new) == 3
+    assert "Variants!D6" in capsys.readouterr().out
+
+
+def test_template_upgrade_says_what_could_not_move(tmp_path, capsys, main_in):
+    """What the new template cannot hold is listed, one line each."""
+    old = tmp_path / "old.xlsx"
+    book = openpyxl.load_workbook(regenerate.ROOT / "data" / "b3-160-study.xlsx")
+    book.create_sheet("Drawings")["A1"] = "x"
+    book["Variants"]["H5"] = "=H6"
+    book.save(old)
+    assert main_in("template", "--upgrade", old, "-o", tmp_path / "new.xlsx") == 0
+    said = capsys.readouterr()
+    assert said.out.splitlines()[0] == f"{old}, made from template version 2: 11 rows of Variants carried over."
+    assert said.err.splitlines()[:2] == [
+        "  Variants!H5: formulas that never stored a result show #N/A until you enter their values.",
+        "  The sheet Drawings with 1 row was left behind.",
+    ]
+
+
+def test_template_upgrade_overwrites_neither_old_nor_new(tmp_path, table, sound, capsys, main_in):
+    """An existing file is replaced when told to, the old one never."""
+    old = table([sound])
+    before = old.read_bytes()
+    new = tmp_path / "submission-v2.xlsx"
+    new.write_bytes(b"filled")
+    assert main_in("template", "--upgrade", old) == 2
+    assert new.read_bytes() == b"filled"
+    assert main_in("template", "--upgrade", old, "-o", old, "--force") == 2
+    assert old.read_bytes() == before
+    assert "never overwrites" in capsys.readouterr().err
+    assert main_in("template", "--upgrade", old, "--force") == 0
+    assert new.read_bytes().startswith(b"PK")
+
+
+@pytest.mark.parametrize(
+    ("content", "code", "words"),
+    [
+        (b"PK\x03\x04 damaged", 4, "E102 old.xlsx is damaged"),
+        (b"%PDF-1.4", 4, "E101 old.xlsx cannot be read as a submission"),
+        (None, 5, "old.xlsx: No such file or directory"),
+    ],
+)
+def test_template_upgrade_refuses_in_words(tmp_path, capsys, main_in, content, code, words):  # noqa: PLR0917
+    """What is no template ends with 4 and what is not there with 5; nothing is written."""
+    old = tmp_path / "old.xlsx"
+    if content is not None:
+        old.write_bytes(content)
+    assert main_in("template", "--upgrade", old, "-o", tmp_path / "new.xlsx") == code
+    said = capsys.readouterr().err
+    assert words in said
+    assert code == 5 or said.splitlines()[-1].startswith("Mend: ")
+    assert not (tmp_path / "new.xlsx").exists()
+
+
+@pytest.mark.parametrize("arguments", [["--upgrade", ".", "-o", "x.xlsx"], ["--upgrade", "x.xlsx", "--example"]])
+def test_template_upgrade_usage(main_in, arguments):
+    """A folder is no old file, and the example is no place for one."""
+    assert main_in("template", *arguments) == 2
 
 
 def test_schema_json_is_the_dictionary():

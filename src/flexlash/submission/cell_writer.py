@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import datetime
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Self
@@ -55,7 +54,7 @@ def writable(value: Any) -> Any:
     if isinstance(value, bool | Formula | Unstored | datetime.time | datetime.timedelta):
         return str(value) if getattr(value, "tzinfo", None) else value
     if isinstance(value, int | float):
-        return value if math.isfinite(value) and abs(value) < 1e308 else str(value)  # noqa: PLR2004
+        return value if abs(value) < 1e308 else str(value)  # noqa: PLR2004
     if isinstance(value, datetime.date):
         day = value.date() if isinstance(value, datetime.datetime) else value
         return value if day >= _FIRST_DATE and not getattr(value, "tzinfo", None) else value.isoformat()

@@ -245,7 +245,7 @@ def _settings_in_order(rows: Sequence[dict[str | int, Any]]) -> list[dict[str | 
 def _is_ours(value: RawValue, schema: str) -> bool:
     """Whether the template itself wrote a cell above the header."""
     if not isinstance(value, str):
-        return False
+        return isinstance(value, Unstored)
     groups = {column.group for column in ENTRY_SHEETS[schema]}
     return not value.strip() or value in {*TITLES[schema], *groups} or bool(_ABOVE.fullmatch(value))
 
