@@ -19,7 +19,7 @@ from flexlash.submission.raw import RawSheet
 
 __all__ = ["MarkedCopy", "findings_workbook", "marked_copy", "marked_table"]
 
-_TO_DO = "Mend the coloured cells in your own file and submit that; this copy is skipped, unless run with --marked-copies."
+_TO_DO = "Mend the coloured cells in your own file and submit that; flexlash skips this copy without --marked-copies."
 
 
 @dataclass(frozen=True, kw_only=True)
