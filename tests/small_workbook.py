@@ -50,7 +50,8 @@ def styles_of(*formats: int) -> str:
     """Return the part of styles with cell formats of these number formats."""
     kinds = "".join(f'<xf numFmtId="{number}" applyNumberFormat="1"/>' for number in formats)
     return (
-        f'<styleSheet xmlns="{MAIN}"><fonts><font/></fonts><fills><fill><patternFill/></fill></fills><borders><border/></borders>'
+        f'<styleSheet xmlns="{MAIN}"><fonts><font/></fonts><fills><fill><patternFill/></fill></fills>'
+        "<borders><border/></borders>"
         f"<cellStyleXfs><xf/></cellStyleXfs><cellXfs>{kinds}</cellXfs></styleSheet>"
     )
 

@@ -1,12 +1,10 @@
 """Reading: every cell at the address that its user sees, exactly as stored, and nothing judged or lost."""
 
-import csv
 import datetime
 import hashlib
 import io
 import re
 import zipfile
-from pathlib import Path
 
 import openpyxl
 import polars as pl
@@ -16,7 +14,6 @@ import xlsxwriter
 from flexlash.submission.gate import Refusal
 from flexlash.submission.read import ErrorCell, Unstored, column_letters, read_submission
 
-CORPUS = Path(__file__).resolve().parents[2] / "shared" / "corpus"
 ERRORS = ["#REF!", "#DIV/0!", "#VALUE!", "#NAME?", "#N/A", "#NUM!", "#NULL!", "#SPILL!", "#CALC!"]
 
 
@@ -38,20 +35,6 @@ def save(tmp_path):
         return path
 
     return write
-
-
-@pytest.fixture
-def parquet(tmp_path):
-    """Return a function that writes a frame as Parquet and gives the rows read."""
-
-    def read(frame):
-        path = tmp_path / "submission.parquet"
-        frame.write_parquet(path)
-        submission = read_submission(path)
-        assert submission.kind == "parquet"
-        return submission.sheets["Variants"].rows
-
-    return read
 
 
 def _by_address(sheet):
@@ -297,37 +280,6 @@ def test_a_delimited_text_is_the_variants_and_knows_how_it_was_written(tmp_path)
     assert submission.manner.file == "submission.csv"
 
 
-def test_parquet_keeps_types_and_addresses(parquet):
-    """Parquet has its header in row 1, each row's own number after gaps, and values as stored."""
-    day = datetime.date(2026, 4, 1)
-    frame = pl.DataFrame(
-        {
-            "variant": ["A", None, "C"],
-            "count": [1, None, 3],
-            "wall": [1.6, None, None],
-            "flag": [True, None, False],
-            "day": [day, None, None],
-            "empty": [None, None, None],
-        }
-    )
-    assert parquet(frame) == {
-        1: {1: "variant", 2: "count", 3: "wall", 4: "flag", 5: "day", 6: "empty"},
-        2: {1: "A", 2: 1, 3: 1.6, 4: True, 5: day},
-        4: {1: "C", 2: 3, 4: False},
-    }
-
-
-def test_parquet_keeps_what_is_no_number(parquet):
-    """Not-a-number and infinity come through Parquet as they are, for validation to refuse."""
-    rows = parquet(pl.DataFrame({"a": [float("nan"), float("inf"), -float("inf")]}))
-    assert repr(rows) == "{1: {1: 'a'}, 2: {1: nan}, 3: {1: inf}, 4: {1: -inf}}"
-
-
-def test_parquet_without_rows(parquet):
-    """A Parquet file without rows still has its header."""
-    assert parquet(pl.DataFrame({"a": [], "b": []})) == {1: {1: "a", 2: "b"}}
-
-
 def test_damaged_parquet(tmp_path):
     """A Parquet file that cannot be read is damaged."""
     buffer = io.BytesIO()
@@ -337,71 +289,3 @@ def test_damaged_parquet(tmp_path):
     with pytest.raises(Refusal) as caught:
         read_submission(path)
     assert caught.value.code == "E102"
-
-
-@pytest.fixture(scope="module")
-def readable():
-    """Return the sheets and the number of cells of the readable workbooks of moderate size in the corpus, by path."""
-    if not CORPUS.is_dir():
-        pytest.skip("the shared corpus is not here")
-    lines = (CORPUS / "MANIFEST.tsv").read_text(encoding="utf-8").splitlines()
-    found = {}
-    for row in csv.DictReader([line for line in lines if not line.startswith("#")], delimiter="\t"):
-        cells = re.search(r"readable:.*cells=(\d+)", row["expectation"])
-        if cells and int(cells[1]) < 10_000:
-            path = CORPUS / row["file"]
-            found[path] = (read_submission(path).sheets, int(cells[1]))
-    return found
-
-
-def test_public_workbooks_are_read_whole(readable):
-    """From every readable workbook come as many cells as an independent reader counts, plus errors and formulas."""
-    bad = {}
-    for path, (sheets, expected) in readable.items():
-        cells = [cell for sheet in sheets.values() for cell in _by_address(sheet).values()]
-        filled = [cell for cell in cells if cell != ""]
-        kept = [cell for cell in filled if not isinstance(cell, ErrorCell | Unstored)]
-        if expected not in {len(cells), len(filled), len(kept)}:
-            bad[path.name] = (expected, len(cells), len(filled), len(kept))
-    assert len(readable) > 100
-    assert bad == {}
-
-
-def _comparable(value):
-    return isinstance(value, int | float | str) and not isinstance(value, bool) and value != ""
-
-
-def _differences(sheets, oracle):
-    """Return where numbers and texts of a workbook differ from what the oracle read, by sheet and place."""
-    bad = {}
-    for name, sheet in sheets.items():
-        table = oracle.get_sheet_by_name(name)
-        if table.height * table.width > 100_000:
-            continue
-        rows = table.to_python(skip_empty_area=False)
-        theirs = {(i, j): cell for i, row in enumerate(rows, 1) for j, cell in enumerate(row, 1)}
-        ours = {(i, j): cell for i, row in sheet.rows.items() for j, cell in row.items() if _comparable(cell)}
-        for place in ours.keys() | {place for place, cell in theirs.items() if _comparable(cell)}:
-            mine, other = ours.get(place), theirs.get(place)
-            if mine != other and mine != pytest.approx(other, rel=1e-14):
-                bad[name, *place] = (mine, other)
-    return bad
-
-
-SEEN_OTHERWISE = {
-    "PhpSpreadsheet__issue.3654.xlsx": "calamine takes a number format for a date",
-    "test_files__LONumbers-2010.xlsx": "calamine takes a number format for a date",
-    "calamine__has_x000D_inline.xlsx": "an escaped carriage return stays escaped",
-    "test_files__crlf.xlsx": "an escaped carriage return stays escaped",
-}
-
-
-def test_public_workbooks_are_read_alike_by_another_reader(readable):
-    """Every number and text of the readable workbooks is what calamine reads at the same address."""
-    calamine = pytest.importorskip("python_calamine")
-    bad = {}
-    for path, (sheets, _) in readable.items():
-        if path.name not in SEEN_OTHERWISE:
-            found = _differences(sheets, calamine.CalamineWorkbook.from_path(path))
-            bad |= {(path.name, *place): pair for place, pair in found.items()}
-    assert bad == {}

@@ -31,9 +31,10 @@ def read_bytes(path: Path, limits: ReadingLimits | None = None) -> bytes:
     """
     limits = limits or ReadingLimits()
     handle = _open(path)
+    if not stat.S_ISREG(os.fstat(handle).st_mode):
+        os.close(handle)
+        raise FileNotFoundError(errno.ENOENT, "this is no file", str(path))
     with os.fdopen(handle, "rb") as file:
-        if not stat.S_ISREG(os.fstat(handle).st_mode):
-            raise FileNotFoundError(errno.ENOENT, "this is no file", str(path))
         data = file.read(limits.file_mebibytes * _MEBI + 1)
         if len(data) > limits.file_mebibytes * _MEBI:
             if not data.startswith(_PARQUET):

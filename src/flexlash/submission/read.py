@@ -58,7 +58,11 @@ class Reading:
         if self.asked is None:
             sheets = {"Variants": read_table(self.data, "Variants", self.path.name)}
             return Submission(name=self.path.name, sha256=digest, kind=self.kind, sheets=sheets, data=self.data)
-        cells = from_wire(self.asked.answer()[0])
+        answer = self.asked.answer()[0]
+        try:
+            cells = from_wire(answer)
+        except (ValueError, TypeError, LookupError, AttributeError) as fault:
+            raise Refusal("E118") from fault
         return Submission(
             name=self.path.name,
             sha256=digest,

@@ -34,7 +34,7 @@ def unpacked(data: bytes, limits: ReadingLimits) -> dict[str, bytes]:
             _check_names(parts)
             _check_sizes(parts, limits)
             _check_places(data, parts, archive.start_dir)
-            return {part.filename: archive.read(part) for part in parts if not part.is_dir()}
+            return {part.filename: _inflated(archive, data, part) for part in parts if not part.is_dir()}
     except _DAMAGE as fault:
         raise Refusal("E102") from fault
 
@@ -77,6 +77,25 @@ def _check_places(data: bytes, parts: list[zipfile.ZipInfo], directory: int) -> 
         end = part.header_offset + _LOCAL_HEADER.size + header[-2] + header[-1] + part.compress_size
     if end > directory:
         raise Refusal("E102")
+
+
+def _inflated(archive: zipfile.ZipFile, data: bytes, part: zipfile.ZipInfo) -> bytes:
+    """Return a part, of exactly the size and checksum that are declared; never more than that is unpacked.
+
+    Python's own reading unpacks the whole stream first and cuts it off at the declared size then.
+    """
+    with archive.open(part):
+        header = _LOCAL_HEADER.unpack_from(data, part.header_offset)
+    start = part.header_offset + _LOCAL_HEADER.size + header[-2] + header[-1]
+    content = data[start : start + part.compress_size]
+    if part.compress_type == zipfile.ZIP_DEFLATED:
+        stream = zlib.decompressobj(-zlib.MAX_WBITS)
+        content = stream.decompress(content, part.file_size + 1)
+        if not stream.eof or stream.unused_data:
+            raise Refusal("E102")
+    if len(content) != part.file_size or zlib.crc32(content) != part.CRC:
+        raise Refusal("E102")
+    return content
 
 
 def packed(parts: Mapping[str, bytes], *, compressed: bool = False) -> bytes:

@@ -49,11 +49,35 @@ def _leftovers(data: bytes, limits: ReadingLimits) -> Answer:
     return leftovers(data, limits), b""
 
 
-TASKS: dict[str, Callable[..., Answer]] = {"workbook": _workbook, "parquet": _parquet, "leftovers": _leftovers}
+def _mark(data: bytes, limits: ReadingLimits, findings: list[dict[str, Any]], name: str) -> Answer:  # noqa: ARG001
+    from flexlash.findings import Finding
+    from flexlash.submission.marking.marked_copy import marked_copy
+
+    copy = marked_copy(data, [Finding(**found) for found in findings], name)
+    return {"lost": copy.lost}, copy.data
+
+
+def _mend(data: bytes, limits: ReadingLimits, repairs: list[dict[str, Any]]) -> Answer:
+    from flexlash.submission.mending.mended_workbook import mended_workbook
+    from flexlash.submission.mending.repair import Repair
+
+    new, made = mended_workbook(data, [Repair(**repair) for repair in repairs], limits)
+    return {"made": [repair.as_dictionary() for repair in made]}, new
+
+
+TASKS: dict[str, Callable[..., Answer]] = {
+    "workbook": _workbook,
+    "parquet": _parquet,
+    "leftovers": _leftovers,
+    "mark": _mark,
+    "mend": _mend,
+}
 _NEEDED = {
-    "workbook": ("flexlash.submission.reading.wire", "openpyxl"),
+    "workbook": ("flexlash.submission.reading.wire", "flexlash.submission.reading.sheet_cells"),
     "parquet": ("flexlash.submission.reading.wire", "polars"),
     "leftovers": ("flexlash.submission.leftovers",),
+    "mark": ("flexlash.submission.marking.marked_copy",),
+    "mend": ("flexlash.submission.mending.mended_workbook",),
 }
 """What each task imports, before writing is forbidden."""
 
@@ -66,11 +90,24 @@ def answer(task: str, data: bytes, limits: ReadingLimits, **facts: Any) -> Answe
         traceback.print_exc()
         return {"refusal": [refusal.code, refusal.facts]}, b""
     except MemoryError:
-        memory = limits.exceeded("memory_mebibytes")
-        return {"refusal": [memory.code, memory.facts]}, b""
+        return _too_large(limits), b""
     except Exception:  # noqa: BLE001
         traceback.print_exc()
         return {"refusal": ["E118", {}]}, b""
+
+
+def _reply(task: str, limits: ReadingLimits, facts: dict[str, Any]) -> tuple[bytes, bytes]:
+    """Return the answer's line and bytes; an answer that memory cannot hold is a refusal as well."""
+    try:
+        head, payload = answer(task, sys.stdin.buffer.read(), limits, **facts)
+        return json.dumps(head).encode() + b"\n", payload
+    except MemoryError:
+        return json.dumps(_too_large(limits)).encode() + b"\n", b""
+
+
+def _too_large(limits: ReadingLimits) -> dict[str, Any]:
+    refusal = limits.exceeded("memory_mebibytes")
+    return {"refusal": [refusal.code, refusal.facts]}
 
 
 def _limit(task: str, limits: ReadingLimits) -> None:
@@ -90,7 +127,7 @@ def _limit(task: str, limits: ReadingLimits) -> None:
         hard = resource.getrlimit(kind)[1]
         least = value if hard == resource.RLIM_INFINITY else min(value, hard)
         with contextlib.suppress(OSError, ValueError):
-            resource.setrlimit(kind, (least, least))
+            resource.setrlimit(kind, (least, hard if kind == resource.RLIMIT_CPU else least))
 
 
 _FORBIDDEN = (
@@ -125,8 +162,7 @@ def main() -> None:
     limits = ReadingLimits(**request["limits"])
     _limit(request["task"], limits)
     sys.addaudithook(_forbid)
-    head, payload = answer(request["task"], sys.stdin.buffer.read(), limits, **request["facts"])
-    out.write(json.dumps(head).encode() + b"\n" + payload)
+    out.writelines(_reply(request["task"], limits, request["facts"]))
     out.flush()
     os._exit(0)
 

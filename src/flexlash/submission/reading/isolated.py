@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import flexlash
+from flexlash.findings import finding
 from flexlash.submission.reading.child import Answer
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
@@ -58,6 +60,9 @@ class Asked:
         except subprocess.TimeoutExpired:
             self.too_slow = True
             self.stop()
+            for pipe in (self.process.stdin, self.process.stdout):
+                with contextlib.suppress(OSError):
+                    pipe.close()  # type: ignore[union-attr]
 
     def stop(self) -> None:
         """End the process, whatever it is doing."""
@@ -74,10 +79,9 @@ class Asked:
         head, end, payload = self.out.partition(b"\n")
         if not end:
             raise self._failure()
-        found = json.loads(head)
-        if "refusal" in found:
-            code, facts = found["refusal"]
-            raise Refusal(code, **facts)
+        found, refusal = _understood(head)
+        if refusal:
+            raise refusal
         return found, payload
 
     def _failure(self) -> Refusal:
@@ -87,3 +91,16 @@ class Asked:
         if self.process.wait() == -getattr(signal, "SIGXCPU", 0):
             return self.limits.exceeded("processor_seconds")
         return Refusal("E118")
+
+
+def _understood(head: bytes) -> tuple[dict[str, Any], Refusal | None]:
+    """Return what the process says and its refusal; nonsense is a refusal as well, since a file may have made it."""
+    try:
+        found = json.loads(head)
+        if "refusal" not in found:
+            return dict(found), None
+        code, facts = found["refusal"]
+        finding(code, **{"file": "", **facts})
+        return found, Refusal(code, **facts)
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return {}, Refusal("E118")

@@ -15,6 +15,7 @@ from flexlash.submission.reading.refusal import Refusal
 __all__ = ["Package", "SheetPart", "open_package"]
 
 _CORE = "docProps/core.xml"
+_STYLES = "xl/styles.xml"
 _TYPES = "[Content_Types].xml"
 _ROOT = "_rels/.rels"
 _OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
@@ -45,13 +46,17 @@ class SheetPart:
 
 @dataclass(frozen=True, kw_only=True)
 class Package:
-    """A workbook's parts in the usual dialect; `styles` is how many cell formats it has, `strings` how many texts."""
+    """A workbook's parts in the usual dialect.
+
+    `styles` is how many cell formats it has, `strings` the part that holds the `texts` its cells share.
+    """
 
     parts: dict[str, bytes]
     workbook: str
     sheets: list[SheetPart] = field(default_factory=list)
     styles: int = 1
-    strings: int = 0
+    strings: str = ""
+    texts: int = 0
     modified: datetime.datetime | None = None
     mended: bool = False
 
@@ -68,15 +73,20 @@ def open_package(parts: Mapping[str, bytes], limits: ReadingLimits) -> Package:
     usual = _usual_dialect(_without_dangling_types(parts, limits))
     workbook = _workbook_part(usual, limits)
     relations = _relations(usual, workbook, limits)
+    _check_type(usual, workbook, limits)
     sheets = _sheets(usual, workbook, relations, limits)
-    styles = _related(relations, "styles")
+    styles = _related(relations, "styles") or _STYLES
     strings = _related(relations, "sharedStrings")
+    if styles in usual:
+        # This is where readers look for it, whatever its name is.
+        usual = {**usual, _STYLES: usual[styles]}
     return Package(
         parts=usual,
         workbook=workbook,
         sheets=sheets,
         styles=max(1, len(Listing(usual[styles], limits, "xf", "cellXfs").found)) if styles in usual else limits.cells,
-        strings=_Strings(usual[strings], limits).count if strings in usual else 0,
+        strings=strings if strings in usual else "",
+        texts=_Strings(usual[strings], limits).count if strings in usual else 0,
         modified=_modified(usual, limits),
         mended=usual != parts,
     )
@@ -116,6 +126,14 @@ def _workbook_part(parts: Mapping[str, bytes], limits: ReadingLimits) -> str:
                 if part in parts and local(Elements(parts[part], limits).root) == "workbook":
                     return part
     raise Refusal("E101", found="the archive holds no workbook")
+
+
+def _check_type(parts: Mapping[str, bytes], workbook: str, limits: ReadingLimits) -> None:
+    """Refuse a file whose list of types names another workbook than its relations do: readers would differ."""
+    types = Listing(parts[_TYPES], limits, "Override").found if _TYPES in parts else []
+    mains = [one.get("PartName", "") for one in types if one.get("ContentType", "").endswith(".main+xml")]
+    if any(name.lstrip("/") != workbook for name in mains):
+        raise Refusal("E102")
 
 
 def _relations(parts: Mapping[str, bytes], workbook: str, limits: ReadingLimits) -> dict[str, tuple[str, str]]:
@@ -164,16 +182,22 @@ class _Strings(Elements):
     def __init__(self, data: bytes, limits: ReadingLimits) -> None:
         self.count = 0
         self.length = 0
+        self.in_text = False
         super().__init__(data, limits)
 
     def start(self, name: str, attributes: dict[str, str]) -> None:  # noqa: ARG002
         if local(name) == "si":
             self.count += 1
             self.length = 0
+        self.in_text = local(name) == "t"
+
+    def end(self, name: str) -> None:  # noqa: ARG002
+        self.in_text = False
 
     def text(self, text: str) -> None:
-        self.length += len(text)
-        self.limits.require("characters", self.length)
+        if self.in_text:
+            self.length += len(text)
+            self.limits.require("characters", self.length)
 
 
 def _modified(parts: Mapping[str, bytes], limits: ReadingLimits) -> datetime.datetime | None:

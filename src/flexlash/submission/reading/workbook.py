@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import datetime
-import io
 import re
 import warnings
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,13 +15,16 @@ from flexlash.submission.reading.package import Package, open_package
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.reading.worksheet import Worksheet
 
-__all__ = ["PROPERTY", "Cells", "read_workbook"]
+__all__ = ["PROPERTY", "Cells", "look_at", "read_workbook"]
 
 PROPERTY = "flexlash"
 """Document property in which a template, a report or a marked copy says what it is."""
 
-_ESCAPED = re.compile("_x([0-9A-Fa-f]{4})_")
-"""How a workbook writes characters that XML does not allow."""
+_ESCAPED = re.compile("_x((?![Dd][89A-Fa-f])[0-9A-Fa-f]{4})_")
+"""How a workbook writes characters that XML does not allow; halves of a character are none."""
+_EXACT = 2**53
+"""Up to here every whole number is a double, as a workbook's numbers are."""
+_MEBI = 2**20
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,25 +40,34 @@ class Cells:
 def read_workbook(data: bytes, limits: ReadingLimits) -> Cells:
     """Return the cells of every worksheet; raise Refusal when one of them might be read wrongly."""
     package = open_package(unpacked(data, limits), limits)
-    looked_at = _look_at(package, limits)
+    looked_at = look_at(package, limits)
     try:
         # openpyxl warns of every feature that it does not carry over, none of which holds a cell's value.
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return _read(packed(package.parts) if package.mended else data, package, looked_at)
+            cells = _read(packed(package.parts) if package.mended else data, package, looked_at)
     except MemoryError:
         raise
     except Exception as fault:
         # openpyxl leaks a dozen exception types on damaged parts; none of their texts is for a user.
         raise Refusal("E102") from fault
+    _check_texts(cells, limits)
+    return cells
 
 
-def _look_at(package: Package, limits: ReadingLimits) -> dict[str, Worksheet]:
+def _check_texts(cells: Cells, limits: ReadingLimits) -> None:
+    """Refuse one long text that so many cells share that together they exceed what a file may unpack to."""
+    rows = (row for sheet in cells.sheets for row in sheet.rows.values())
+    characters = sum(len(value) for row in rows for value in row.values() if isinstance(value, str))
+    limits.require("unpacked_mebibytes", characters / _MEBI)
+
+
+def look_at(package: Package, limits: ReadingLimits) -> dict[str, Worksheet]:
     """Walk through every worksheet, by title; the limit of cells is that of the whole file."""
     found = {}
     cells = 0
     for sheet in package.sheets:
-        found[sheet.title] = Worksheet(package.parts[sheet.part], limits, package.styles, package.strings)
+        found[sheet.title] = Worksheet(package.parts[sheet.part], limits, package.styles, package.texts)
         cells += found[sheet.title].cells
         limits.require("cells", cells)
     return found
@@ -65,14 +75,16 @@ def _look_at(package: Package, limits: ReadingLimits) -> dict[str, Worksheet]:
 
 def _read(data: bytes, package: Package, looked_at: dict[str, Worksheet]) -> Cells:
     """Read every worksheet; its dimension record is not believed."""
-    import openpyxl
+    from flexlash.submission.reading.sheet_cells import SheetCells
 
-    workbook = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
+    reader = SheetCells(data, package.parts.get(package.strings))
     sheets = []
-    for part, worksheet in zip(package.sheets, workbook.worksheets, strict=True):
-        worksheet.reset_dimensions()
+    for part in package.sheets:
         seen = looked_at[part.title]
-        rows = _rows(worksheet.iter_rows(values_only=True))
+        rows = {
+            row: {place: _plain(value) for place, value in cells}
+            for row, cells in reader.rows(package.parts[part.part])
+        }
         for row, place in seen.errors:
             shows = rows.setdefault(row, {}).get(place, "an error")
             rows[row][place] = shows if isinstance(shows, ErrorCell) else ErrorCell(str(shows))
@@ -81,13 +93,13 @@ def _read(data: bytes, package: Package, looked_at: dict[str, Worksheet]) -> Cel
         sheets.append(
             RawSheet(
                 name=part.title,
-                rows=dict(sorted(rows.items())),
+                rows={row: rows[row] for row in sorted(rows)},
                 hidden=part.hidden,
                 hidden_rows=frozenset(seen.hidden_rows),
                 merged=tuple(seen.merged),
             )
         )
-    properties = {one.name: str(one.value) for one in workbook.custom_doc_props.props}
+    properties = reader.properties()
     return Cells(
         sheets=sheets,
         modified=package.modified,
@@ -96,18 +108,10 @@ def _read(data: bytes, package: Package, looked_at: dict[str, Worksheet]) -> Cel
     )
 
 
-def _rows(rows: Iterable[tuple[Any, ...]]) -> dict[int, dict[int, RawValue]]:
-    """Return the non-blank cells of a sheet by row and column number."""
-    found: dict[int, dict[int, RawValue]] = {}
-    for number, values in enumerate(rows, start=1):
-        cells = {place: _plain(value) for place, value in enumerate(values, start=1) if value is not None}
-        if cells:
-            found[number] = cells
-    return found
-
-
 def _plain(value: Any) -> RawValue:
     """Return a cell's value, an error word as an error and escaped characters as themselves."""
+    if isinstance(value, int) and abs(value) > _EXACT:
+        return float(str(value))
     if not isinstance(value, str):
         return value  # type: ignore[no-any-return]
     if value in ERROR_WORDS:

@@ -58,22 +58,28 @@ class Worksheet(Elements):
         self.kind = self.value = ""
         self.length = 0
         self.in_row = self.in_cell = self.in_value = self.is_formula = self.is_hidden = False
+        self.has_value = self.has_inline = self.in_rows = self.has_rows = False
         self._starts = {
             f"{MAIN} c": self._open_cell,
+            f"{MAIN} sheetData": self._open_rows,
             f"{MAIN} row": self._open_row,
             f"{MAIN} v": self._open_value,
+            f"{MAIN} is": self._open_inline,
             f"{MAIN} f": self._open_formula,
             f"{MAIN} mergeCell": self._merge,
         }
         self._ends = {
             f"{MAIN} c": self._close_cell,
             f"{MAIN} row": self._close_row,
+            f"{MAIN} sheetData": self._close_rows,
             f"{MAIN} v": self._close_value,
         }
         super().__init__(data, limits)
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
         """React to rows, cells and what stands in them."""
+        if self.in_value:
+            raise Refusal("E102")
         if react := self._starts.get(name):
             react(attributes)
 
@@ -90,10 +96,18 @@ class Worksheet(Elements):
             self.length += len(text)
             self.limits.require("characters", self.length)
 
+    def _open_rows(self, _: dict[str, str]) -> None:
+        if self.has_rows:
+            raise Refusal("E102")
+        self.in_rows = self.has_rows = True
+
+    def _close_rows(self) -> None:
+        self.in_rows = False
+
     def _open_row(self, attributes: dict[str, str]) -> None:
         text = attributes.get("r")
         number = self.row + 1 if text is None else _index(text)
-        if self.in_row or not self.row < number <= MAXIMUM_ROW:
+        if not self.in_rows or self.in_row or not self.row < number <= MAXIMUM_ROW:
             raise Refusal("E102")
         self.row, self.column, self.in_row = number, 0, True
         self.is_hidden = attributes.get("hidden", "0") in _TRUE
@@ -119,12 +133,19 @@ class Worksheet(Elements):
         if self.kind not in _KINDS or _index(attributes.get("s", "0")) >= self.styles:
             raise Refusal("E102")
         self.in_cell = True
-        self.is_formula = False
+        self.is_formula = self.has_value = self.has_inline = False
         self.value = ""
         self.length = 0
 
     def _open_value(self, _: dict[str, str]) -> None:
-        self.in_value = self.in_cell
+        if self.has_value:
+            raise Refusal("E102")
+        self.in_value = self.has_value = self.in_cell
+
+    def _open_inline(self, _: dict[str, str]) -> None:
+        if self.in_cell and (self.has_inline or self.kind != "inlineStr"):
+            raise Refusal("E102")
+        self.has_inline = self.in_cell
 
     def _close_value(self) -> None:
         self.in_value = False
@@ -143,6 +164,7 @@ class Worksheet(Elements):
         elif self.value and (
             (self.kind == "n" and not _NUMBER.fullmatch(self.value))
             or (self.kind == "s" and _index(self.value) >= self.strings)
+            or self.kind == "inlineStr"
             or (self.kind == "b" and self.value.strip() not in {"0", "1", "true", "false"})
         ):
             raise Refusal("E102")

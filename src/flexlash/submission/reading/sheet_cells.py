@@ -1,0 +1,90 @@
+"""The cells of worksheets, read with openpyxl.
+
+Of openpyxl the parser of cells is used, not its sheets: those fill every gap before a far cell with blank cells.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from typing import Any
+from xml.etree.ElementTree import iterparse
+
+from openpyxl.reader.excel import ExcelReader
+from openpyxl.reader.strings import read_string_table
+from openpyxl.styles.stylesheet import apply_stylesheet
+from openpyxl.worksheet._reader import WorkSheetParser
+
+from flexlash.submission.reading.elements import MAIN
+
+__all__ = ["SheetCells"]
+
+_ROWS, _ROW, _CELL = f"{{{MAIN}}}sheetData", f"{{{MAIN}}}row", f"{{{MAIN}}}c"
+_PIECE = 2**20
+"""Read in pieces this large, a long piece of markup is not looked through again for each of many small ones."""
+
+
+class _Part:
+    """A part as a file that is read in large pieces."""
+
+    def __init__(self, part: bytes) -> None:
+        self.file = io.BytesIO(part)
+
+    def read(self, _: int = -1) -> bytes:
+        return self.file.read(_PIECE)
+
+
+class SheetCells:
+    """A workbook opened for its cells; `strings` is the part of the texts that its cells share."""
+
+    def __init__(self, data: bytes, strings: bytes | None) -> None:
+        reader = ExcelReader(io.BytesIO(data), read_only=True, data_only=True, keep_links=False)
+        reader.read_manifest()
+        reader.read_workbook()
+        reader.read_custom()
+        self.workbook = reader.wb
+        apply_stylesheet(reader.archive, self.workbook)
+        self.strings = read_string_table(_Part(strings)) if strings else []
+
+    def properties(self) -> dict[str, str]:
+        """Return the document properties that are no standard ones, by name."""
+        return {one.name: str(one.value) for one in self.workbook.custom_doc_props.props}
+
+    def rows(self, part: bytes) -> Iterator[tuple[int, list[tuple[int, Any]]]]:
+        """Yield the rows of a worksheet that hold cells: a number, and each non-blank cell's column and value."""
+        for number, cells in _Parser(_Part(part), self.strings, self.workbook).parse():
+            if filled := [(cell["column"], cell["value"]) for cell in cells if cell["value"] is not None]:
+                yield number, filled
+
+
+class _Parser(WorkSheetParser):  # type: ignore[misc]
+    """Reads the cells of a worksheet, and nothing else of it."""
+
+    def __init__(self, part: _Part, strings: list[str], book: Any) -> None:
+        super().__init__(
+            part,
+            strings,
+            data_only=True,
+            epoch=book.epoch,
+            date_formats=book._date_formats,  # noqa: SLF001
+            timedelta_formats=book._timedelta_formats,  # noqa: SLF001
+        )
+
+    def parse(self) -> Iterator[tuple[int, list[dict[str, Any]]]]:
+        """Yield each row's number and cells."""
+        is_over = False
+        # The walk has refused document types and rows elsewhere; the guarded parser that openpyxl takes is slow.
+        for _, element in iterparse(self.source):  # noqa: S314
+            if element.tag == _ROW:
+                yield self.parse_row(element)
+                element.clear()
+            is_over = is_over or element.tag == _ROWS
+            if is_over:
+                element.clear()
+
+    def parse_row(self, row: Any) -> tuple[int, list[dict[str, Any]]]:
+        """Return a row's number and its cells; a row's looks are not kept."""
+        number = row.get("r")
+        self.row_counter: int = self.row_counter + 1 if number is None else int(number)
+        self.col_counter = 0
+        return self.row_counter, [self.parse_cell(cell) for cell in row.iterfind(_CELL)]
