@@ -230,7 +230,7 @@ def _sheets(**sheets: Sequence[Sequence[Any]]) -> Callable[[Path], Made]:
 
 
 GERMAN = _text(_numbered({"wall_thickness_mm": "1,6", "notes": "für Müller"}), delimiter=";")
-STRICT = parts_of()[WORKBOOK].replace(MAIN, "http://example.com/main")
+FOREIGN = parts_of()[WORKBOOK].replace(MAIN, "http://example.com/main")
 
 SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "needs fixing": _needs_fixing,
@@ -248,7 +248,7 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "a document": _plain(b"%PDF-1.7", "drawing.pdf"),
     "half a copy": _plain(b"PK\x03\x04half"),
     "locked": _plain(OLE2 + "EncryptedPackage".encode("utf-16-le")),
-    "Strict": _plain(archive_of(parts_of() | {WORKBOOK: STRICT})),
+    "another kind": _plain(archive_of(parts_of() | {WORKBOOK: FOREIGN})),
     "many rows": lambda folder: (_book(folder, {"Variants": _lines([CUP] * 5)})[0], {"limits": ReadingLimits(rows=5)}),
     "old Excel": _plain(OLE2 + b"Workbook", "study.xls"),
     "other letters": _plain(b"a,b\n\x81,2\n", "study.csv"),
@@ -257,6 +257,7 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "no header": _sheets(Variants=[["a", "b"]]),
     "no rows": _sheets(Variants=_lines([CUP])[:1]),
     "two sheets": _sheets(Variants=_lines([CUP]), Variants_=_lines([CUP])),
+    "a copied sheet": _sheets(Variants=_lines([CUP]), Variants_copy=_lines([CUP])),
     "misspelt sheet": _sheets(
         Variants=_lines([CUP]), Tolerance=[["Tolerance class", "Dimension"], ["fine", "rim_length"]]
     ),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from flexlash.columns import columns_of
-from flexlash.submission.entry_sheets import entry_sheets, tell_misspelt_sheets
+from flexlash.submission.entry_sheets import entry_sheets, tell_misspelt_sheets, tell_second_tables
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.raw import RawSheet, Submission
 from flexlash.submission.reading.limits import ReadingLimits
@@ -101,3 +101,20 @@ def test_a_sheet_at_its_limit(setting, size):
     assert entry_sheets(workbook, ReadingLimits(**{setting: size})) == sheets
     assert entry_sheets(plain, ReadingLimits(**{setting: size - 1})) == sheets
     assert _refused(workbook, ReadingLimits(**{setting: size - 1})).code == "E110"
+
+
+@pytest.mark.parametrize(
+    ("name", "headers", "told"),
+    [
+        ("Variants (2)", "Variants", ["W428"]),
+        ("steels", "Materials", ["W428"]),
+        ("Other", ["Variant", "Material", "a", "b"], []),
+        ("Notes", [], []),
+    ],
+)
+def test_a_second_table_is_not_read_in_silence(name, headers, told):
+    """A sheet that holds the table of an entry sheet once more is warned of, by its own name; other sheets are not."""
+    submission = _submission(Variants="Variants", Materials="Materials", **{name: headers})
+    ledger = Ledger("a.xlsx")
+    tell_second_tables(submission, entry_sheets(submission, ReadingLimits()), ledger)
+    assert [(found.code, found.place) for found in ledger.findings] == [(code, f"{name}!A1") for code in told]

@@ -79,10 +79,10 @@ CATALOGUE = _rules(
     ),
     (
         "E106",
-        "Strict Open XML",
-        "{file} was saved as Strict Open XML Spreadsheet.",
-        "In Excel: Save As, type Excel Workbook (.xlsx), not Strict Open XML.",
-        "The strict dialect looks like .xlsx but names everything differently.",
+        "unknown kind of workbook",
+        "{file} looks like a workbook, but names its parts in a way that flexlash does not know.",
+        "Open it in Excel and save it as Excel Workbook (.xlsx).",
+        "Workbooks saved as Strict Open XML are read; a few programs write yet another kind, which is never guessed at.",
     ),
     (
         "E107",
@@ -679,6 +679,13 @@ CATALOGUE = _rules(
         "{place} stands {detail} empty rows below row {other}; it is used like the others.",
         "Check that the row was meant; delete it, or move it up.",
         "A forgotten row below the visible end of a table is easily submitted by accident.",
+    ),
+    (
+        "W428",
+        "second table not read",
+        "{place}: this sheet holds the headers of {other} as well, but only the sheet {other} is read.",
+        "Move its rows to the sheet {other}, submit it as a file of its own, or delete it.",
+        "Excel names the copy of a sheet Variants (2); what stands there takes no part in the calculation.",
     ),
     (
         "I501",

@@ -47,7 +47,8 @@ def as_number(
 ) -> float | Fault:
     """Return a cell as a finite number; texts count as numbers only in CSV files (`from_text`).
 
-    A column gives a text its suggestion; `measure` says what the column's numbers stand for where that is not its printed unit.
+    A column gives a text its suggestion; `measure` says what the column's numbers stand for where that is not its
+    printed unit.
     """
     if fault := _not_an_entry(value):
         return fault

@@ -10,7 +10,7 @@ from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.spellings import closest, plain
 
-__all__ = ["entry_sheets", "tell_misspelt_sheets"]
+__all__ = ["entry_sheets", "tell_misspelt_sheets", "tell_second_tables"]
 
 _RESEMBLING = 0.75
 """Likeness of names from which on a sheet with headers of a missing one is taken for it."""
@@ -70,3 +70,15 @@ def tell_misspelt_sheets(submission: Submission, present: dict[str, RawSheet], l
             ledger.everything = True
             found.add(schema)
     return found
+
+
+def tell_second_tables(submission: Submission, present: dict[str, RawSheet], ledger: Ledger) -> None:
+    """Warn of sheets that hold the table of an entry sheet once more, such as the copy `Variants (2)`."""
+    read = {sheet.name for sheet in present.values()}
+    for name, sheet in submission.sheets.items():
+        if name in read or submission.kind != "workbook":
+            continue
+        for schema in present:
+            if count_headings(sheet, schema) >= min(_TELLING, len(columns_of(schema))):
+                ledger.add("W428", sheet=name, cell=f"A{min(sheet.rows)}", other=schema)
+                break

@@ -9,7 +9,7 @@ from typing import Any
 
 from flexlash.columns import columns_of
 from flexlash.submission.checks import check_cells, check_relations
-from flexlash.submission.entry_sheets import entry_sheets, tell_misspelt_sheets
+from flexlash.submission.entry_sheets import entry_sheets, tell_misspelt_sheets, tell_second_tables
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.manners import tell_manner
 from flexlash.submission.overlooked import tell_overlooked
@@ -67,6 +67,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     check_version(submission)
     sheets = entry_sheets(submission, limits or ReadingLimits())
     misspelt_sheets = tell_misspelt_sheets(submission, sheets, ledger)
+    tell_second_tables(submission, sheets, ledger)
     tables: dict[str, Table] = {}
     for schema, sheet in sheets.items():
         table = tabulate(sheet, schema, ledger)
@@ -105,7 +106,9 @@ def _fill_tables(result: Validated, submission: Submission, present: Collection[
             ledger.add("I505", value="sheet Materials", other="materials")
     if "Tolerances" in tables:
         result.classes = tolerance_classes_of(tables["Tolerances"], ledger)
-    if "standard" not in result.classes and ("Tolerances" in tables or "Tolerances" not in present):
+    # Where the classes have no column, which of them there are cannot be told.
+    are_named = "Tolerances" in tables and "tolerance_class" in tables["Tolerances"].heading.places
+    if "standard" not in result.classes and (are_named or "Tolerances" not in present):
         result.classes["standard"] = standard_class()
         if submission.kind == "workbook":
             ledger.add("I505", value="rows for tolerance class standard", other="class")
