@@ -245,6 +245,8 @@ class _Template:
             places[number] = (own + number, self.formats["number"])
             sheet.set_column(own + number, own + number, _OWN_WIDTH, self.formats["number"])
             cells.write(HEADER_ROW, own + number, header, self.formats["header"])
+            for row in range(HEADER_ROW):
+                sheet.write_blank(row, own + number, None, self.formats["plain"])
         for row, values in enumerate(entries.rows, start=FIRST_ROW):
             for key, (place, style) in places.items() if values else ():
                 cells.write(row, place, values.get(key), style)
