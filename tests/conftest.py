@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from here import AskedHere, ask_here
 
 from flexlash.submission.template import Filling, template_bytes
+from here import AskedHere, ask_here
 
 
 @pytest.fixture(autouse=True)

@@ -268,7 +268,7 @@ def test_json_is_one_object_per_submission(table, sound, tmp_path):
     assert first["counts"] == {"rows": 1, "computed": 1, "errors": 0, "warnings": 0}
     assert first["version"] == __version__
     assert first["outputs"] == [str(tmp_path / "out" / "good-report.xlsx")]
-    assert second["outputs"] == []
+    assert second["outputs"] == [str(tmp_path / "out" / "bad-checked.xlsx")]
     assert [(one["code"], one["cell"], one["value"]) for one in second["findings"]] == [("E202", "D2", "x")]
     assert set(second["findings"][0]) == {
         "level", "code", "sheet", "cell", "variant", "column", "value", "message", "fix", "suggestion",

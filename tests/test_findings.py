@@ -200,3 +200,14 @@ def test_an_unknown_code_is_a_fault_of_the_program():
     """A code outside the catalogue fails loudly."""
     with pytest.raises(KeyError):
         finding("E999")
+
+
+def test_texts_from_outside_are_inert_in_messages():
+    """Names of sheets and files, suggestions and variants reach a message without control or bidi characters."""
+    made = finding("E108", file="a\x1b[31m.xlsx", found="the sheets S\u202e\x9b", sheet="S\u202e", suggestion="S\u202e")
+    assert made.message.isprintable()
+    assert made.suggestion.isprintable()
+    placed = finding("E201", sheet="S\n", cell="D7", name="Torque", requirement="a number", variant="a\x07")
+    assert placed.message.isprintable()
+    assert placed.variant == "a·"
+    assert placed.sheet == "S\n"

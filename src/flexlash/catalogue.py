@@ -82,7 +82,7 @@ CATALOGUE = _rules(
         "unknown kind of workbook",
         "{file} looks like a workbook, but names its parts in a way that flexlash does not know.",
         "Open it in Excel and save it as Excel Workbook (.xlsx).",
-        "Workbooks saved as Strict Open XML are read; a few programs write yet another kind, which is never guessed at.",
+        "Workbooks saved as Strict Open XML are read; some programs write yet another kind, never guessed at.",
     ),
     (
         "E107",

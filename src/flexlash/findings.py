@@ -42,6 +42,10 @@ class Finding:
         return f"{self.sheet}!{self.cell}" if self.cell else self.sheet
 
 
+_LONGEST = 400
+"""Most characters of a text that a message quotes from outside."""
+
+
 def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **facts: Any) -> Finding:
     """Return a finding with the catalogue's words filled in.
 
@@ -50,8 +54,9 @@ def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **f
     """
     rule = CATALOGUE[code]
     place = f"{sheet}!{cell}" if sheet and cell else sheet or str(facts.get("file", ""))
-    words = {"file": "The file", **facts, "place": place, "value": shown(facts.get("value", ""))}
-    suggestion = str(facts.get("suggestion", ""))
+    inert = {key: shown(fact, _LONGEST) if isinstance(fact, str) else fact for key, fact in facts.items()}
+    words = {"file": "The file", **inert, "place": shown(place, _LONGEST), "value": shown(facts.get("value", ""))}
+    suggestion = str(inert.get("suggestion", ""))
     message = rule.message.format(**words)
     if suggestion and "{suggestion}" not in rule.message:
         message = f"{message.removesuffix('.')}; did you mean {suggestion}?"
@@ -61,7 +66,7 @@ def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **f
         sheet=sheet,
         cell=cell,
         column=column,
-        variant=str(facts.get("variant", "")),
+        variant=str(inert.get("variant", "")),
         value=shown(facts.get("entered", facts.get("value", ""))),
         message=message,
         fix=rule.fix.format(**words),

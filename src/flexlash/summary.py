@@ -50,7 +50,7 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[tuple[str, str]]:
     for (_, code, sheet), group in sorted(groups.items()):
         level = group[0].level
         cells = {found.cell: None for found in group if found.cell}
-        where = f", {_counted(len(cells), 'cell')}: {sheet}!{cell_ranges(list(cells))}" if cells else ""
+        where = f", {_counted(len(cells), 'cell')}: {shown(sheet)}!{cell_ranges(list(cells))}" if cells else ""
         yield level, f"{level} {code} {CATALOGUE[code].title}{where}"
         if level == "info" and len(group) > 1:
             continue

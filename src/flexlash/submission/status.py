@@ -132,7 +132,9 @@ _RULES = (
     _Rule(
         text="tolerance class not in Tolerances",
         excel='AND({tolerance_class}<>"",COUNTIF(fl_tolerance_rows,{tolerance_class})=0)',
-        holds=lambda row, _: not _blank(row, "tolerance_class") and row["tolerance_class"] not in row["_classes"],
+        holds=lambda row, _: (
+            not _blank(row, "tolerance_class") and str(row["tolerance_class"]).casefold() not in row["_classes"]
+        ),
     ),
     _Rule(
         text="variant used twice",
@@ -154,5 +156,9 @@ def status_formula(row: int, letters: Mapping[str, str]) -> str:
 
 def status_text(row: Row, rows: Sequence[Row], materials: Sequence[str], classes: Sequence[str]) -> str:
     """Return what the status formula shows for a filled row."""
-    known = {**row, "_materials": {name.casefold() for name in materials}, "_classes": classes}
+    known = {
+        **row,
+        "_materials": {name.casefold() for name in materials},
+        "_classes": {name.casefold() for name in classes},
+    }
     return next((rule.text for rule in _RULES if rule.holds(known, rows)), COMPLETE)

@@ -34,6 +34,9 @@ _TRANSITIONAL = (
 )
 """Names of the Strict dialect whose meaning is that of the usual one."""
 
+_SHEET_KINDS = ("/worksheet", "/chartsheet", "/dialogsheet", "/xlMacrosheet", "/xlIntlMacrosheet")
+"""What a sheet can be; only the first holds cells, and one that is none of them would be left out without a word."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class SheetPart:
@@ -166,9 +169,9 @@ def _sheets(
     sheets = []
     for sheet in listing.found:
         kind, part = relations.get(sheet.get(f"{_OFFICE} id", ""), ("", ""))
-        if kind.endswith("/worksheet"):
-            if part not in parts:
-                raise Refusal("E102")
+        if part not in parts or not kind.endswith(_SHEET_KINDS):
+            raise Refusal("E102")
+        if kind.endswith(_SHEET_KINDS[0]):
             hidden = sheet.get("state", "visible") != "visible"
             sheets.append(SheetPart(title=sheet.get("name", ""), part=part, hidden=hidden))
     if len({sheet.title.casefold() for sheet in sheets}) < len(sheets):
