@@ -11,6 +11,7 @@ import io
 import re
 import sys
 import tempfile
+from dataclasses import fields
 from functools import cache
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from flexlash.explanations import EXAMPLES, findings_page
 from flexlash.findings import CATALOGUE
 from flexlash.pipeline import run
 from flexlash.submission.read import ErrorCell, Unstored
+from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.template import Filling, study, template_bytes
 from flexlash.units import ARCMIN
 
@@ -180,6 +182,15 @@ def column_table() -> str:
     return "\n".join(lines)
 
 
+def limits_table() -> str:
+    """Return the README's table of the limits of reading."""
+    lines = ["| limit | at most | what |", "|---|---|---|"]
+    for one in fields(ReadingLimits):
+        unit = f" {one.metadata['unit']}" if one.metadata["unit"] else ""
+        lines.append(f"| `{one.name}` | {one.default:,}{unit} | {one.metadata['what']} |")
+    return "\n".join(lines)
+
+
 def settings_table() -> str:
     """Return the README's table of the settings."""
     lines = ["| setting | default | meaning |", "|---|---|---|"]
@@ -215,7 +226,12 @@ def proof_table() -> str:
 def readme() -> bytes:
     """Return the README with its generated tables."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    for name, table in (("columns", column_table()), ("settings", settings_table()), ("proof", proof_table())):
+    for name, table in (
+        ("columns", column_table()),
+        ("settings", settings_table()),
+        ("limits", limits_table()),
+        ("proof", proof_table()),
+    ):
         pattern = rf"(<!-- {name}: generated -->\n)(?:(?!<!-- ).)*(<!-- end -->)"
         text, found = re.subn(
             pattern, lambda match, table=table: f"{match[1]}{table}\n{match[2]}", text, flags=re.DOTALL
