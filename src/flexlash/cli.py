@@ -6,30 +6,25 @@ import json
 import os
 import sys
 import traceback
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from flexlash import __version__
 from flexlash.findings import CATALOGUE, finding, shown
-from flexlash.targets import beside, mended_targets, report_targets
+from flexlash.targets import beside, mended_targets, report_targets, template_target
+from flexlash.terminal import INTERNAL, INTERRUPTED, NO_FILE, NOTHING, named, one_submission, progress, tell, worst
 
 if TYPE_CHECKING:
-    from flexlash.outcome import Outcome
-    from flexlash.pipeline import Progress
     from flexlash.submission.mending.repair import Repair
     from flexlash.submission.reading.limits import ReadingLimits
 
 __all__ = ["cli", "main"]
 
-INTERNAL, USAGE, SOME_ROWS, NOTHING, NO_FILE, INTERRUPTED = 1, 2, 3, 4, 5, 130
-
 Command = Callable[..., None]
-
-_SEVERITY = (INTERNAL, NO_FILE, NOTHING, SOME_ROWS, 0)
+Planned = TypeVar("Planned")
 
 
 @click.group(
@@ -65,7 +60,7 @@ def template(output: Path | None, *, example: bool, old: Path | None, force: boo
     """Write the Excel template that submissions are made from."""
     if example and old:
         raise click.UsageError("--example and --upgrade both fill the template; choose one.")
-    target = _template_target(output, old, force=force)
+    target = _planned(template_target, output, old, force=force)
     from flexlash.report.output import write_bytes
     from flexlash.submission.template import study, template_bytes
 
@@ -73,22 +68,9 @@ def template(output: Path | None, *, example: bool, old: Path | None, force: boo
         written = write_bytes(_upgraded(old), target)
     else:
         written = write_bytes(template_bytes(study() if example else None), target)
-    click.echo(f"Template written: {_named(written)}")
+    click.echo(f"Template written: {named(written)}")
     follow = "Look it over, then: flexlash check" if old else "Fill it in, then: flexlash run"
-    click.echo(f"{follow} {_named(written)}", err=True)
-
-
-def _template_target(output: Path | None, old: Path | None, *, force: bool) -> Path:
-    """Return where the template goes; refuse what would overwrite a filled one."""
-    from flexlash.submission.versions import TEMPLATE_VERSION
-
-    beside = old.with_name(f"{old.stem}-v{TEMPLATE_VERSION}.xlsx") if old else Path("flexlash-template.xlsx")
-    target = output or beside
-    if old and target.exists() and old.exists() and target.samefile(old):
-        raise click.UsageError("-o is the old file, which flexlash never overwrites.")
-    if target.exists() and not force:
-        raise click.UsageError(f"{_named(target)} exists and may be filled; choose another -o, or --force.")
-    return target
+    click.echo(f"{follow} {named(written)}", err=True)
 
 
 def _upgraded(old: Path) -> bytes:
@@ -105,9 +87,7 @@ def _upgraded(old: Path) -> bytes:
         click.echo(f"Mend: {found.fix}", err=True)
         sys.exit(NOTHING)
     made = f", made from template version {upgrade.version}" if upgrade.version else ""
-    click.echo(
-        f"{_named(old)}{made}: {upgrade.rows} {'row' if upgrade.rows == 1 else 'rows'} of Variants carried over."
-    )
+    click.echo(f"{named(old)}{made}: {upgrade.rows} {'row' if upgrade.rows == 1 else 'rows'} of Variants carried over.")
     for remark in upgrade.remarks:
         click.echo(f"  {shown(remark, longest=400)}", err=True)
     return upgrade.data
@@ -216,7 +196,7 @@ def check(
     options["marked_copies"] |= annotate
     codes: list[int] = []
     for path, target, copy in zip(submissions, targets, beside(submissions, targets), strict=True):
-        with _one_submission(path, codes, as_json=as_json):
+        with one_submission(path, codes, as_json=as_json):
             reading = Reading(path, options["limits"])
             # Loading the libraries takes as long as reading the file does: both at once.
             from flexlash.pipeline import check as check_one
@@ -227,9 +207,9 @@ def check(
                 outcome, repairs = mend(reading, target, marked_copy=copy if annotate else None, **options)
             else:
                 outcome = check_one(reading, marked_copy=copy if annotate else None, **options)
-            _tell(outcome, path, as_json=as_json, repairs=repairs)
+            tell(outcome, path, as_json=as_json, repairs=repairs)
             codes += [] if outcome.skipped else [outcome.exit_code]
-    sys.exit(_worst(codes))
+    sys.exit(worst(codes))
 
 
 @cli.command()
@@ -276,87 +256,24 @@ def run(
     targets = _planned(report_targets, submissions, output)
     codes: list[int] = []
     for path, target, copy in zip(submissions, targets, beside(submissions, targets), strict=True):
-        with _one_submission(path, codes, as_json=as_json), _progress(quiet=quiet or as_json) as progress:
+        with one_submission(path, codes, as_json=as_json), progress(quiet=quiet or as_json) as advance:
             reading = Reading(path, options["limits"])
             from flexlash.pipeline import run as run_one
 
             options["marked_copy"] = copy if annotate else None
-            outcome = run_one(reading, target, progress=progress, **options)
+            outcome = run_one(reading, target, progress=advance, **options)
             if not quiet or outcome.exit_code:
-                _tell(outcome, path, as_json=as_json, ran=True)
+                tell(outcome, path, as_json=as_json, ran=True)
             codes += [] if outcome.skipped else [outcome.exit_code]
-    sys.exit(_worst(codes))
+    sys.exit(worst(codes))
 
 
-def _planned(
-    plan: Callable[[tuple[Path, ...], Path | None], list[Path]], submissions: tuple[Path, ...], output: Path | None
-) -> list[Path]:
+def _planned(plan: Callable[..., Planned], *paths: Any, **options: bool) -> Planned:
     """Return where outputs go; raise a usage error for an output that cannot be meant."""
     try:
-        return plan(submissions, output)
+        return plan(*paths, **options)
     except ValueError as fault:
         raise click.UsageError(shown(fault, longest=400)) from fault
-
-
-def _named(path: object) -> str:
-    """Return a path as it may be printed: whole, without control characters."""
-    return shown(path, longest=4096)
-
-
-def _worst(codes: list[int]) -> int:
-    """Return the most severe exit code; without any submission there was nothing to compute."""
-    return min(codes or [NOTHING], key=_SEVERITY.index)
-
-
-@contextmanager
-def _one_submission(path: Path, codes: list[int], *, as_json: bool) -> Iterator[None]:
-    """Turn what stops one submission into its exit code, so that the others go on."""
-    try:
-        yield
-    except BrokenPipeError:
-        raise
-    except OSError as fault:
-        named = _named(fault.filename or path)
-        why = fault.strerror or str(fault)
-        click.secho(f"{named} could not be opened or written: {why}", fg="red", err=True)
-        if as_json:
-            click.echo(json.dumps({"submission": str(path), "error": f"{named}: {why}"}, ensure_ascii=False))
-        codes.append(NO_FILE)
-
-
-@contextmanager
-def _progress(*, quiet: bool) -> Iterator[Progress | None]:
-    """Yield a callback that draws a progress bar, or None off a terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-    with click.progressbar(length=1, label="Computing", file=sys.stderr, show_pos=True) as bar:
-
-        def advance(done: int, total: int) -> None:
-            bar.length = total
-            bar.update(done - bar.pos)
-
-        yield advance
-
-
-def _tell(
-    outcome: Outcome, path: Path, *, as_json: bool, ran: bool = False, repairs: list[Repair] | None = None
-) -> None:
-    """Print an outcome: as one JSON object, or findings grouped by rule and then the summary."""
-    if as_json:
-        fixes = {} if repairs is None else {"fixes": [repair.as_dictionary() for repair in repairs]}
-        click.echo(json.dumps({**outcome.as_dictionary(), **fixes}, ensure_ascii=False))
-        return
-    from flexlash.summary import finding_lines, repair_lines, summary_lines
-
-    for line in () if repairs is None else repair_lines(repairs):
-        click.echo(line)
-
-    colours = {"error": "red", "warning": "yellow", "info": "cyan"}
-    for level, line in finding_lines(outcome.findings):
-        click.echo(click.style(line, fg=colours[level]) if level else line, err=ran)
-    for line in summary_lines(outcome, _named(path), ran=ran):
-        click.echo(line)
 
 
 def main() -> None:
@@ -377,8 +294,8 @@ def main() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         sys.exit(0)
     except OSError as fault:
-        named = f"{_named(fault.filename)}: " if fault.filename else ""
-        click.secho(f"{named}{fault.strerror or fault}", fg="red", err=True)
+        place = f"{named(fault.filename)}: " if fault.filename else ""
+        click.secho(f"{place}{fault.strerror or fault}", fg="red", err=True)
         sys.exit(NO_FILE)
     except Exception as fault:  # noqa: BLE001
         if os.environ.get("FLEXLASH_DEBUG") == "1":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from flexlash.elasticity import MISSING, is_available
 from flexlash.findings import Finding, finding
 from flexlash.handback import certain_repairs, marked, mended, worth_marking
 from flexlash.mechanics.flexspline import backlash
+from flexlash.options import Options
 from flexlash.outcome import PICTURED, Outcome
 from flexlash.results import result_record, results_frame
 from flexlash.submission.gate import kind_of, read_bytes
@@ -33,37 +34,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Options", "Outcome", "check", "mend", "run"]
 
-Progress = Callable[[int, int], None]
-
 _HELD_BACK = "held back by --strict, since other rows have errors"
 _PASSES = 3
 """Most times that a mended submission is looked at again, since one repair may uncover another fault."""
 
 _NAMED = 3
 """Most errors elsewhere that a row of Results names."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Options:
-    """What the caller decides; None leaves it to the submission's settings.
-
-    `marked_copy` is where the submission goes with its errors and warnings marked, when there are any;
-    `marked_copies` takes such copies as submissions as well.
-    """
-
-    seed: int | None = None
-    method: str | None = None
-    samples: int | None = None
-    strict: bool = False
-    cross_check: bool = False
-    elasticity: bool = False
-    jobs: int = 1
-    tolerances: str | Path | None = None
-    materials: str | Path | None = None
-    limits: ReadingLimits = field(default_factory=ReadingLimits)
-    marked_copy: str | Path | None = None
-    marked_copies: bool = False
-    progress: Progress | None = None
 
 
 def check(submission: str | Path | Reading, **options: Any) -> Outcome:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-__all__ = ["MARKED", "beside", "mended_targets", "report_targets"]
+__all__ = ["MARKED", "beside", "mended_targets", "report_targets", "template_target"]
 
 MARKED = "-checked"
 MENDED = "-mended"
@@ -21,6 +21,19 @@ def report_targets(submissions: Sequence[Path], output: Path | None) -> list[Pat
 def mended_targets(submissions: Sequence[Path], output: Path | None) -> list[Path]:
     """Return where each mended submission goes; raise ValueError for an output that cannot be meant."""
     return _targets(submissions, output, MENDED, (".xlsx", ".xlsm", ".csv"), own_ending=True)
+
+
+def template_target(output: Path | None, old: Path | None, *, force: bool) -> Path:
+    """Return where a template goes; raise ValueError where it would replace a file that may be filled."""
+    from flexlash.submission.versions import TEMPLATE_VERSION
+
+    default = old.with_name(f"{old.stem}-v{TEMPLATE_VERSION}.xlsx") if old else Path("flexlash-template.xlsx")
+    target = output or default
+    if old and target.exists() and old.exists() and target.samefile(old):
+        raise ValueError("-o is the old file, which flexlash never overwrites.")
+    if target.exists() and not force:
+        raise ValueError(f"{target} exists and may be filled; choose another -o, or --force.")
+    return target
 
 
 def _targets(
