@@ -160,6 +160,7 @@ REFUSED = {
     "two names of one part": ("E102", _same_place()),
     "a part larger than it claims": ("E102", _longer_than_claimed()),
     "a part smaller than it claims": ("E102", overwritten(book_of(), CENTRAL, 24, 10_000, 4)),
+    "a directory with fewer parts than it says": ("E102", overwritten(book_of(), b"PK\5\6", 10, 99, 2)),
     "a wrong checksum": ("E102", overwritten(book_of(), CENTRAL, 16, 1, 4)),
     "a place beyond the file": ("E102", overwritten(book_of(), CENTRAL, 42, 10**6, 4)),
     "a place that is no part": ("E102", overwritten(book_of(), CENTRAL, 42, 7, 4)),

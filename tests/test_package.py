@@ -50,6 +50,8 @@ def _replaced(part, old, new):
     return parts_of(**{part: text.replace(old, new)})
 
 
+_BESIDE = parts_of()[RELATIONS].replace("</Rel", f"{relation(9, 'chartsheet', 'chartsheets/sheet1.xml')}</Rel")
+
 REFUSED = {
     "an .ods": ("E104", {"mimetype": "application/vnd.oasis.opendocument.spreadsheet", "content.xml": "<a/>"}),
     "an .ods without its type": ("E104", {"content.xml": "<a/>", "META-INF/manifest.xml": "<a/>"}),
@@ -62,6 +64,8 @@ REFUSED = {
     "a missing sheet": ("E102", parts_of(**{SHEET: None})),
     "a missing list of sheets": ("E102", parts_of(**{RELATIONS: None})),
     "a sheet outside the file": ("E102", _replaced(RELATIONS, "worksheets/sheet1.xml", "http://example.com/1.xml")),
+    "a sheet without its relation": ("E102", _replaced(RELATIONS, 'Id="rId1"', 'Id="rId7"')),
+    "a sheet of an unknown kind": ("E102", _replaced(RELATIONS, '/worksheet"', '/worksheets"')),
     "two sheets of one name": (
         "E102",
         parts_of(**{WORKBOOK: workbook_part(f'<sheet name="{name}" sheetId="1" r:id="rId1"/>' for name in "Ss")}),
@@ -104,7 +108,13 @@ ACCEPTED = {
         **{WORKBOOK: re.sub(r"(</?)(?=\w)", r"\1x:", workbook_part()).replace("xmlns=", "xmlns:x=")}
     ),
     "a chart sheet beside": parts_of(
-        **{WORKBOOK: workbook_part(['<sheet name="S" sheetId="1" r:id="rId1"/>', '<sheet name="C" sheetId="2"/>'])}
+        **{
+            WORKBOOK: workbook_part(f'<sheet name="S{n}" sheetId="{n}" r:id="rId{n}"/>' for n in (1, 9)).replace(
+                "S1", "S"
+            ),
+            RELATIONS: _BESIDE,
+            "xl/chartsheets/sheet1.xml": "<chartsheet/>",
+        }
     ),
     "a picture that declares its type": parts_of(
         **{"xl/media/image1.svg": '<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/x.dtd"><svg/>'}

@@ -15,6 +15,12 @@ __all__ = ["packed", "unpacked"]
 
 _MEBI = 2**20
 _LOCAL_HEADER = struct.Struct("<4s5H3L2H")
+_COUNT = struct.Struct("<10xH")
+"""How many parts there are, in the record that ends an archive."""
+
+_MANY = 0xFFFF
+"""The number that stands there for more; a record of another kind has it then."""
+
 _FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 _DAMAGE = (
     zipfile.BadZipFile, zlib.error, struct.error, EOFError, OSError, NotImplementedError, RuntimeError, ValueError,
@@ -31,12 +37,20 @@ def unpacked(data: bytes, limits: ReadingLimits) -> dict[str, bytes]:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             parts = archive.infolist()
             limits.require("parts", len(parts))
+            _check_count(data, parts)
             _check_names(parts)
             _check_sizes(parts, limits)
             _check_places(data, parts, archive.start_dir)
             return {part.filename: _inflated(archive, data, part) for part in parts if not part.is_dir()}
     except _DAMAGE as fault:
         raise Refusal("E102") from fault
+
+
+def _check_count(data: bytes, parts: list[zipfile.ZipInfo]) -> None:
+    """Refuse a directory that says to list more parts than it does: one of its entries has swallowed the next."""
+    (count,) = _COUNT.unpack_from(data, data.rfind(b"PK\x05\x06"))
+    if count not in {len(parts), _MANY}:
+        raise Refusal("E102")
 
 
 def _check_names(parts: list[zipfile.ZipInfo]) -> None:
