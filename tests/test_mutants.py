@@ -61,7 +61,7 @@ def test_many_mutants_of_either_kind_are_read(found):
     """The mutants do not all fail at the first look: some files read, and many of those with a sound archive."""
     files = [one["code"] for one in found if one["number"] < mutants.PARTS_FROM]
     parts = [one["code"] for one in found if one["number"] >= mutants.PARTS_FROM]
-    assert files.count("") > 20
+    assert files.count("") > 10
     assert parts.count("") > 150
     assert {"E101", "E102", "E105", "E110"} <= set(parts)
 
