@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from flexlash.submission.template import Filling, template_bytes
+from flexlash.submission.templating.template import Filling, template_bytes
 from here import AskedHere, ask_here
 
 
@@ -17,7 +17,7 @@ from here import AskedHere, ask_here
 def _read_here(request, monkeypatch):
     """Read workbooks in this process, unless a test is about the process that does so."""
     if "limited_process" not in request.keywords:
-        monkeypatch.setattr("flexlash.submission.read.Asked", AskedHere)
+        monkeypatch.setattr("flexlash.submission.reading.read.Asked", AskedHere)
         monkeypatch.setattr("flexlash.handback.ask", ask_here)
 
 

@@ -9,7 +9,7 @@ from random import Random
 
 from edited_workbooks import HEADER, LETTERS, last_row, records
 from flexlash.columns import ENTRY_SHEETS, SETTINGS, Column
-from flexlash.submission.raw import column_letters
+from flexlash.submission.reading.raw import column_letters
 
 __all__ = ["KINDS", "Corruption", "corruption"]
 

@@ -13,9 +13,9 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from flexlash.columns import ENTRY_SHEETS
-from flexlash.submission.entry_rules import FIRST_ROW, HEADER_ROW
-from flexlash.submission.raw import column_letters
-from flexlash.submission.template import Filling, template_bytes
+from flexlash.submission.reading.raw import column_letters
+from flexlash.submission.templating.entry_rules import FIRST_ROW, HEADER_ROW
+from flexlash.submission.templating.template import Filling, template_bytes
 from here import AskedHere, ask_here
 from small_workbook import MAIN, archive_of
 
@@ -95,7 +95,7 @@ def twelve() -> Filling:
 def small_template() -> bytes:
     """Return the template filled with the twelve variants, with no more prepared rows than these."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flexlash.submission.template.PREPARED_ROWS", 12)
+        patch.setattr("flexlash.submission.templating.template.PREPARED_ROWS", 12)
         return template_bytes(twelve())
 
 
@@ -120,7 +120,7 @@ def last_row(sheet: str) -> int:
 def reading_here():
     """Read in this process; for fixtures that outlive a test."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flexlash.submission.read.Asked", AskedHere)
+        patch.setattr("flexlash.submission.reading.read.Asked", AskedHere)
         patch.setattr("flexlash.handback.ask", ask_here)
         yield
 

@@ -19,7 +19,7 @@ from flexlash.columns import columns_of
 from flexlash.findings import Finding
 from flexlash.pipeline import check, run
 from flexlash.submission.reading.limits import ReadingLimits
-from flexlash.submission.template import Filling, template_bytes
+from flexlash.submission.templating.template import Filling, template_bytes
 from small_workbook import MAIN, OLE2, WORKBOOK, archive_of, parts_of
 
 __all__ = ["PENDING", "SUBMISSIONS", "examples"]

@@ -22,10 +22,10 @@ import openpyxl
 from python_calamine import CalamineWorkbook, SheetTypeEnum
 
 from edited_workbooks import small_template
-from flexlash.submission.gate import kind_of
-from flexlash.submission.read import Reading, read_table
 from flexlash.submission.reading import child
+from flexlash.submission.reading.gate import kind_of
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.read import Reading, read_table
 from flexlash.submission.reading.refusal import Refusal
 from small_workbook import archive_of
 

@@ -6,8 +6,8 @@ import openpyxl
 from openpyxl.packaging.custom import IntProperty, StringProperty
 
 from flexlash.columns import ENTRY_SHEETS
-from flexlash.submission.filling import Filling
-from flexlash.submission.raw import ErrorCell, Unstored
+from flexlash.submission.reading.raw import ErrorCell, Unstored
+from flexlash.submission.templating.filling import Filling
 
 __all__ = ["LABELS", "PLACES", "old_workbook", "rows_of"]
 

@@ -21,9 +21,9 @@ from flexlash.columns import SETTINGS, VARIANTS
 from flexlash.explanations import EXAMPLES, findings_page
 from flexlash.findings import CATALOGUE
 from flexlash.pipeline import run
-from flexlash.submission.read import ErrorCell, Unstored
 from flexlash.submission.reading.limits import ReadingLimits
-from flexlash.submission.template import Filling, study, template_bytes
+from flexlash.submission.reading.read import ErrorCell, Unstored
+from flexlash.submission.templating.template import Filling, study, template_bytes
 from flexlash.units import ARCMIN
 
 ROOT = Path(__file__).resolve().parent.parent

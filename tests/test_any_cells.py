@@ -26,8 +26,8 @@ from flexlash.catalogue import CATALOGUE
 from flexlash.columns import ENTRY_SHEETS, SETTINGS
 from flexlash.findings import cell_ranges
 from flexlash.pipeline import check, run
-from flexlash.submission.raw import ErrorCell, RawSheet, Submission, Unstored, column_letters
-from flexlash.submission.read import Reading
+from flexlash.submission.reading.raw import ErrorCell, RawSheet, Submission, Unstored, column_letters
+from flexlash.submission.reading.read import Reading
 from flexlash.summary import finding_lines, summary_lines
 
 EXAMPLES = 40

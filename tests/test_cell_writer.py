@@ -9,10 +9,10 @@ import math
 import pytest
 import xlsxwriter
 
-from flexlash.submission.cell_writer import DATE_FORMATS, CellWriter, Formula, writable
-from flexlash.submission.raw import ErrorCell, Unstored
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.raw import ErrorCell, Unstored
 from flexlash.submission.reading.workbook import read_workbook
+from flexlash.submission.templating.cell_writer import DATE_FORMATS, CellWriter, Formula, writable
 
 moment = datetime.datetime.fromisoformat
 SAME = (

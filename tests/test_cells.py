@@ -6,7 +6,7 @@ import pytest
 
 from flexlash.columns import columns_of
 from flexlash.submission.cells import Fault, as_number, as_text
-from flexlash.submission.raw import CommaNumber, DoubtfulNumber, ErrorCell, Unstored
+from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Unstored
 
 WALL = columns_of("Variants")["wall_thickness_mm"]
 

@@ -7,7 +7,7 @@ import pytest
 
 from flexlash.findings import CATALOGUE
 from flexlash.pipeline import check, run
-from flexlash.submission.template import Filling, template_bytes
+from flexlash.submission.templating.template import Filling, template_bytes
 from flexlash.summary import finding_lines, summary_lines
 
 SOUND = {

@@ -12,8 +12,8 @@ import python_calamine
 import xlsxwriter
 
 from flexlash.pipeline import check
-from flexlash.submission.raw import ErrorCell, Unstored, column_letters
-from flexlash.submission.read import Reading, read_submission
+from flexlash.submission.reading.raw import ErrorCell, Unstored, column_letters
+from flexlash.submission.reading.read import Reading, read_submission
 from flexlash.submission.reading.refusal import Refusal
 from here import AskedHere
 from libreoffice import convert, needs_libreoffice
@@ -65,7 +65,7 @@ def judged():
     lines = (CORPUS / "MANIFEST.tsv").read_text(encoding="utf-8").splitlines()
     rows = csv.DictReader([line for line in lines if not line.startswith("#")], delimiter="\t")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flexlash.submission.read.Asked", AskedHere)
+        patch.setattr("flexlash.submission.reading.read.Asked", AskedHere)
         return [Judged(row) for row in rows]
 
 

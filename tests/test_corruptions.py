@@ -13,7 +13,7 @@ from edited_workbooks import FIRST, LETTERS, edited, reading_here, records, smal
 from flexlash.findings import Finding
 from flexlash.outcome import Outcome
 from flexlash.pipeline import check
-from flexlash.submission.read import Reading
+from flexlash.submission.reading.read import Reading
 
 CORRUPTIONS = 200
 MOST_AT_ONCE = 5

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from flexlash.submission.delimited import WINDOWS, read_table
-from flexlash.submission.raw import CommaNumber, DoubtfulNumber, ErrorCell
+from flexlash.submission.reading.delimited import WINDOWS, read_table
+from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell
 from flexlash.submission.reading.refusal import Refusal
 
 

@@ -12,7 +12,7 @@ import pytest
 import regenerate
 from flexlash import __version__
 from flexlash.cli import main
-from flexlash.submission.template import study
+from flexlash.submission.templating.template import study
 
 ROOT = regenerate.ROOT
 README = (ROOT / "README.md").read_text(encoding="utf-8")

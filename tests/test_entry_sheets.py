@@ -7,8 +7,8 @@ import pytest
 from flexlash.columns import columns_of
 from flexlash.submission.entry_sheets import entry_sheets, tell_misspelt_sheets, tell_second_tables
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.raw import RawSheet, Submission
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.raw import RawSheet, Submission
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.repairs import repair_of
 

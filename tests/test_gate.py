@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flexlash.pipeline import check
-from flexlash.submission.gate import kind_of, read_bytes
+from flexlash.submission.reading.gate import kind_of, read_bytes
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
 from small_workbook import OLE2, archive_of, book_of

@@ -5,7 +5,7 @@ import pytest
 from flexlash.columns import ENTRY_SHEETS
 from flexlash.submission.headers import closest, find_headings, plain
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.read import RawSheet
+from flexlash.submission.reading.read import RawSheet
 
 MATES = ["Variant", "Material"]
 """Headers that make a row a header row whatever stands beside them."""

@@ -14,10 +14,10 @@ import pytest
 
 import regenerate
 from flexlash.pipeline import check
-from flexlash.submission.read import read_submission
 from flexlash.submission.reading import isolated
 from flexlash.submission.reading.isolated import Asked, ask
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.read import read_submission
 from flexlash.submission.reading.refusal import Refusal
 from here import AskedHere
 from small_workbook import book_of
@@ -238,7 +238,7 @@ def test_ordinary_files_are_read_alike_there_and_here(tmp_path, monkeypatch):
     for path in _files(tmp_path):
         there = read_submission(path)
         with monkeypatch.context() as patch:
-            patch.setattr("flexlash.submission.read.Asked", AskedHere)
+            patch.setattr("flexlash.submission.reading.read.Asked", AskedHere)
             here = read_submission(path)
         assert repr(there) == repr(here)
         assert replace(there, data=b"").sheets.keys() == here.sheets.keys()

@@ -9,10 +9,10 @@ import pytest
 import xlsxwriter
 
 import regenerate
-from flexlash.submission.leftovers import Leftovers, leftovers
 from flexlash.submission.reading.isolated import ask
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
+from flexlash.submission.templating.leftovers import Leftovers, leftovers
 
 PIXEL = (
     b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x06\x00\x00\x00\x1f\x15\xc4\x89\x00\x00"

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from flexlash.pipeline import check
-from flexlash.submission.delimited import read_table
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.manners import tell_manner
+from flexlash.submission.reading.delimited import read_table
 
 
 def _told(content):

@@ -20,7 +20,7 @@ from flexlash.submission.marking import findings_workbook, marked_copy, marked_t
 from flexlash.submission.marking.findings_sheet import MOST_LISTED, counted
 from flexlash.submission.marking.look import FILLS, level_of
 from flexlash.submission.marking.marks import MOST_NOTES
-from flexlash.submission.raw import ErrorCell, RawSheet
+from flexlash.submission.reading.raw import ErrorCell, RawSheet
 from libreoffice import convert, needs_libreoffice
 from marking_samples import fault, loaded, look, notes, own_workbook, rewritten, rich_workbook
 

@@ -7,11 +7,11 @@ import openpyxl
 import pytest
 from python_calamine import CalamineWorkbook
 
-from flexlash.submission.delimited import read_table
 from flexlash.submission.mending.mended_table import mended_table
 from flexlash.submission.mending.mended_workbook import FIXES_SHEET, mended_workbook
 from flexlash.submission.mending.repair import Repair
 from flexlash.submission.mending.splices import before_end, cell_spans, cell_xml, spliced, xml_text
+from flexlash.submission.reading.delimited import read_table
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.workbook import read_workbook
 

@@ -4,7 +4,7 @@ import openpyxl
 import pytest
 
 from flexlash.pipeline import check
-from flexlash.submission.raw import RawSheet, Submission
+from flexlash.submission.reading.raw import RawSheet, Submission
 from flexlash.submission.validate import validate
 
 KEYS = [

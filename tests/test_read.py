@@ -11,8 +11,8 @@ import polars as pl
 import pytest
 import xlsxwriter
 
-from flexlash.submission.gate import Refusal
-from flexlash.submission.read import ErrorCell, Unstored, column_letters, read_submission
+from flexlash.submission.reading.gate import Refusal
+from flexlash.submission.reading.read import ErrorCell, Unstored, column_letters, read_submission
 
 ERRORS = ["#REF!", "#DIV/0!", "#VALUE!", "#NAME?", "#N/A", "#NUM!", "#NULL!", "#SPILL!", "#CALC!"]
 

@@ -5,7 +5,7 @@ import pytest
 from flexlash.columns import columns_of
 from flexlash.submission.checks import check_relations
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.read import RawSheet
+from flexlash.submission.reading.read import RawSheet
 from flexlash.submission.relations import RELATIONS
 from flexlash.submission.tabulate import tabulate
 

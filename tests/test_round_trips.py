@@ -8,7 +8,7 @@ from openpyxl.utils import get_column_letter
 
 import regenerate
 from flexlash.pipeline import check
-from flexlash.submission.upgrade import upgraded
+from flexlash.submission.templating.upgrade import upgraded
 from libreoffice import convert, needs_libreoffice
 
 FILES = {

@@ -6,7 +6,7 @@ import pytest
 
 from flexlash.submission.checks import check_cells
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.read import ErrorCell, RawSheet, Unstored
+from flexlash.submission.reading.read import ErrorCell, RawSheet, Unstored
 from flexlash.submission.tables import (
     built_in_materials,
     built_in_sheet,

@@ -7,7 +7,7 @@ import pytest
 
 from flexlash.submission.checks import check_cells
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.read import ErrorCell, RawSheet, Unstored
+from flexlash.submission.reading.read import ErrorCell, RawSheet, Unstored
 from flexlash.submission.tabulate import tabulate
 
 HEADERS = ["Variant", "Material", "Torque T [N·m]", "Cylinder length l [mm]", "Wall thickness Δ [mm]"]

@@ -9,8 +9,8 @@ import pytest
 
 import regenerate
 from flexlash.columns import ENTRY_SHEETS, VARIANTS
-from flexlash.submission.entry_rules import FIRST_ROW, HEADER_ROW
-from flexlash.submission.template import Filling, study, template_bytes
+from flexlash.submission.templating.entry_rules import FIRST_ROW, HEADER_ROW
+from flexlash.submission.templating.template import Filling, study, template_bytes
 from libreoffice import convert, needs_libreoffice
 
 STATUS_ROWS = [

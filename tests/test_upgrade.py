@@ -17,14 +17,14 @@ from hypothesis import strategies as st
 import regenerate
 from flexlash.columns import SETTINGS, VARIANTS
 from flexlash.pipeline import check
-from flexlash.submission import template as template_module
-from flexlash.submission import upgrade as upgrade_module
-from flexlash.submission.entry_rules import FIRST_ROW
-from flexlash.submission.raw import ErrorCell, Unstored
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.raw import ErrorCell, Unstored
 from flexlash.submission.reading.refusal import Refusal
-from flexlash.submission.template import Filling, study, template_bytes
-from flexlash.submission.upgrade import upgraded
+from flexlash.submission.templating import template as template_module
+from flexlash.submission.templating import upgrade as upgrade_module
+from flexlash.submission.templating.entry_rules import FIRST_ROW
+from flexlash.submission.templating.template import Filling, study, template_bytes
+from flexlash.submission.templating.upgrade import upgraded
 from here import AskedHere
 from old_templates import LABELS, PLACES, old_workbook, put, rows_of
 

@@ -13,8 +13,8 @@ import regenerate
 from flexlash.assessment import assess
 from flexlash.columns import VARIANTS, columns_of
 from flexlash.pipeline import check
-from flexlash.submission.gate import Refusal
-from flexlash.submission.read import ErrorCell, RawSheet, Submission, Unstored
+from flexlash.submission.reading.gate import Refusal
+from flexlash.submission.reading.read import ErrorCell, RawSheet, Submission, Unstored
 from flexlash.submission.validate import validate
 from flexlash.variant import Settings
 

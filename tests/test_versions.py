@@ -6,7 +6,7 @@ import pytest
 
 from flexlash.columns import ENTRY_SHEETS, columns_of
 from flexlash.pipeline import check
-from flexlash.submission.raw import RawSheet, Submission
+from flexlash.submission.reading.raw import RawSheet, Submission
 from flexlash.submission.versions import TEMPLATE_VERSION, template_version
 from old_templates import LABELS, old_workbook, rows_of
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexlash.submission.raw import ErrorCell, RawSheet, Unstored
+from flexlash.submission.reading.raw import ErrorCell, RawSheet, Unstored
 from flexlash.submission.reading.wire import from_wire, to_wire
 from flexlash.submission.reading.workbook import Cells
 

@@ -10,8 +10,8 @@ import zipfile
 import numpy as np
 import pytest
 
-from flexlash.submission.raw import ErrorCell, Unstored
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.raw import ErrorCell, Unstored
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.reading.workbook import read_workbook
 from small_workbook import (

@@ -9,7 +9,7 @@ Data flows one way, and each stage is one folder or module:
 message. A submission goes through like this:
 
 >>> import flexlash, pathlib, tempfile
->>> from flexlash.submission.template import study, template_bytes
+>>> from flexlash.submission.templating.template import study, template_bytes
 >>> folder = pathlib.Path(tempfile.mkdtemp())
 >>> _ = (folder / "study.xlsx").write_bytes(template_bytes(study()))
 >>> outcome = flexlash.run(folder / "study.xlsx")

@@ -62,7 +62,7 @@ def template(output: Path | None, *, example: bool, old: Path | None, force: boo
         raise click.UsageError("--example and --upgrade both fill the template; choose one.")
     target = _planned(template_target, output, old, force=force)
     from flexlash.report.output import write_bytes
-    from flexlash.submission.template import study, template_bytes
+    from flexlash.submission.templating.template import study, template_bytes
 
     if old:
         written = write_bytes(_upgraded(old), target)
@@ -76,7 +76,7 @@ def template(output: Path | None, *, example: bool, old: Path | None, force: boo
 def _upgraded(old: Path) -> bytes:
     """Return a new template filled with what an old file holds, and say what it could not hold."""
     from flexlash.submission.reading.refusal import Refusal
-    from flexlash.submission.upgrade import upgraded
+    from flexlash.submission.templating.upgrade import upgraded
 
     try:
         upgrade = upgraded(old)
@@ -188,7 +188,7 @@ def check(
 
     Nothing is written without --annotate or --apply-fixes.
     """
-    from flexlash.submission.read import Reading
+    from flexlash.submission.reading.read import Reading
 
     if output and not (annotate or apply_fixes):
         raise click.UsageError("-o needs --apply-fixes or --annotate; check alone writes nothing.")
@@ -249,7 +249,7 @@ def run(
 ) -> None:
     """Validate, compute the tolerance spread, write the report."""
     from flexlash.elasticity import MISSING, is_available
-    from flexlash.submission.read import Reading
+    from flexlash.submission.reading.read import Reading
 
     if options["elasticity"] and not is_available():
         raise click.UsageError(MISSING)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from flexlash import __version__
 from flexlash.assessment import Computed
 from flexlash.findings import Finding
-from flexlash.submission.read import Submission
+from flexlash.submission.reading.read import Submission
 from flexlash.submission.validate import Validated
 from flexlash.variant import Settings
 

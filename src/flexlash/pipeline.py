@@ -17,10 +17,10 @@ from flexlash.mechanics.flexspline import backlash
 from flexlash.options import Options
 from flexlash.outcome import PICTURED, Outcome
 from flexlash.results import result_record, results_frame
-from flexlash.submission.gate import kind_of, read_bytes
 from flexlash.submission.mending.repair import Repair
-from flexlash.submission.read import RawSheet, Reading, Submission, read_table
+from flexlash.submission.reading.gate import kind_of, read_bytes
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.read import RawSheet, Reading, Submission, read_table
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.stops import stopped_by
 from flexlash.submission.validate import Validated, validate

@@ -12,7 +12,7 @@ from flexlash.outcome import Outcome
 from flexlash.report.styles import Book
 from flexlash.result_columns import FINDINGS
 from flexlash.submission.headers import STATUS_HEADER, plain
-from flexlash.submission.read import ErrorCell, RawSheet, RawValue, Unstored
+from flexlash.submission.reading.read import ErrorCell, RawSheet, RawValue, Unstored
 from flexlash.submission.tables import BUILT_IN_SHEETS, built_in_sheet
 
 __all__ = ["write_findings", "write_submission"]

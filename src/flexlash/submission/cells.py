@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from flexlash.columns import Column
 from flexlash.submission.number_texts import Measure, meant_number
-from flexlash.submission.raw import CommaNumber, DoubtfulNumber, ErrorCell, RawValue, Unstored
+from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, RawValue, Unstored
 
 __all__ = ["Fault", "as_number", "as_text"]
 

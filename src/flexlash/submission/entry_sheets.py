@@ -5,8 +5,8 @@ from __future__ import annotations
 from flexlash.columns import ENTRY_SHEETS, columns_of
 from flexlash.submission.headers import count_headings
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.raw import RawSheet, Submission
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.raw import RawSheet, Submission
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.spellings import closest, plain
 

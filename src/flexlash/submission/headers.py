@@ -9,7 +9,7 @@ from typing import Any
 from flexlash.columns import Column, columns_of
 from flexlash.findings import shown
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.read import ErrorCell, RawSheet, RawValue, Unstored, column_letters
+from flexlash.submission.reading.read import ErrorCell, RawSheet, RawValue, Unstored, column_letters
 from flexlash.submission.spellings import closest, misspelt, plain
 from flexlash.units import Unit, find_unit
 

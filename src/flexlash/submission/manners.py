@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.raw import RawSheet, column_letters
+from flexlash.submission.reading.raw import RawSheet, column_letters
 
 __all__ = ["tell_manner"]
 

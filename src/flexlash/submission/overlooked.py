@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from flexlash.columns import columns_of
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.raw import RawSheet, column_letters
+from flexlash.submission.reading.raw import RawSheet, column_letters
 from flexlash.submission.tabulate import Table
 
 __all__ = ["tell_overlooked"]

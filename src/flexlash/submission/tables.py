@@ -11,7 +11,7 @@ from flexlash.columns import DIMENSIONS, ENTRY_SHEETS, MATERIALS, SETTINGS, TOLE
 from flexlash.submission.cells import Fault, as_number, as_text
 from flexlash.submission.grade_texts import meant_grade
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.read import RawSheet, RawValue
+from flexlash.submission.reading.read import RawSheet, RawValue
 from flexlash.submission.spellings import closest, misspelt, plain, spelt_alike
 from flexlash.submission.tabulate import Table
 from flexlash.tolerance.grades import is_grade

@@ -15,7 +15,7 @@ from flexlash.submission.cells import Fault, as_number, as_text
 from flexlash.submission.headers import Heading, find_headings, plain
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.number_texts import Measure
-from flexlash.submission.read import RawSheet, RawValue, Unstored, column_letters
+from flexlash.submission.reading.read import RawSheet, RawValue, Unstored, column_letters
 from flexlash.units import find_unit
 
 __all__ = ["Table", "tabulate"]

@@ -13,8 +13,8 @@ from flexlash.submission.entry_sheets import entry_sheets, tell_misspelt_sheets,
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.manners import tell_manner
 from flexlash.submission.overlooked import tell_overlooked
-from flexlash.submission.read import Submission
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.read import Submission
 from flexlash.submission.spellings import closest, misspelt, plain, spelt_alike
 from flexlash.submission.tables import (
     built_in_materials,

@@ -9,7 +9,7 @@ from flexlash.columns import ENTRY_SHEETS
 from flexlash.findings import shown
 from flexlash.submission.headers import Heading
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.raw import Submission
+from flexlash.submission.reading.raw import Submission
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.spellings import plain
 

@@ -15,7 +15,7 @@ from flexlash.submission.marking.marks import MOST_NOTES, guilty_cells, mark, un
 from flexlash.submission.marking.packing import pack
 from flexlash.submission.marking.record import Record, take_record, write_record
 from flexlash.submission.marking.table_sheets import add_table
-from flexlash.submission.raw import RawSheet
+from flexlash.submission.reading.raw import RawSheet
 
 __all__ = ["MarkedCopy", "findings_workbook", "marked_copy", "marked_table"]
 

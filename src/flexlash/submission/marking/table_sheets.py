@@ -11,7 +11,7 @@ from openpyxl import Workbook
 from openpyxl.utils import get_column_letter
 
 from flexlash.submission.marking.look import put
-from flexlash.submission.raw import ErrorCell, RawSheet, RawValue, Unstored
+from flexlash.submission.reading.raw import ErrorCell, RawSheet, RawValue, Unstored
 
 __all__ = ["add_table"]
 

@@ -7,7 +7,7 @@ import io
 from collections.abc import Sequence
 
 from flexlash.submission.mending.repair import Repair
-from flexlash.submission.raw import ErrorCell, RawSheet, RawValue, column_letters
+from flexlash.submission.reading.raw import ErrorCell, RawSheet, RawValue, column_letters
 
 __all__ = ["mended_table"]
 

@@ -44,7 +44,7 @@ def _parquet(data: bytes, limits: ReadingLimits) -> Answer:  # noqa: ARG001
 
 
 def _leftovers(data: bytes, limits: ReadingLimits) -> Answer:
-    from flexlash.submission.leftovers import leftovers
+    from flexlash.submission.templating.leftovers import leftovers
 
     return leftovers(data, limits), b""
 
@@ -75,7 +75,7 @@ TASKS: dict[str, Callable[..., Answer]] = {
 _NEEDED = {
     "workbook": ("flexlash.submission.reading.wire", "flexlash.submission.reading.sheet_cells"),
     "parquet": ("flexlash.submission.reading.wire", "polars"),
-    "leftovers": ("flexlash.submission.leftovers",),
+    "leftovers": ("flexlash.submission.templating.leftovers",),
     "mark": ("flexlash.submission.marking.marked_copy",),
     "mend": ("flexlash.submission.mending.mended_workbook",),
 }

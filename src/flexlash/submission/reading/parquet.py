@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 
-from flexlash.submission.raw import RawSheet, RawValue
+from flexlash.submission.reading.raw import RawSheet, RawValue
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.reading.workbook import Cells
 

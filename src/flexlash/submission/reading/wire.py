@@ -6,7 +6,7 @@ import datetime
 from collections.abc import Callable
 from typing import Any
 
-from flexlash.submission.raw import ErrorCell, RawSheet, RawValue, Unstored
+from flexlash.submission.reading.raw import ErrorCell, RawSheet, RawValue, Unstored
 from flexlash.submission.reading.workbook import Cells
 
 __all__ = ["from_wire", "to_wire"]

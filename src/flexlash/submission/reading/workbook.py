@@ -8,10 +8,10 @@ import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
-from flexlash.submission.raw import ERROR_WORDS, ErrorCell, RawSheet, RawValue, Unstored
 from flexlash.submission.reading.archive import packed, unpacked
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.package import Package, open_package
+from flexlash.submission.reading.raw import ERROR_WORDS, ErrorCell, RawSheet, RawValue, Unstored
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.reading.worksheet import Worksheet
 

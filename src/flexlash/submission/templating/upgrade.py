@@ -9,21 +9,21 @@ from pathlib import Path
 from typing import Any
 
 from flexlash.columns import ENTRY_SHEETS, SETTINGS, Column
-from flexlash.submission.cell_writer import Formula, writable
 from flexlash.submission.cells import as_number
-from flexlash.submission.entry_rules import FIRST_ROW
 from flexlash.submission.entry_sheets import entry_sheets, tell_misspelt_sheets
-from flexlash.submission.filling import Entries, Filling
 from flexlash.submission.headers import Heading, find_headings
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.leftovers import Leftovers, Place
-from flexlash.submission.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored, column_letters
-from flexlash.submission.read import read_submission
 from flexlash.submission.reading.isolated import ask
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored, column_letters
+from flexlash.submission.reading.read import read_submission
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.spellings import plain
-from flexlash.submission.template import TITLES, template_bytes
+from flexlash.submission.templating.cell_writer import Formula, writable
+from flexlash.submission.templating.entry_rules import FIRST_ROW
+from flexlash.submission.templating.filling import Entries, Filling
+from flexlash.submission.templating.leftovers import Leftovers, Place
+from flexlash.submission.templating.template import TITLES, template_bytes
 from flexlash.submission.validate import validate
 from flexlash.submission.versions import template_version
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from flexlash.submission.delimited import read_table
-from flexlash.submission.gate import kind_of, read_bytes
-from flexlash.submission.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored, column_letters
+from flexlash.submission.reading.delimited import read_table
+from flexlash.submission.reading.gate import kind_of, read_bytes
 from flexlash.submission.reading.isolated import Asked
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored, column_letters
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.reading.wire import from_wire
 from flexlash.submission.reading.workbook import PROPERTY

@@ -11,9 +11,10 @@ import xlsxwriter
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
 from flexlash.columns import ENTRY_SHEETS, SETTINGS, Column
-from flexlash.submission.cell_writer import DATE_FORMATS, CellWriter
-from flexlash.submission.dictionary_sheet import write_dictionary
-from flexlash.submission.entry_rules import (
+from flexlash.submission.headers import STATUS_HEADER
+from flexlash.submission.templating.cell_writer import DATE_FORMATS, CellWriter
+from flexlash.submission.templating.dictionary_sheet import write_dictionary
+from flexlash.submission.templating.entry_rules import (
     FIRST_ROW,
     HEADER_ROW,
     PREPARED_ROWS,
@@ -22,10 +23,9 @@ from flexlash.submission.entry_rules import (
     header_note,
     write_lists,
 )
-from flexlash.submission.filling import Entries, Filling, study
-from flexlash.submission.headers import STATUS_HEADER
-from flexlash.submission.status import COMPLETE, status_formula
-from flexlash.submission.stored_status import listed_name, stored_statuses
+from flexlash.submission.templating.filling import Entries, Filling, study
+from flexlash.submission.templating.status import COMPLETE, status_formula
+from flexlash.submission.templating.stored_status import listed_name, stored_statuses
 from flexlash.submission.versions import TEMPLATE_VERSION
 
 __all__ = ["TITLES", "Filling", "study", "template_bytes"]

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
-from flexlash.submission.raw import ErrorCell, Unstored
+from flexlash.submission.reading.raw import ErrorCell, Unstored
 
 __all__ = ["DATE_FORMATS", "CellWriter", "Formula", "writable"]
 

@@ -7,10 +7,10 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from flexlash.submission.cell_writer import Formula
-from flexlash.submission.filling import Entries
-from flexlash.submission.raw import ErrorCell, Unstored
-from flexlash.submission.status import status_text
+from flexlash.submission.reading.raw import ErrorCell, Unstored
+from flexlash.submission.templating.cell_writer import Formula
+from flexlash.submission.templating.filling import Entries
+from flexlash.submission.templating.status import status_text
 
 __all__ = ["listed_name", "stored_statuses"]
 

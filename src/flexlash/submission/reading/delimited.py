@@ -9,7 +9,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 
-from flexlash.submission.raw import (
+from flexlash.submission.reading.raw import (
     ERROR_WORDS,
     CommaNumber,
     DoubtfulNumber,
