@@ -165,7 +165,7 @@ def _warn_strength(validated: Validated, variant: Variant, nominal: Numbers) -> 
         and torque > _TORQUE_SHARE * listed.torque
         and not (_exceeds(stress, strength) or _exceeds(shear, buckling))
     ):
-        facts = {"value": f"{torque:.10g}", "other": listed.torque, "detail": listed.size}
+        facts = {"value": f"{torque:.10g}", "other": _TORQUE_SHARE * listed.torque, "detail": listed.size}
         blame(validated, "W424", variant, "torque_Nm", name=_name("torque_Nm"), **facts)
 
 

@@ -654,7 +654,7 @@ CATALOGUE = _rules(
     (
         "W424",
         "torque above catalogue drives",
-        "{place} {name} = {value} N·m exceeds twice T2 = {other:g} N·m of catalogue drives of size {detail}.",
+        "{place} {name} = {value} N·m exceeds {other:g} N·m, twice T2 of catalogue drives of size {detail}.",
         "Check torque and radius, and their units.",
         "T2 is the torque where the second slope of a drive's stiffness ends in a maker's catalogue, the greatest of "
         "its ratios. It is no rated torque, but a torque above twice T2 is unusual for the size.",
