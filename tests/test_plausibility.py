@@ -331,7 +331,7 @@ def test_a_torque_above_catalogue_drives(judge, base, radius, torque, told):
     outcome = judge(base | part)
     assert _told(outcome) == [("W424", "torque_Nm", "")][:told]
     if told:
-        size, listed = {80: (65, "843"), 127: (100, "3040")}[radius]
+        size, listed = {80: (65, 843), 127: (100, 3040)}[radius]
         assert f"= {torque:g} N·m exceeds {2 * listed:g} N·m, twice T2 of catalogue drives of size {size}." in (
             outcome.findings[0].message
         )
