@@ -4,9 +4,10 @@ import datetime
 
 import pytest
 
-from flexlash.columns import columns_of
+from flexlash.columns import ENTRY_SHEETS, SETTINGS, columns_of
 from flexlash.submission.cells import Fault, as_number, as_text
-from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Unstored
+from flexlash.submission.number_texts import Measure
+from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Percentage, Unstored
 
 WALL = columns_of("Variants")["wall_thickness_mm"]
 
@@ -138,3 +139,30 @@ def test_texts(value, text):
 def test_a_text_without_end():
     """A text of more characters than its column takes is refused."""
     assert as_text("x" * 201, 200) == Fault(code="E212", value="x" * 201)
+
+
+PERCENTAGES = {
+    "per cent are wanted": ("coverage_percent", "Settings", None, 0.95, 95.0),
+    "a deviation in per cent": ("lower_deviation", "Tolerances", Measure(quantity="ratio", si=0.01), -0.05, -5.0),
+    "a ratio": ("poisson_ratio", "Materials", None, 0.3, 0.3),
+    "a length": ("wall_thickness_mm", "Variants", None, 1.6, None),
+    "a deviation in mm": ("lower_deviation", "Tolerances", Measure(quantity="length", si=1e-3), -0.05, None),
+    "a deviation of unknown unit": ("lower_deviation", "Tolerances", Measure(quantity="", si=1.0), -0.05, None),
+}
+
+
+@pytest.mark.parametrize("what", PERCENTAGES)
+def test_a_cell_that_shows_a_percentage(what):
+    """What a cell shows as 5% is read as 5 where per cent are wanted, as 0.05 in a ratio, and refused elsewhere."""
+    key, sheet, measure, stored, expected = PERCENTAGES[what]
+    column = next(one for one in (*ENTRY_SHEETS[sheet], *SETTINGS) if one.key == key)
+    found = as_number(Percentage(stored), column, from_text=False, measure=measure or Measure.of(column))
+    if expected is None:
+        assert (found.code, found.value) == ("E216", f"{stored * 100:.10g}%")
+    else:
+        assert found == expected
+
+
+def test_a_percentage_as_a_name_is_what_it_shows():
+    """A name that a cell shows as a percentage is that text."""
+    assert as_text(Percentage(0.07), longest=9) == "7%"

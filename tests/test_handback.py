@@ -8,6 +8,7 @@ import pytest
 from python_calamine import CalamineWorkbook
 
 from flexlash.cli import cli
+from flexlash.handback import sealed
 from flexlash.pipeline import check, mend, run
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
@@ -186,3 +187,68 @@ def test_json_lists_the_fixes(workbook, sound, tmp_path, capsys):
     ]
     assert answer["outputs"] == [str(tmp_path / "submission-mended.xlsx")]
     assert check(tmp_path / "submission-mended.xlsx").exit_code == 0
+
+
+def test_work_saved_in_a_marked_copy_is_never_overwritten(workbook, sound, tmp_path):
+    """A marked copy that somebody has saved since keeps its place, and the next one gets a number."""
+    path = workbook([{**sound, "torque_Nm": None}])
+    copy = tmp_path / "copy.xlsx"
+    assert check(path, marked_copy=copy).outputs == [copy]
+    assert check(path, marked_copy=copy).outputs == [copy]
+    book = openpyxl.load_workbook(copy)
+    book["Variants"]["D5"] = 800
+    book.save(copy)
+    outcome = check(path, marked_copy=copy)
+    assert outcome.marked_copy == tmp_path / "copy (2).xlsx"
+    assert openpyxl.load_workbook(copy)["Variants"]["D5"].value == 800
+    again = check(copy, marked_copies=True, marked_copy=copy)
+    assert again.exit_code == 0
+    assert openpyxl.load_workbook(copy)["Variants"]["D5"].value == 800
+
+
+def test_a_mended_file_does_not_replace_another(table, sound, tmp_path):
+    """A mended file takes no path where another file stands; the same bytes again need no number."""
+    path = table([{**sound, "wall_thickness_mm": "1,6 mm"}])
+    target = tmp_path / "new.csv"
+    target.write_text("mine", encoding="utf-8")
+    for _ in range(2):
+        assert mend(path, target)[0].outputs == [tmp_path / "new (2).csv"]
+    assert target.read_text(encoding="utf-8") == "mine"
+
+
+def test_sealed_workbooks_are_ordinary_ones(workbook, sound, tmp_path):
+    """The seal of a workbook keeps no reader from it."""
+    check(workbook([{**sound, "torque_Nm": None}]), marked_copy=tmp_path / "copy.xlsx")
+    data = (tmp_path / "copy.xlsx").read_bytes()
+    assert sealed(data) == data
+    assert check(tmp_path / "copy.xlsx", marked_copies=True).counts["rows"] == 1
+    assert "Variants" in CalamineWorkbook.from_path(tmp_path / "copy.xlsx").sheet_names
+    assert sealed(b"a,b") == b"a,b"
+
+
+def test_a_percentage_in_a_cell(workbook, sound, tmp_path):
+    """A deviation that a cell shows as 5% is 5 where its unit is %, and an error where it is a length."""
+    rows = [
+        {"tolerance_class": "fine", "dimension": "wall_thickness", "lower_deviation": -5.0, "upper_deviation": 5.0,
+         "deviation_unit": "%"},
+    ]  # fmt: skip
+    variants = [{**sound, "tolerance_class": "fine"}]
+    plain = run(workbook(variants, tolerances=rows), samples=64)
+    for unit, shown in (("%", True), (None, False)):
+        path = tmp_path / "other.xlsx"
+        book = openpyxl.load_workbook(workbook(variants, tolerances=rows))
+        sheet = book["Tolerances"]
+        (row,) = [cells[0].row for cells in sheet.iter_rows() if cells[0].value == "fine"]
+        for letter, value in (("C", -0.05), ("D", 0.05)):
+            sheet[f"{letter}{row}"] = value
+            sheet[f"{letter}{row}"].number_format = "0%"
+        sheet[f"E{row}"] = unit
+        book.save(path)
+        outcome = run(path, samples=64)
+        codes = [found.code for found in outcome.findings if found.sheet == "Tolerances"]
+        if shown:
+            assert codes == ["I514", "I514"]
+            assert outcome.results["sd_arcmin"][0] == plain.results["sd_arcmin"][0]
+        else:
+            assert codes == ["E216", "E216"]
+            assert outcome.exit_code == 4

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexlash.submission.reading.raw import ErrorCell, RawSheet, Unstored
+from flexlash.submission.reading.raw import ErrorCell, Percentage, RawSheet, Unstored
 from flexlash.submission.reading.wire import from_wire, to_wire
 from flexlash.submission.reading.workbook import Cells
 
@@ -33,6 +33,7 @@ VALUES = [
     datetime.time(3, 4, 5, 678),
     datetime.timedelta(days=-3, seconds=1.5),
     ErrorCell("#REF!"),
+    Percentage(0.05),
     ErrorCell(""),
     Unstored(),
 ]

@@ -6,12 +6,13 @@ import random
 import time
 import tracemalloc
 import zipfile
+from xml.sax.saxutils import escape
 
 import numpy as np
 import pytest
 
 from flexlash.submission.reading.limits import ReadingLimits
-from flexlash.submission.reading.raw import ErrorCell, Unstored
+from flexlash.submission.reading.raw import ErrorCell, Percentage, Unstored
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.reading.workbook import read_workbook
 from small_workbook import (
@@ -33,6 +34,7 @@ from small_workbook import (
     workbook_part,
 )  # fmt: skip
 
+QUOTES = {'"': "&quot;"}
 CORNERS = '<row r="1"><c r="A1"><v>1</v></c></row><row r="1048576"><c r="XFD1048576"><v>2</v></c></row>'
 
 
@@ -316,3 +318,17 @@ def test_mutilated_parts_end_in_a_refusal_or_cells():
         refusal = _refusal(archive_of(changed))
         ends.add(refusal.code if refusal else "read")
     assert {"read", "E102"} <= ends <= {"read", "E101", "E102", "E105", "E106", "E110"}
+
+
+@pytest.mark.parametrize(
+    ("number_format", "code", "percentage"),
+    [(9, "", True), (10, "", True), (164, "0.0%", True), (164, '0.0" %"', False), (164, "0\\%", False), (2, "", False)],
+)
+def test_numbers_that_are_shown_as_percentages(number_format, code, percentage):
+    """A number whose cell shows it times a hundred knows it; a percent sign that is merely shown does not count."""
+    own = f'<numFmts count="1"><numFmt numFmtId="164" formatCode="{escape(code, QUOTES)}"/></numFmts>' if code else ""
+    cells = f'<cellXfs><xf numFmtId="0"/><xf numFmtId="{number_format}"/></cellXfs>'
+    styles = f'<styleSheet xmlns="{MAIN}">{own}{cells}</styleSheet>'
+    found = _read(book_of(_row(_number("0.05", s="1"), _number("7", "B1")), **{STYLES: styles}))[1]
+    assert found == {1: 0.05, 2: 7}
+    assert [isinstance(value, Percentage) for value in found.values()] == [percentage, False]

@@ -109,7 +109,7 @@ CATALOGUE = _rules(
     (
         "E110",
         "too large",
-        "{file} exceeds a limit: {what} is {found}; at most {limit} may be read (setting {setting}).",
+        "{file} exceeds a limit: {what} is {found}; at most {limit} is allowed (setting {setting}).",
         "Split the submission, copy the cells into a fresh template, or raise the limit: --limit {setting}=NUMBER.",
         "Limits keep one damaged or hostile file from stopping the work of others.",
     ),
@@ -123,10 +123,10 @@ CATALOGUE = _rules(
     (
         "E112",
         "misspelt header",
-        "{place}: the header {value} is unknown but resembles {name}.",
+        "{place}: the header {value} is unknown but probably means {name}.",
         "Write {label}, or a name that does not resemble a column of the template.",
-        "A misspelt optional column would otherwise be left out of the calculation without a word. "
-        "Rows that hold a value under it are not computed.",
+        "A misspelt optional column would otherwise be left out of the calculation without a word; a required one would "
+        "be missing. Rows that hold a value under it are not computed.",
     ),
     (
         "E113",
@@ -190,7 +190,7 @@ CATALOGUE = _rules(
         "E202",
         "text instead of a number",
         '{place} {name} = "{value}": {requirement} is required.',
-        "Type the number alone, without unit, with the decimal sign that your Excel uses.",
+        "Type the number alone, without unit, with the decimal sign that your program uses.",
         "A cell can look like a number and be text: a comma where Excel expects a point, a unit behind the "
         "number, a stray space, a leading apostrophe. flexlash never guesses at a dimension.",
     ),
@@ -240,7 +240,7 @@ CATALOGUE = _rules(
         "E209",
         "not in the list",
         '{place} {name} = "{value}": {requirement} is required.',
-        "Pick an entry of the cell's drop-down list.",
+        "Write an entry of the list: {choices}.",
         "Letter case and spaces do not matter; the word must be one of the list.",
     ),
     (
@@ -278,6 +278,13 @@ CATALOGUE = _rules(
         "{place} {name} is hidden under the merged cells {other}: {requirement} is required.",
         "Unmerge the cells and fill each of them.",
         "Merged cells hold one value at their top left corner; the others are empty, whatever they seem to show.",
+    ),
+    (
+        "E216",
+        "percentage instead of a number",
+        "{place} {name} shows {value}: {requirement} is required.",
+        "Format the cell as Number and type the value; for a tolerance in per cent choose % as its deviation unit.",
+        "Excel stores 5% as 0.05. For a length, torque or modulus it is not certain which of the two is meant.",
     ),
     (
         "E301",
@@ -325,7 +332,7 @@ CATALOGUE = _rules(
         "E307",
         "unknown material",
         '{place} {name} = "{value}" is not a row of Materials.',
-        "Pick a material of the drop-down list, or add it to the Materials sheet.",
+        "Write the name of a material as Materials has it, or add a row to Materials (sheet, or file of --materials).",
         "The name must be that of a row of Materials; letter case and spaces do not matter.",
     ),
     (
@@ -339,7 +346,7 @@ CATALOGUE = _rules(
         "E309",
         "unknown tolerance class",
         '{place} {name} = "{value}" is not a class of Tolerances.',
-        "Pick a class of the drop-down list, or add its rows to the Tolerances sheet.",
+        "Write the name of a class as Tolerances has it, or add rows to Tolerances (sheet, or file of --tolerances).",
         "Blank means standard. A class consists of the Tolerances rows that carry its name.",
     ),
     (
@@ -374,14 +381,14 @@ CATALOGUE = _rules(
         "E314",
         "impossible at the limits",
         "{place} {name} = {value}: its tolerance in class {other} reaches {detail}.",
-        "Narrow the tolerance or check the value and the deviation unit.",
+        "Check the value and its unit; else narrow the tolerance, or mend the deviation unit.",
         "At the tolerance limits every thickness must stay above 0 and the hub inside the disk.",
     ),
     (
         "E315",
         "grade not tabulated",
         "{place} {name} = {value}: grade {detail} of class {other} has no entry for this size.",
-        "Give lower and upper deviation instead of the grade.",
+        "Check the value and its unit; if they are right, give lower and upper deviation instead of the grade.",
         "ISO 286 is tabulated to 500 mm, ISO 2768 from 0.5 mm; class v starts at 3 mm, f ends at 2000 mm. "
         "A radius takes the grade of its diameter.",
     ),
@@ -475,6 +482,14 @@ CATALOGUE = _rules(
         "{place} {name} = {value} mm: at most the radius of the bore, {other:g} mm, is required.",
         "Check the fillet radius and its unit.",
         "A fillet between disk and wall cannot reach beyond the axis.",
+    ),
+    (
+        "E329",
+        "unit slipped, row contradictory",
+        "{place} {name} = {value} is about {other} {detail}, and contradicts {contradicted}.",
+        "Enter the value in the unit of the header, or mend the header's unit.",
+        "Metres in a column of millimetres, for instance. Because of this one value the row makes no part, so it is not "
+        "computed; the cell that it contradicts is probably right.",
     ),
     (
         "W401",
@@ -623,7 +638,7 @@ CATALOGUE = _rules(
         "unit slipped",
         "{place} {name} = {value} is about {other} {detail}.",
         "Enter the value in the unit of the header, or mend the header's unit.",
-        "Metres in a column of millimetres, MPa or Pa in a column of GPa, N·mm in a column of N·m: each value is "
+        "Metres in a column of millimetres, MPa or Pa in a column of GPa, N·mm or kN·m in a column of N·m: each value is "
         "compared with the rest of its row, or with real materials. It is used as entered.",
     ),
     (
@@ -772,6 +787,13 @@ CATALOGUE = _rules(
         "{file} was made from template version {found}; version {known} adds {added}.",
         "Nothing to do. To enter them, move the file into a new template: flexlash template --upgrade FILE.",
         "An older template is read as before; what it has no column for counts as blank.",
+    ),
+    (
+        "I514",
+        "percentage read",
+        "{place} {name} shows {value} and was read as {detail} %.",
+        "Nothing to do.",
+        "Excel stores 5% as 0.05; where per cent are wanted, what the cell shows is read.",
     ),
     (
         "I513",

@@ -140,7 +140,7 @@ def _limits(_: click.Context, __: click.Parameter, given: tuple[str, ...]) -> Re
         raise click.UsageError(f"--limit: {fault}.") from fault
 
 
-_SUBMISSIONS = click.argument("submissions", nargs=-1, required=True, type=click.Path(path_type=Path))
+_SUBMISSIONS = click.argument("submissions", nargs=-1, required=True, type=click.Path(path_type=Path, readable=False))
 _JSON = click.option("--json", "as_json", is_flag=True, help="Machine-readable outcome on stdout.")
 _LIMITS = click.option(
     "--limit", "limits", multiple=True, metavar="NAME=NUMBER", envvar="FLEXLASH_LIMIT", callback=_limits,
@@ -155,7 +155,7 @@ _STRICT = click.option("--strict", is_flag=True, help="Compute nothing when any 
 def _table_option(name: str) -> Callable[[Command], Command]:
     return click.option(
         f"--{name}",
-        type=click.Path(path_type=Path),
+        type=click.Path(path_type=Path, readable=False),
         metavar="FILE.csv",
         help=f"The {name.capitalize()} table to use instead of the submission's.",
     )
@@ -193,9 +193,14 @@ def check(
     if output and not (annotate or apply_fixes):
         raise click.UsageError("-o needs --apply-fixes or --annotate; check alone writes nothing.")
     targets = _planned(mended_targets, submissions, output)
+    copies = beside(submissions, targets)
+    if output in targets and not apply_fixes:
+        copies = targets
+        if output.suffix.lower() != ".xlsx":
+            raise click.UsageError("A marked copy is a workbook: OUT must end in .xlsx or be a folder.")
     options["marked_copies"] |= annotate
     codes: list[int] = []
-    for path, target, copy in zip(submissions, targets, beside(submissions, targets), strict=True):
+    for path, target, copy in zip(submissions, targets, copies, strict=True):
         with one_submission(path, codes, as_json=as_json):
             reading = Reading(path, options["limits"])
             # Loading the libraries takes as long as reading the file does: both at once.
@@ -207,7 +212,7 @@ def check(
                 outcome, repairs = mend(reading, target, marked_copy=copy if annotate else None, **options)
             else:
                 outcome = check_one(reading, marked_copy=copy if annotate else None, **options)
-            tell(outcome, path, as_json=as_json, repairs=repairs)
+            tell(outcome, outcome.outputs[0] if repairs else path, as_json=as_json, repairs=repairs)
             codes += [] if outcome.skipped else [outcome.exit_code]
     sys.exit(worst(codes))
 

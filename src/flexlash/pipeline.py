@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from flexlash.assessment import assess
 from flexlash.elasticity import MISSING, is_available
 from flexlash.findings import Finding, finding
-from flexlash.handback import certain_repairs, marked, mended, worth_marking
+from flexlash.handback import certain_repairs, marked, mended, sealed, unclaimed, worth_marking
 from flexlash.mechanics.flexspline import backlash
 from flexlash.options import Options
 from flexlash.outcome import PICTURED, Outcome
@@ -49,8 +49,9 @@ def check(submission: str | Path | Reading, **options: Any) -> Outcome:
     or written. A file that is no submission gives an outcome whose only finding says why.
     """
     chosen = Options(**options)
-    outcome = _examine(submission, chosen)
-    _mark(outcome, chosen)
+    reading = _reading(submission, chosen)
+    outcome = _examine(reading, chosen)
+    _mark(outcome, chosen, reading.path)
     return outcome
 
 
@@ -61,7 +62,7 @@ def mend(submission: str | Path | Reading, output: str | Path, **options: Any) -
     be opened or written.
     """
     chosen = Options(**options)
-    reading = submission if isinstance(submission, Reading) else Reading(Path(submission), chosen.limits)
+    reading = _reading(submission, chosen)
     original = outcome = _examine(reading, chosen)
     repairs: dict[str, Repair] = {}
     for _ in range(_PASSES):
@@ -74,8 +75,8 @@ def mend(submission: str | Path | Reading, output: str | Path, **options: Any) -
             break
         outcome = _examine(Reading(reading.path, chosen.limits, data), chosen)
     if repairs:
-        outcome.outputs.append(_write_bytes(data, Path(output)))
-    _mark(outcome, chosen)
+        outcome.outputs.append(_hand_back(data, Path(output)))
+    _mark(outcome, chosen, reading.path)
     return outcome, list(repairs.values())
 
 
@@ -91,7 +92,8 @@ def run(submission: str | Path | Reading, output: str | Path | None = None, **op
     chosen = Options(**options)
     if chosen.elasticity and not is_available():
         raise ModuleNotFoundError(MISSING)
-    outcome = _examine(submission, chosen)
+    reading = _reading(submission, chosen)
+    outcome = _examine(reading, chosen)
     _spread(outcome, chosen)
     if chosen.elasticity:
         _verify(outcome, chosen)
@@ -101,13 +103,17 @@ def run(submission: str | Path | Reading, output: str | Path | None = None, **op
         from flexlash.report.output import write_outcome
 
         outcome.outputs.append(write_outcome(outcome, Path(output)))
-    _mark(outcome, chosen)
+    _mark(outcome, chosen, reading.path)
     return outcome
 
 
-def _examine(given: str | Path | Reading, options: Options) -> Outcome:
+def _reading(given: str | Path | Reading, options: Options) -> Reading:
+    """Return a submission being read."""
+    return given if isinstance(given, Reading) else Reading(Path(given), options.limits)
+
+
+def _examine(reading: Reading, options: Options) -> Outcome:
     """Read, validate and compute at the entered dimensions."""
-    reading = given if isinstance(given, Reading) else Reading(Path(given), options.limits)
     path = reading.path
     try:
         submission = reading.submission()
@@ -133,18 +139,21 @@ def _examine(given: str | Path | Reading, options: Options) -> Outcome:
         )
 
 
-def _mark(outcome: Outcome, options: Options) -> None:
-    """Write the marked copy, when it is wanted and there is something to mark."""
+def _mark(outcome: Outcome, options: Options, path: Path) -> None:
+    """Write the marked copy, when it is wanted and there is something to mark; that of a marked copy replaces it."""
     if options.marked_copy is not None and worth_marking(outcome):
         data, outcome.not_carried = marked(outcome, options.limits)
-        outcome.marked_copy = _write_bytes(data, Path(options.marked_copy))
+        outcome.marked_copy = _hand_back(data, Path(options.marked_copy), path)
         outcome.outputs.append(outcome.marked_copy)
 
 
-def _write_bytes(data: bytes, path: Path) -> Path:
+def _hand_back(data: bytes, path: Path, own: Path | None = None) -> Path:
+    """Write what goes back to the sender, never over a file in which somebody may have worked."""
     from flexlash.report.output import write_bytes
 
-    return write_bytes(data, path)
+    new = sealed(data)
+    is_own = own is not None and path.exists() and path.samefile(own)
+    return write_bytes(new, path if is_own else unclaimed(path, new))
 
 
 def _with_tables(submission: Submission, options: Options) -> Submission:

@@ -27,6 +27,10 @@ __all__ = [
 ]
 
 _SHOWN_MESSAGES = 3
+_SHOWN_REPAIRS = 10
+_NO_MEND = "Nothing to do"
+"""How the mend begins of a finding that needs none."""
+
 _NAME = 30
 """Most characters of a name in a sentence."""
 _LEVELS = ("error", "warning", "info")
@@ -52,14 +56,13 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[tuple[str, str]]:
         cells = {found.cell: None for found in group if found.cell}
         where = f", {_counted(len(cells), 'cell')}: {shown(sheet)}!{cell_ranges(list(cells))}" if cells else ""
         yield level, f"{level} {code} {CATALOGUE[code].title}{where}"
-        if level == "info" and len(group) > 1:
-            continue
         for found in group[:_SHOWN_MESSAGES]:
             yield "", f"    {found.message}"
         if len(group) > _SHOWN_MESSAGES:
-            yield "", f"    … and {len(group) - _SHOWN_MESSAGES} more of the same kind"
-        if level != "info":
-            for fix in dict.fromkeys(found.fix for found in group[:_SHOWN_MESSAGES]):
+            whole = "" if level == "info" else "; the marked copy (check --annotate) lists them all"
+            yield "", f"    … and {len(group) - _SHOWN_MESSAGES} more of the same kind{whole}"
+        for fix in dict.fromkeys(found.fix for found in group[:_SHOWN_MESSAGES]):
+            if not fix.startswith(_NO_MEND):
                 yield "", f"    Mend: {fix}"
 
 
@@ -101,8 +104,10 @@ def repair_lines(repairs: Sequence[Repair]) -> Iterator[str]:
         if repairs
         else "There is nothing that could be mended with certainty."
     )
-    for repair in repairs:
-        yield f'    {repair.place}: "{repair.found}" → {repair.written} ({repair.code})'
+    for repair in repairs[:_SHOWN_REPAIRS]:
+        yield f'    {shown(repair.place)}: "{shown(repair.found)}" → {shown(repair.written)} ({repair.code})'
+    if len(repairs) > _SHOWN_REPAIRS:
+        yield f"    … and {len(repairs) - _SHOWN_REPAIRS} more; a workbook lists them all on its sheet Fixes"
 
 
 def _next_step(computed: int, rows: int, name: str) -> str:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from flexlash.columns import Column
 from flexlash.submission.number_texts import Measure, meant_number
-from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, RawValue, Unstored
+from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Percentage, RawValue, Unstored
 
 __all__ = ["Fault", "as_number", "as_text"]
 
@@ -52,6 +52,8 @@ def as_number(
     """
     if fault := _not_an_entry(value):
         return fault
+    if isinstance(value, Percentage):
+        return _percentage(value, column, measure)
     if isinstance(value, int | float):
         number = float(value)
         return number if math.isfinite(number) else Fault(code="E212", value=value)
@@ -66,10 +68,23 @@ def as_number(
     return Fault(code="E202", value=value, suggestion=meant.words, repair=meant.repair)
 
 
+def _percentage(value: Percentage, column: Column | None, measure: Measure | None) -> float | Fault:
+    """Return the number that a cell shown as a percentage means: per cent where those are wanted, else the ratio."""
+    if column is not None and column.key.endswith("_percent"):
+        return round(value * 100, 12)
+    if measure is not None and measure.quantity == "ratio":
+        return round(value / measure.si, 12)
+    if column is not None and column.quantity == "ratio":
+        return float(value)
+    return Fault(code="E216", value=value.shown)
+
+
 def as_text(value: RawValue, longest: int) -> str | Fault:
     """Return a cell as a text without outer spaces and invisible characters; whole numbers lose their point."""
     if fault := _not_an_entry(value):
         return fault
+    if isinstance(value, Percentage):
+        return value.shown
     if isinstance(value, int | float):
         if not math.isfinite(value):
             return Fault(code="E212", value=value)

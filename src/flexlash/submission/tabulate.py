@@ -15,7 +15,7 @@ from flexlash.submission.cells import Fault, as_number, as_text
 from flexlash.submission.headers import Heading, find_headings, plain
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.number_texts import Measure
-from flexlash.submission.reading.read import RawSheet, RawValue, Unstored, column_letters
+from flexlash.submission.reading.raw import Percentage, RawSheet, RawValue, Unstored, column_letters
 from flexlash.units import find_unit
 
 __all__ = ["Table", "tabulate"]
@@ -193,6 +193,8 @@ def _typed(cell: _Cell, ledger: Ledger) -> str | float | None:
         ledger.add(found.code, value=found.value, rows=rows, **facts)
         return None
     if isinstance(found, float):
+        if isinstance(value, Percentage) and found != value:
+            ledger.add("I514", value=value.shown, detail=f"{found:.10g}", **cell.facts)
         return found
     entry = _choice(column, found)
     if entry != found or (isinstance(value, str) and found != value):

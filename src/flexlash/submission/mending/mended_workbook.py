@@ -44,7 +44,7 @@ def mended_workbook(data: bytes, repairs: Sequence[Repair], limits: ReadingLimit
             made += done
     if made:
         parts[package.workbook] = _recalculated(parts[package.workbook])
-        if not package.mended and FIXES_SHEET.casefold() not in {sheet.title.casefold() for sheet in package.sheets}:
+        if not package.mended:
             parts = _with_list(parts, package.workbook, made, limits)
     return packed(parts, compressed=True), made
 
@@ -81,10 +81,16 @@ def _with_list(
     """Return the parts with one more sheet, which lists the repairs."""
     folder, name = posixpath.split(workbook)
     relations = f"{folder}/_rels/{name}.rels"
-    part = f"{folder}/worksheets/flexlash-fixes.xml"
+    part = next(
+        name
+        for number in range(1, len(parts) + 2)
+        if (name := f"{folder}/worksheets/flexlash-fixes{number}.xml") not in parts
+    )
     known = {one.get("Id", "") for one in Listing(parts[relations], limits, "Relationship").found}
     relation = next(name for number in range(1, len(known) + 2) if (name := f"rIdFixes{number}") not in known)
-    numbers = [int(one.get("sheetId", "0")) for one in Listing(parts[workbook], limits, "sheet").found]
+    sheets = Listing(parts[workbook], limits, "sheet").found
+    numbers = [int(one.get("sheetId", "0")) for one in sheets]
+    title = _free_title({one.get("name", "").casefold() for one in sheets})
     try:
         return {
             **parts,
@@ -104,11 +110,17 @@ def _with_list(
                 parts[workbook],
                 "sheets",
                 b'<@sheet name="%s" sheetId="%d" xmlns:fl="%s" fl:id="%s"/>'
-                % (FIXES_SHEET.encode(), max(numbers, default=0) + 1, _OFFICE.encode(), relation.encode()),
+                % (title.encode(), max(numbers, default=0) + 1, _OFFICE.encode(), relation.encode()),
             ),
         }
     except ValueError:
         return parts
+
+
+def _free_title(taken: set[str]) -> str:
+    """Return a title for the list that no sheet has."""
+    titles = (FIXES_SHEET, *(f"flexlash {FIXES_SHEET} {number}" for number in range(1, len(taken) + 2)))
+    return next(title for title in titles if title.casefold() not in taken)
 
 
 def _sheet(made: Sequence[Repair]) -> bytes:

@@ -12,6 +12,7 @@ __all__ = [
     "DoubtfulNumber",
     "ErrorCell",
     "Manner",
+    "Percentage",
     "RawSheet",
     "RawValue",
     "Submission",
@@ -36,6 +37,17 @@ class ErrorCell:
 @dataclass(frozen=True)
 class Unstored:
     """A formula whose result was never stored."""
+
+
+class Percentage(float):
+    """A number that its cell shows as a percentage: 0.05 is shown as 5%."""
+
+    __slots__ = ()
+
+    @property
+    def shown(self) -> str:
+        """What the cell shows."""
+        return f"{round(self * 100, 10):.10g}%"
 
 
 class CommaNumber(str):

@@ -6,20 +6,27 @@ Of openpyxl the parser of cells is used, not its sheets: those fill every gap be
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator
 from typing import Any
 from xml.etree.ElementTree import iterparse
 
 from openpyxl.reader.excel import ExcelReader
 from openpyxl.reader.strings import read_string_table
+from openpyxl.styles.numbers import BUILTIN_FORMATS
 from openpyxl.styles.stylesheet import apply_stylesheet
 from openpyxl.worksheet._reader import WorkSheetParser
 
 from flexlash.submission.reading.elements import MAIN
+from flexlash.submission.reading.raw import Percentage
 
 __all__ = ["SheetCells"]
 
 _ROWS, _ROW, _CELL = f"{{{MAIN}}}sheetData", f"{{{MAIN}}}row", f"{{{MAIN}}}c"
+_QUOTED = re.compile(r'"[^"]*"|\\.')
+"""Parts of a number format that are shown as they are."""
+
+_FIRST_OWN_FORMAT = 164
 _PIECE = 2**20
 """Read in pieces this large, a long piece of markup is not looked through again for each of many small ones."""
 
@@ -45,6 +52,7 @@ class SheetCells:
         self.workbook = reader.wb
         apply_stylesheet(reader.archive, self.workbook)
         self.strings = read_string_table(_Part(strings)) if strings else []
+        self.percentages = _percent_styles(self.workbook)
 
     def properties(self) -> dict[str, str]:
         """Return the document properties that are no standard ones, by name."""
@@ -53,8 +61,26 @@ class SheetCells:
     def rows(self, part: bytes) -> Iterator[tuple[int, list[tuple[int, Any]]]]:
         """Yield the rows of a worksheet that hold cells: a number, and each non-blank cell's column and value."""
         for number, cells in _Parser(_Part(part), self.strings, self.workbook).parse():
-            if filled := [(cell["column"], cell["value"]) for cell in cells if cell["value"] is not None]:
+            if filled := [(cell["column"], self._value(cell)) for cell in cells if cell["value"] is not None]:
                 yield number, filled
+
+    def _value(self, cell: dict[str, Any]) -> Any:
+        """Return a cell's value; one that is shown as a percentage knows it."""
+        is_number = cell["data_type"] == "n" and isinstance(cell["value"], int | float)
+        return Percentage(cell["value"]) if is_number and cell["style_id"] in self.percentages else cell["value"]
+
+
+def _percent_styles(workbook: Any) -> frozenset[int]:
+    """Return the cell formats that show a number as a percentage."""
+    own = workbook._number_formats  # noqa: SLF001
+    found = set()
+    for place, style in enumerate(workbook._cell_styles):  # noqa: SLF001
+        number = style.numFmtId
+        custom = number - _FIRST_OWN_FORMAT
+        shape = own[custom] if 0 <= custom < len(own) else BUILTIN_FORMATS.get(number, "")
+        if "%" in _QUOTED.sub("", shape):
+            found.add(place)
+    return frozenset(found)
 
 
 class _Parser(WorkSheetParser):  # type: ignore[misc]

@@ -6,7 +6,7 @@ import datetime
 from collections.abc import Callable
 from typing import Any
 
-from flexlash.submission.reading.raw import ErrorCell, RawSheet, RawValue, Unstored
+from flexlash.submission.reading.raw import ErrorCell, Percentage, RawSheet, RawValue, Unstored
 from flexlash.submission.reading.workbook import Cells
 
 __all__ = ["from_wire", "to_wire"]
@@ -22,6 +22,7 @@ _KINDS: dict[str, tuple[type, Callable[[Any], str], Callable[[str], RawValue]]] 
     ),
     "error": (ErrorCell, lambda value: value.text, ErrorCell),
     "unstored": (Unstored, lambda _: "", lambda _: Unstored()),
+    "percentage": (Percentage, float.__repr__, lambda text: Percentage(float(text))),
 }
 """How each kind of value that JSON lacks is written and read."""
 
@@ -50,7 +51,7 @@ def to_wire(cells: Cells) -> dict[str, Any]:
 
 def _written(value: RawValue) -> Any:
     """Return a value as JSON holds it; kinds that it lacks become a pair of their name and a text."""
-    if isinstance(value, str | int | float):
+    if isinstance(value, str | int | float) and not isinstance(value, Percentage):
         return value
     for kind, (type_, write, _) in _KINDS.items():
         if isinstance(value, type_):

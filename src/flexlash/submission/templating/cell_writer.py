@@ -7,12 +7,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
-from flexlash.submission.reading.raw import ErrorCell, Unstored
+from flexlash.submission.reading.raw import ErrorCell, Percentage, Unstored
 
 __all__ = ["DATE_FORMATS", "CellWriter", "Formula", "writable"]
 
-DATE_FORMATS = {"date": "d mmm", "moment": "yyyy-mm-dd hh:mm:ss", "time": "hh:mm:ss", "duration": "[hh]:mm:ss"}
-"""Number formats by what a cell holds."""
+DATE_FORMATS = {
+    "date": "d mmm",
+    "moment": "yyyy-mm-dd hh:mm:ss",
+    "time": "hh:mm:ss",
+    "duration": "[hh]:mm:ss",
+    "percentage": "0.##########%",
+}
+"""Number formats by what a cell holds, where the number alone would not tell."""
 
 _EXAMPLE = "=0.8*2"
 """The formula of an example whose result is not stored."""
@@ -83,7 +89,8 @@ class CellWriter:
             formula = Formula(text=_EXAMPLE) if isinstance(value, Unstored) else value
             self.sheet.write_formula(row, place, formula.text, style, "" if formula.result is None else formula.result)
         elif value is not None:
-            self.sheet.write_number(row, place, _Exact(value), style)
+            shape = self.dates["percentage"] if isinstance(value, Percentage) else style
+            self.sheet.write_number(row, place, _Exact(value), shape)
 
 
 def _kind(value: datetime.date | datetime.time | datetime.timedelta) -> str:
