@@ -32,6 +32,8 @@ FACTS = {
     "limit": "20 MiB",
     "suggestion": "1.6",
     "setting": "parts",
+    "choices": "cup, hat, cylinder",
+    "contradicted": "Disk inner radius r_ci",
     "added": "Disk cone angle, Disk thickness exponent and Load inertia",
 }
 LEVELS = {"E": "error", "W": "warning", "I": "info"}
@@ -162,7 +164,7 @@ def test_fields_of_a_finding():
         "value": "1,6 mm",
         "message": 'Variants!G7 Wall thickness Δ = "1,6 mm": a number in mm greater than 0 is required; '
         "did you mean 1.6?",
-        "fix": "Type the number alone, without unit, with the decimal sign that your Excel uses.",
+        "fix": "Type the number alone, without unit, with the decimal sign that your program uses.",
         "suggestion": "1.6",
     }
     assert list(found.as_dictionary()) == [

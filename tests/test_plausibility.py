@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from flexlash.columns import columns_of
+from flexlash.findings import spelled_out
 from flexlash.pipeline import check
 
 HAT = {"flexspline_type": "hat", "disk_inner_radius_mm": "", "disk_outer_radius_mm": 120}
@@ -112,7 +113,7 @@ def test_a_length_slipped_by_1000(judge, base, key, value, meant):
     assert (found.column, found.suggestion) == (key, meant)
     assert found.message.endswith(f"did you mean {meant}?")
     assert found.code in {"W420", "E324"}
-    assert found.code == "E324" or f"= {value} mm is about 1000 times {times} beside" in found.message
+    assert found.code == "E324" or f"= {spelled_out(value)} mm is about 1000 times {times} beside" in found.message
     assert found.variant == "V1"
     assert outcome.results["status"].to_list() == ["warning" if found.code == "W420" else "error"]
 
@@ -139,10 +140,20 @@ def test_the_limits_of_a_slipped_wall(judge):
     assert _told(judge({"wall_thickness_mm": 0.0016})) == [("E314", "wall_thickness_mm", "1.6")]
 
 
-def test_a_slipped_radius_that_crosses_the_hub(judge):
-    """A radius in metres makes the hub an error; the radius is told beside it, since the mend belongs there."""
-    outcome = judge({"mean_radius_mm": 0.08})
-    assert _told(outcome) == [("W420", "mean_radius_mm", "80"), ("E303", "disk_inner_radius_mm", "")]
+@pytest.mark.parametrize(
+    ("change", "column", "meant"),
+    [
+        ({"mean_radius_mm": 0.08}, "mean_radius_mm", "80"),
+        (FULL | {"mean_radius_mm": 0.08}, "mean_radius_mm", "80"),
+        (FULL | {"cylinder_length_mm": 0.16}, "cylinder_length_mm", "160"),
+        (FULL | {"wall_thickness_mm": 1600}, "wall_thickness_mm", "1.6"),
+    ],
+)
+def test_a_slip_that_contradicts_a_sound_cell(judge, change, column, meant):
+    """A radius in metres makes no part with its hub: one error stands at the radius, none at the hub."""
+    outcome = judge(change, tolerances=["poisson_ratio,-0.01,0.01,-,"])
+    assert _told(outcome) == [("E329", column, meant)]
+    assert outcome.counts["computed"] == 0
 
 
 def test_a_whole_row_in_metres(judge):
@@ -228,7 +239,29 @@ def test_a_torque_in_newton_millimetres(judge, base, key):
     assert _told(judge({**base, key: 800_000})) == [("W420", key, "800")]
 
 
-@pytest.mark.parametrize("torque", [0.8, 74_000])
+@pytest.mark.parametrize("key", ["torque_Nm", "rated_torque_Nm"])
+@pytest.mark.parametrize("base", [{}, HAT, TUBE, BORE], ids=["cup", "hat", "cylinder", "bore"])
+def test_a_torque_in_kilonewton_metres(judge, base, key):
+    """A torque of 0.8 on a drive for 800 N·m is told with the thousandfold, and computed as entered."""
+    outcome = judge({**base, key: 0.8})
+    assert _told(outcome) == [("W420", key, "800")]
+    assert "= 0.8 N·m is about 1000 times too small for this radius" in outcome.findings[0].message
+    assert outcome.counts["computed"] == 1
+
+
+@pytest.mark.parametrize("factor", [10, 25.4])
+@pytest.mark.parametrize("base", [{}, HAT, TUBE, BORE, FULL], ids=["cup", "hat", "cylinder", "bore", "full"])
+def test_lengths_in_another_unit(judge, sound, base, factor):
+    """Lengths that all are in cm or inches do not blame the torque alone: the unit of the lengths is told, once."""
+    lengths = {key: value / factor for key, value in (sound | base).items() if key.endswith("_mm") and value != ""}
+    outcome = judge({**base, **lengths}, tolerances=["poisson_ratio,-0.01,0.01,-,"])
+    (found,) = [found for found in outcome.findings if found.code in {"W420", "E324"}]
+    assert (found.column, found.suggestion) == ("bore_diameter_mm" if base is BORE else "mean_radius_mm", "")
+    assert "torque_Nm" not in {found.column for found in outcome.findings}
+    assert found.code == "E324" or "check the unit of all lengths" in found.message
+
+
+@pytest.mark.parametrize("torque", [5, 74_000])
 def test_a_torque_that_may_be_meant(judge, torque):
     """A small torque, or one that only a stout part would bear, is no slip of units."""
     assert "W420" not in {found.code for found in judge({"torque_Nm": torque}).findings}

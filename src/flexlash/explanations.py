@@ -30,6 +30,8 @@ _WORDS = {
     "dimension": "the dimension",
     "requirement": "what the column holds",
     "setting": "SETTING",
+    "choices": "the entries of the cell's drop-down list",
+    "contradicted": "another cell",
 }
 _ANY = "…"
 

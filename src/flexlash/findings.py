@@ -10,7 +10,7 @@ from typing import Any
 
 from flexlash.catalogue import CATALOGUE, Level
 
-__all__ = ["CATALOGUE", "Finding", "cell_ranges", "finding", "shown"]
+__all__ = ["CATALOGUE", "Finding", "cell_ranges", "finding", "shown", "spelled_out"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +44,10 @@ class Finding:
 
 _LONGEST = 400
 """Most characters of a text that a message quotes from outside."""
+
+
+_GROUPED = 10_000
+"""Number from which on digits are grouped by commas; 1,600 could be read with a decimal comma."""
 
 
 def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **facts: Any) -> Finding:
@@ -86,6 +90,16 @@ def shown(value: Any, longest: int = 60) -> str:
     text = f"{value:.10g}" if isinstance(value, float) else str(value)
     plain = "".join(character if character.isprintable() else "·" for character in text)
     return plain if len(plain) <= longest else plain[: longest - 1] + "…"
+
+
+def spelled_out(value: float, digits: int = 4) -> str:
+    """Return a number rounded to so many digits, without a power of ten unless it is tiny.
+
+    >>> spelled_out(80000.0), spelled_out(0.0016), spelled_out(1600.0)
+    ('80,000', '0.0016', '1600')
+    """
+    rounded = float(f"{value:.{digits}g}")
+    return f"{rounded:,.15g}" if abs(rounded) >= _GROUPED else f"{rounded:.15g}"
 
 
 def cell_ranges(cells: Sequence[str], most: int = 20) -> str:

@@ -10,13 +10,16 @@ import polars as pl
 from pandera.errors import SchemaErrors
 
 from flexlash.columns import Column, columns_of
-from flexlash.submission.ledger import Ledger
-from flexlash.submission.plausibility import find_slips
+from flexlash.submission.ledger import Ledger, Slip
+from flexlash.submission.plausibility import find_slips, tell_contradiction
 from flexlash.submission.relations import RELATIONS, Relation
-from flexlash.submission.spellings import closest, misspelt, spelt_alike
+from flexlash.submission.spellings import misspelt, spelt_alike, suggested
 from flexlash.submission.tabulate import Table
 
 __all__ = ["check_cells", "check_relations"]
+
+_OF_SIZES = frozenset({"E303", "E305", "E306", "E312", "E313", "E328"})
+"""Relations between lengths, which a slipped unit breaks."""
 
 
 def _checks(column: Column) -> list[pa.Check]:
@@ -80,8 +83,9 @@ def check_cells(table: Table, ledger: Ledger) -> None:
             column=key,
             name=column.name,
             requirement=column.requirement,
+            choices=", ".join(column.choices),
             value=table.entered(row, key),
-            suggestion=closest(value, list(column.choices)) if check == "E209" else "",
+            suggestion=suggested(value, column.choices) if check == "E209" else "",
             repair=misspelt(value, spelt_alike(column.choices)) if check == "E209" else None,
             rows=[row] if table.schema == "Variants" else [],
         )
@@ -100,6 +104,9 @@ def check_relations(table: Table, ledger: Ledger) -> None:
             continue
         if relation.code[0] != "E" and any((table.sheet, row, key) in ledger.slips for key in relation.keys):
             continue
+        if relation.code in _OF_SIZES and (slip := _slipped_beside(table, ledger, row, relation)):
+            tell_contradiction(slip, columns[relation.key].name, ledger)
+            continue
         value = record[relation.key]
         facts = {
             "value": "" if value is None else value,
@@ -115,3 +122,9 @@ def check_relations(table: Table, ledger: Ledger) -> None:
             rows=[row],
             **facts,
         )
+
+
+def _slipped_beside(table: Table, ledger: Ledger, row: int, relation: Relation) -> Slip | None:
+    """Return the slipped cell that breaks a relation, where that is not the cell which the relation blames."""
+    slips = {key: ledger.slips.get((table.sheet, row, key)) for key in relation.keys}
+    return None if slips[relation.key] else next(filter(None, slips.values()), None)

@@ -8,11 +8,12 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from flexlash.columns import columns_of
+from flexlash.findings import spelled_out
 from flexlash.submission.headers import plain
 from flexlash.submission.ledger import Ledger, Slip
 from flexlash.submission.tabulate import Table
 
-__all__ = ["find_slips", "settle"]
+__all__ = ["find_slips", "settle", "tell_contradiction"]
 
 _THOUSAND = 1000.0
 _RADII = {"mean_radius_mm": 1.0, "bore_diameter_mm": 0.5}
@@ -43,6 +44,18 @@ _UNBEARABLE_SHEAR = 1500.0
 
 _UNUSUAL_TORQUE = 0.15
 """Torque [N·m] per cubed mean radius [mm³]: a hundred times where a catalogue drive's second slope ends."""
+
+
+_FIRST_SLOPE = 4e-4
+"""Torque [N·m] per cubed mean radius [mm³] where a catalogue drive's first slope ends; sizes 14 to 100 agree."""
+
+_FEEBLE = (_FIRST_SLOPE / 30_000, _FIRST_SLOPE / 100)
+"""Torque per cubed mean radius that says nothing of a drive, though a thousand times as much does."""
+
+_GREATEST_RADIUS = 130.0
+"""Mean radius [mm] of the largest catalogue drives; lengths that give less when tenfold may be in centimetres."""
+
+_TENFOLD = 10.0
 
 
 class _Span(NamedTuple):
@@ -99,12 +112,34 @@ def settle(ledger: Ledger) -> None:
             )
 
 
+def tell_contradiction(slip: Slip, contradicted: str, ledger: Ledger) -> None:
+    """Record, once, that a slipped cell of Variants makes its row contradictory; the other cell is not blamed."""
+    if any((found.sheet, found.cell) == (slip.sheet, slip.cell) for found in ledger.findings):
+        ledger.rows.add(slip.row)
+        return
+    ledger.add(
+        "E329",
+        sheet=slip.sheet,
+        cell=slip.cell,
+        column=slip.column,
+        name=columns_of(slip.schema)[slip.column].name,
+        variant=slip.variant,
+        value=slip.shown,
+        entered=slip.entered,
+        other=slip.times,
+        detail=slip.beside,
+        contradicted=contradicted,
+        rows=[slip.row],
+    )
+
+
 def _slip(table: Table, record: Mapping[str, Any], found: tuple[str, float, str]) -> Slip:
     """Return a slip with what to say of it; the suggestion is in the unit of the cell's own header."""
     key, factor, beside = found
     row, conversion, unit = record["row"], table.heading.factors[key], columns_of(table.schema)[key].unit
     entered = record[key] / conversion
-    shown = f"{entered:.10g} {unit}" if conversion == 1 else f"{entered:.10g} ({record[key]:.4g} {unit})"
+    given = spelled_out(entered, 10)
+    shown = f"{given} {unit}" if conversion == 1 else f"{given} ({spelled_out(record[key])} {unit})"
     times = f"{max(factor, 1 / factor):.10g} times too {'small' if factor > 1 else 'large'}"
     return Slip(
         sheet=table.sheet,
@@ -118,7 +153,7 @@ def _slip(table: Table, record: Mapping[str, Any], found: tuple[str, float, str]
         entered=table.entered(row, key),
         times=times,
         beside=beside,
-        suggestion=f"{entered * factor:.10g}",
+        suggestion="" if factor == _TENFOLD else f"{entered * factor:.10g}",
     )
 
 
@@ -127,16 +162,27 @@ def _variant_factors(record: Mapping[str, Any]) -> Iterator[tuple[str, float, st
     slipped = _length_factors(record)
     for key, factor in slipped.items():
         yield key, factor, "beside the other lengths of the row"
-    radius, wall = _radius(record)[1], record["wall_thickness_mm"]
+    (key, radius), wall = _radius(record), record["wall_thickness_mm"]
     if slipped or radius is None or wall is None or not _REACH[0] <= radius <= _REACH[1]:
         return
-    for key in _TORQUES:
-        torque = record[key]
-        if torque is None or torque < _UNUSUAL_TORQUE * radius**3:
-            continue
-        shear = torque * _THOUSAND / (2 * math.pi * radius**2 * wall)
-        if shear > _UNBEARABLE_SHEAR >= shear / _THOUSAND:
-            yield key, 1 / _THOUSAND, "for this wall"
+    slips = {name: _torque_factor(record[name], radius, wall) for name in _TORQUES}
+    in_doubt = 1 / _THOUSAND in slips.values() and radius * _TENFOLD <= _GREATEST_RADIUS
+    if in_doubt:
+        yield key, _TENFOLD, "for this torque: check the unit of all lengths, or of the torque"
+    for name, mend in slips.items():
+        if mend is not None and not in_doubt:
+            yield name, mend, "for this wall" if mend < 1 else "for this radius"
+
+
+def _torque_factor(torque: float | None, radius: float, wall: float) -> float | None:
+    """Return by what a torque [N·m] must be multiplied to suit radius and wall [mm]; None where it may be meant."""
+    if torque is None:
+        return None
+    if _FEEBLE[0] <= torque / radius**3 <= _FEEBLE[1]:
+        return _THOUSAND
+    shear = torque * _THOUSAND / (2 * math.pi * radius**2 * wall)
+    slipped = torque >= _UNUSUAL_TORQUE * radius**3 and shear > _UNBEARABLE_SHEAR >= shear / _THOUSAND
+    return 1 / _THOUSAND if slipped else None
 
 
 def _radius(record: Mapping[str, Any]) -> tuple[str, float | None]:

@@ -12,7 +12,7 @@ from flexlash.submission.cells import Fault, as_number, as_text
 from flexlash.submission.grade_texts import meant_grade
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.reading.read import RawSheet, RawValue
-from flexlash.submission.spellings import closest, misspelt, plain, spelt_alike
+from flexlash.submission.spellings import misspelt, plain, spelt_alike, suggested
 from flexlash.submission.tabulate import Table
 from flexlash.tolerance.grades import is_grade
 from flexlash.units import find_unit
@@ -231,7 +231,7 @@ def settings_of(table: Table, ledger: Ledger) -> Settings:
             values[name] = value
             continue
         facts: dict[str, Any] = {"suggestion": value.suggestion, "repair": value.repair}
-        facts |= {"requirement": column.requirement}
+        facts |= {"requirement": column.requirement, "choices": ", ".join(column.choices)}
         cell = table.address(row, "value")
         ledger.add(value.code, sheet=table.sheet, cell=cell, column=name, name=name, value=value.value, **facts)
     faulty = any((row, "setting") in table.faulty for row in table.frame["row"])
@@ -249,7 +249,7 @@ def _setting_value(column: Column, raw: RawValue, *, from_text: bool) -> str | f
     if isinstance(text, Fault) or text.casefold() in column.choices:
         return text if isinstance(text, Fault) else text.casefold()
     repair = misspelt(text, spelt_alike(column.choices))
-    return Fault(code="E209", value=text, suggestion=closest(text, list(column.choices)), repair=repair)
+    return Fault(code="E209", value=text, suggestion=suggested(text, column.choices), repair=repair)
 
 
 def _number_fault(column: Column, value: float) -> Fault | None:

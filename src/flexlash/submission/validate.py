@@ -15,7 +15,7 @@ from flexlash.submission.manners import tell_manner
 from flexlash.submission.overlooked import tell_overlooked
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.read import Submission
-from flexlash.submission.spellings import closest, misspelt, plain, spelt_alike
+from flexlash.submission.spellings import misspelt, plain, spelt_alike, suggested
 from flexlash.submission.tables import (
     built_in_materials,
     materials_of,
@@ -30,6 +30,9 @@ from flexlash.variant import Material, Settings, ToleranceRow, Variant
 __all__ = ["TEMPLATE_VERSION", "Validated", "validate"]
 
 _OTHER_SOURCES = "Other sources"
+
+_NEAR = 0.7
+"""Likeness from which on a material or class is suggested; short names of steels share letters by chance."""
 
 
 @dataclass(kw_only=True)
@@ -141,7 +144,7 @@ def _check_rows(result: Validated, table: Table) -> None:
             if plain(value) not in known:
                 if (key, value) not in meant:
                     repair = misspelt(value, spelt_alike(names))
-                    meant[key, value] = {"suggestion": closest(value, names, 0.5), "repair": repair}
+                    meant[key, value] = {"suggestion": suggested(value, names, _NEAR), "repair": repair}
                 _blame(table, ledger, code, row, key, value=value, **meant[key, value])
             elif plain(value) in faulty:
                 ledger.rows.add(row)
