@@ -9,6 +9,7 @@ from typing import Any
 from flexlash.columns import Column, columns_of
 from flexlash.findings import shown
 from flexlash.submission.ledger import Ledger
+from flexlash.submission.likely_headers import likely_headers
 from flexlash.submission.reading.read import ErrorCell, RawSheet, RawValue, Unstored, column_letters
 from flexlash.submission.spellings import closest, misspelt, plain
 from flexlash.units import Unit, find_unit
@@ -30,9 +31,6 @@ _SHORT = {
 
 _LOST = frozenset({"?", "\ufffd"})
 """What other programs make of Δ and ν where their encoding has no such letter."""
-
-_RESEMBLING = 0.85
-"""Likeness from which on an unknown header is taken for a misspelt one."""
 
 _BRACKETS = re.compile(r"^(.*?)\s*[\[(]([^\])]*)[\])]\s*$", re.DOTALL)
 
@@ -106,12 +104,13 @@ class _Recogniser:
             self.ledger.everything = True
             return None
         heading = Heading(row=best)
-        for place, cell in self.sheet.rows[best].items():
-            header = _as_header(cell)
-            if plain(header) == plain(STATUS_HEADER):
-                heading.ignored.add(place)
-            elif header.strip():
-                self._place(heading, place, header)
+        headers = {place: _as_header(cell) for place, cell in self.sheet.rows[best].items()}
+        heading.ignored |= {place for place, header in headers.items() if plain(header) == plain(STATUS_HEADER)}
+        headers = {place: text for place, text in headers.items() if text.strip() and place not in heading.ignored}
+        names = {place: _split(header)[0] for place, header in headers.items()}
+        likely = likely_headers(names, self.columns, self.spellings)
+        for place, header in headers.items():
+            self._place(heading, place, header, likely.get(place, []))
         self._require(heading, max(self.sheet.rows[best]) + 1)
         return heading
 
@@ -134,11 +133,11 @@ class _Recogniser:
                 facts: dict[str, Any] = {"column": key, "name": column.name, "label": column.label}
                 self.ledger.add("E111", sheet=self.sheet.name, cell=address, **facts)
 
-    def _place(self, heading: Heading, place: int, header: str) -> None:
-        """Recognise one header cell, or say what is wrong with it."""
+    def _place(self, heading: Heading, place: int, header: str, likely: list[str]) -> None:
+        """Recognise one header cell, or say what is wrong with it; `likely` are the columns an unknown one may be."""
         name, unit_text = _split(header)
         key = self.spellings.get(plain(name))
-        meant = key or self.spellings.get(closest(name, list(self.spellings), _RESEMBLING))
+        meant = key or next(iter(likely), None)
         place_facts: dict[str, Any] = {
             "sheet": self.sheet.name,
             "cell": f"{column_letters(place)}{heading.row}",
@@ -158,9 +157,12 @@ class _Recogniser:
         unit = _unit(column, unit_text, by_key=plain(name) == plain(meant))
         if key is None:
             heading.doubtful[place] = meant
-            label = f"{column.name} [{unit_text}]" if unit and unit != column.si_unit else column.label
+            labels = [_label(self.columns[one], unit_text) for one in likely]
             sure = misspelt(name, self.spellings) == meant and (unit is not None or column.unit in {"", "-"})
-            self.ledger.add("E112", suggestion=label, repair=label if sure else None, **facts | {"label": label})
+            repair = labels[0] if sure and len(labels) == 1 else None
+            facts["label"] = " or ".join(labels)
+            facts["name"] = " or ".join(self.columns[one].name for one in likely)
+            self.ledger.add("E112", suggestion=facts["label"], repair=repair, **facts)
         elif key in heading.places:
             heading.doubtful[place] = key
             self.ledger.add("E114", other=column_letters(heading.places[key]), **facts)
@@ -179,6 +181,12 @@ class _Recogniser:
             self.ledger.add("I503", **facts)
         elif unit and unit != column.si_unit:
             self.ledger.add("I501", **facts | {"value": text})
+
+
+def _label(column: Column, unit_text: str | None) -> str:
+    """Return a column's header, in the unit of another header where that fits."""
+    unit = _unit(column, unit_text, by_key=False)
+    return f"{column.name} [{unit_text}]" if unit and unit != column.si_unit else column.label
 
 
 def _unit(column: Column, text: str | None, *, by_key: bool) -> Unit | None:

@@ -1,0 +1,99 @@
+"""Which columns the unknown headers of a sheet may mean: required ones that are missing first."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+
+from flexlash.column import Column
+from flexlash.submission.spellings import plain, words
+
+__all__ = ["likely_headers"]
+
+_RESEMBLING = 0.85
+"""Likeness from which on an unknown header is taken for a misspelt one."""
+
+_MISSING = 0.7
+"""The same where a required column is missing, so that some header must mean it."""
+
+_EQUALLY = 0.05
+"""Difference of likeness within which two columns are meant alike."""
+
+_RADII = ("mean_radius_mm", "bore_diameter_mm")
+"""Columns of which one is required."""
+
+_FOREIGN = {
+    "variant": ("variante", "name", "bezeichnung", "nom", "nome"),
+    "material": ("werkstoff", "matériau", "materiau", "matière", "materiale"),
+    "torque_Nm": ("drehmoment", "moment", "couple", "coppia"),
+    "cylinder_length_mm": ("länge", "laenge", "zylinderlänge", "longueur", "lunghezza"),
+    "mean_radius_mm": ("mittlererradius", "rayon", "rayonmoyen", "raggio", "raggiomedio"),
+    "wall_thickness_mm": ("wanddicke", "wandstärke", "wandstaerke", "épaisseur", "epaisseur", "spessore"),
+    "disk_inner_radius_mm": ("innenradius", "nabenradius", "innerradius", "rayonintérieur", "raggiointerno"),
+}
+"""What German, French and Italian drawings call the columns of Variants that a cup needs."""
+
+
+def likely_headers(
+    names: Mapping[int, str], columns: Mapping[str, Column], spellings: Mapping[str, str]
+) -> dict[int, list[str]]:
+    """Return the keys that each unknown header may mean, by its place; more than one where they are as near.
+
+    `names` are the headers of a row without their units, `spellings` the keys by every spelling that is known.
+    """
+    present = {spellings[plain(name)] for name in names.values() if plain(name) in spellings}
+    unknown = {place: name for place, name in names.items() if plain(name) not in spellings}
+    alike = {place: _likenesses(name, spellings) for place, name in unknown.items()}
+    missing = _missing(columns, present)
+    pairs = sorted(
+        (-_nearness(name, key, columns[key], spellings), place, key)
+        for place, name in unknown.items()
+        for key in missing
+    )
+    found: dict[int, list[str]] = {}
+    for opposite, place, key in pairs:
+        rivals = [one for one in missing if (opposite, place, one) in pairs]
+        if -opposite < max(_MISSING, *alike[place].values()) or place in found or len(rivals) > 1:
+            continue
+        if [key] not in found.values():
+            found[place] = [key]
+    return {place: _resembling(alike[place], present) for place in unknown} | found
+
+
+def _missing(columns: Mapping[str, Column], present: set[str]) -> list[str]:
+    """Return the columns that a sheet needs and lacks."""
+    needed = [key for key, column in columns.items() if column.required]
+    if _RADII[0] in columns:
+        needed += [_RADII[0]] if present.isdisjoint(_RADII) else []
+        needed.append("disk_inner_radius_mm")
+    return [key for key in needed if key not in present]
+
+
+def _nearness(name: str, key: str, column: Column, spellings: Mapping[str, str]) -> float:
+    """Return how near a header is to a column that is missing: 1 for a word of it, or its name in another language."""
+    wanted = plain(" ".join(words(name)))
+    if wanted in map(plain, _FOREIGN.get(key, ())):
+        return 1.0
+    known = [spelling for spelling, meant in spellings.items() if meant == key]
+    if key != "disk_inner_radius_mm":
+        known += [word for word in words(column.plain_name) if len(word) > 3]  # noqa: PLR2004
+    return max(_likeness(wanted, spelling) for spelling in known)
+
+
+def _likenesses(name: str, spellings: Mapping[str, str]) -> dict[str, float]:
+    """Return how like a header is to each column by its letters."""
+    found: dict[str, float] = {}
+    for spelling, key in spellings.items():
+        found[key] = max(found.get(key, 0.0), _likeness(plain(name), spelling))
+    return found
+
+
+def _resembling(alike: Mapping[str, float], present: set[str]) -> list[str]:
+    """Return the one or two columns that a header resembles about equally; those that the sheet has come last."""
+    best = max(alike.values(), default=0.0)
+    keys = [key for key, likeness in alike.items() if best >= _RESEMBLING and likeness > best - _EQUALLY]
+    return sorted([key for key in keys if key not in present] or keys, key=lambda key: -alike[key])[:2]
+
+
+def _likeness(one: str, other: str) -> float:
+    return difflib.SequenceMatcher(None, other, one).ratio()
