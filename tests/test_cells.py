@@ -112,6 +112,9 @@ def test_numbers_with_a_comma_where_it_is_the_decimal_sign():
     assert as_number(DoubtfulNumber("1.600"), WALL, from_text=True) == Fault(
         code="E202", value="1.600", suggestion="1.6 or 1600"
     )
+    assert as_number(DoubtfulNumber("1.7"), WALL, from_text=True) == Fault(
+        code="E202", value="1.7", suggestion="1,7 with this table's decimal comma"
+    )
 
 
 @pytest.mark.parametrize(

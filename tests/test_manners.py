@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from flexlash.pipeline import check
+from flexlash.pipeline import check, mend
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.manners import tell_manner
 from flexlash.submission.reading.delimited import read_table
@@ -86,6 +86,30 @@ def test_doubt_about_the_decimal_sign_is_an_error_at_each_cell(tmp_path):
     told = [(found.code, found.cell, found.suggestion) for found in outcome.findings if found.level == "error"]
     assert told == [("E202", "C2", "1.6 or 1600"), ("E202", "F2", "1.6")]
     assert outcome.counts["computed"] == 0
+
+
+DOUBTS = {
+    "thousands beside a comma": ("1.200;1,6", {"C2"}),
+    "thousands beside both signs": ("1.200;1.200,5", {"C2"}),
+    "undecided": ("1.200;1,6 mm;160.5;1,6", {"C2"}),
+    "a lone point": ("1.7;1,6;160,5;1,8", {"C2"}),
+    "a lone point beside a cell to mend": ("1.7;1.6 mm;160,5;1,8;1,9", {"C2"}),
+}
+
+
+@pytest.mark.parametrize("what", DOUBTS)
+def test_a_doubtful_number_stays_in_doubt_in_the_mended_file(tmp_path, what):
+    """Mending other cells of a table never makes a number of one whose decimal sign is in doubt."""
+    values, doubtful = DOUBTS[what]
+    keys = ["torque_Nm", "wall_thickness_mm", "cylinder_length_mm", "mean_radius_mm", "disk_inner_radius_mm"]
+    numbers = values.split(";")
+    lines = [["variant", "material", *keys[: len(numbers)], "flexspline_type"], ["A", "20Cr2Ni4", *numbers, "cylindre"]]
+    path, new = tmp_path / "a.csv", tmp_path / "new.csv"
+    path.write_text("\n".join(map(";".join, lines)), encoding="utf-8")
+    outcome, repairs = mend(path, new)
+    assert "cylinder" in {repair.value for repair in repairs}
+    for found in (check(path).findings, outcome.findings, check(new).findings):
+        assert doubtful <= {one.cell for one in found if one.code == "E202"}
 
 
 def test_a_table_beside_tells_its_own_manner(tmp_path, table, sound):

@@ -770,8 +770,8 @@ CATALOGUE = _rules(
         "decimal comma recognised",
         '{file} writes numbers with a decimal comma: {place} "{value}" was read as {suggestion}.',
         "Nothing to do, if the numbers of the report are yours.",
-        "In a table separated by semicolons, tabs or bars a comma is taken as the decimal sign when no number has a "
-        "point and at least one comma cannot separate thousands.",
+        "In a table separated by semicolons, tabs or bars a comma is the decimal sign when at least three times as many "
+        "commas as points can be nothing else. Numbers with a point, such as 1.200, are then errors, not guessed at.",
     ),
     (
         "I511",

@@ -65,6 +65,9 @@ def as_number(
     if column is None:
         return Fault(code="E202", value=value)
     meant = meant_number(str(value), column, measure)
+    if isinstance(value, DoubtfulNumber):
+        words = f"{text.replace('.', ',')} with this table's decimal comma" if meant.words == text else meant.words
+        return Fault(code="E202", value=value, suggestion=words)
     return Fault(code="E202", value=value, suggestion=meant.words, repair=meant.repair)
 
 

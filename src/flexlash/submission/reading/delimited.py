@@ -41,10 +41,23 @@ _SEPARATOR_LINE = re.compile(r'"?sep=([,;\t|])"?(?:\r\n|\r|\n|$)', re.IGNORECASE
 """First line by which a table tells Excel its delimiter; Excel does not show it as a row."""
 
 _SIGNED = r"[+-]?"
-_COMMA = re.compile(_SIGNED + r"\d*,\d+(?:[eE][+-]?\d{1,3})?", re.ASCII)
-_POINT = re.compile(_SIGNED + r"(?:\d+\.\d*|\.\d+)(?:[eE][+-]?\d{1,3})?", re.ASCII)
-_THOUSANDS = re.compile(_SIGNED + r"[1-9]\d{0,2}[.,]\d{3}", re.ASCII)
-"""A number whose one sign may be that of decimals or of thousands."""
+_POWER = r"(?:[eE][+-]?\d{1,3})?"
+_EITHER = r"(?!" + _SIGNED + r"[1-9]\d{0,2}[.,]\d{3}$)"
+"""No number whose one sign may be that of decimals or of thousands."""
+
+_COMMA = re.compile(_EITHER + _SIGNED + r"\d*,\d+" + _POWER, re.ASCII)
+_SIGNS = {
+    "decimal comma": re.compile(_COMMA.pattern + "|" + _SIGNED + r"[1-9]\d{0,2}(?:\.\d{3})+,\d+", re.ASCII),
+    "decimal point": re.compile(
+        _EITHER + _SIGNED + r"(?:\d+\.\d*|\.\d+)" + _POWER + "|" + _SIGNED + r"[1-9]\d{0,2}(?:,\d{3})+\.\d+", re.ASCII
+    ),
+    "any comma": re.compile(_SIGNED + r"[1-9]\d{0,2},\d{3}", re.ASCII),
+    "any point": re.compile(_SIGNED + r"[1-9]\d{0,2}\.\d{3}", re.ASCII),
+}
+"""Numbers by what their sign can be: 1,6 and 1.200,5 have a decimal comma, 1.200 may be 1.2 or 1200."""
+
+_PREVAILING = 3
+"""So many times more numbers with one decimal sign than with the other make the others the odd ones."""
 
 _Rows = dict[int, dict[int, RawValue]]
 
@@ -136,23 +149,30 @@ def _texts(rows: _Rows) -> Iterator[tuple[int, int, str]]:
 
 
 def _settle_numbers(rows: _Rows) -> tuple[int, int] | None:
-    """Mark the numbers with a decimal comma; return the first, or None where there is none beyond doubt.
+    """Mark the numbers with a decimal comma; return the first, or None where commas are not settled as decimal.
 
-    A comma before three digits may separate thousands, and a table that also holds points leaves everything open.
+    Commas and points that can be nothing but decimal signs are counted. Where commas prevail, numbers with a point
+    are in doubt; elsewhere those whose point may separate thousands, as soon as one comma must be decimal.
     """
-    commas = [(number, place, text) for number, place, text in _texts(rows) if _COMMA.fullmatch(text)]
-    decimal = [(number, place) for number, place, text in commas if not _THOUSANDS.fullmatch(text)]
-    if not decimal:
-        return None
-    points = [(number, place, text) for number, place, text in _texts(rows) if _POINT.fullmatch(text)]
-    if not points:
-        for number, place, text in commas:
-            rows[number][place] = CommaNumber(text)
-        return decimal[0]
-    for number, place, text in points:
-        if _THOUSANDS.fullmatch(text):
-            rows[number][place] = DoubtfulNumber(text)
+    found = {sign: [(*at, text) for *at, text in _texts(rows) if _SIGNS[sign].fullmatch(text)] for sign in _SIGNS}
+    commas, points = found["decimal comma"], found["decimal point"]
+    open_commas, open_points = found["any comma"], found["any point"]
+    plain = [(number, place) for number, place, text in commas if _COMMA.fullmatch(text)]
+    if plain and len(commas) >= _PREVAILING * len(points):
+        _mark(rows, [cell for cell in commas if _COMMA.fullmatch(cell[2])], CommaNumber)
+        _mark(rows, open_commas, DoubtfulNumber if points or open_points else CommaNumber)
+        _mark(rows, points + open_points, DoubtfulNumber)
+        return plain[0]
+    if commas and open_points:
+        # The commas are the only sign of the doubt: mended, they would leave 1.200 behind as an ordinary number.
+        _mark(rows, commas + open_points, DoubtfulNumber)
     return None
+
+
+def _mark(rows: _Rows, cells: list[tuple[int, int, str]], kind: type[CommaNumber | DoubtfulNumber]) -> None:
+    """Put numbers of a kind in the place of texts."""
+    for number, place, text in cells:
+        rows[number][place] = kind(text)
 
 
 def _first_foreign(rows: _Rows) -> tuple[int, int] | None:
