@@ -196,8 +196,8 @@ CATALOGUE = _rules(
     ),
     (
         "E203",
-        "date instead of an entry",
-        "{place} {name} holds the date {value}: {requirement} is required.",
+        "date or time instead of an entry",
+        "{place} {name} holds the {kind} {value}: {requirement} is required.",
         "Format the cell as Number (or Text for a name), then type the entry again.",
         "Excel turns entries such as 1/4 or 1-2 into dates unless the cell is formatted before.",
     ),
@@ -303,7 +303,7 @@ CATALOGUE = _rules(
     (
         "E303",
         "hub outside the disk",
-        "{place} {name} = {value} mm: less than the disk's outer radius {other:g} mm is required.",
+        "{place} {name} = {value} mm: less than the disk's outer radius {other} mm is required.",
         "Check for a diameter entered as a radius.",
         "The disk reaches from its inner to its outer radius. A blank outer radius is the mean radius.",
     ),
@@ -317,14 +317,14 @@ CATALOGUE = _rules(
     (
         "E305",
         "rim longer than the cylinder",
-        "{place} {name} = {value} mm: less than the cylinder length {other:g} mm is required.",
+        "{place} {name} = {value} mm: less than the cylinder length {other} mm is required.",
         "Check both lengths; the cylinder length includes the rim.",
         "The cylinder length runs from the disk's inner face to the open end.",
     ),
     (
         "E306",
         "rim thinner than the wall",
-        "{place} {name} = {value} mm: at least the wall thickness {other:g} mm is required.",
+        "{place} {name} = {value} mm: at least the wall thickness {other} mm is required.",
         "Enter the total thickness of the rim, wall included.",
         "Rim and wall have the same bore; the rim is the thicker part.",
     ),
@@ -366,14 +366,14 @@ CATALOGUE = _rules(
     (
         "E312",
         "hub fillet too large",
-        "{place} {name} = {value} mm: at most the width of the disk, {other:g} mm, is required.",
+        "{place} {name} = {value} mm: at most the width of the disk, {other} mm, is required.",
         "Check the fillet radius and the disk radii.",
         "The fillet starts at the hub and must end before the disk does.",
     ),
     (
         "E313",
         "junction fillet too large",
-        "{place} {name} = {value} mm: with the tooth rim it exceeds the cylinder length {other:g} mm.",
+        "{place} {name} = {value} mm: with the tooth rim it exceeds the cylinder length {other} mm.",
         "Check fillet, rim length and cylinder length.",
         "Junction fillet and tooth rim lie on the cylinder one after the other.",
     ),
@@ -409,7 +409,7 @@ CATALOGUE = _rules(
     (
         "E318",
         "deviations reversed",
-        "{place} {name} = {value} is greater than the upper deviation {other:g}.",
+        "{place} {name} = {value} is greater than the upper deviation {other}.",
         "Exchange the two; deviations are signed.",
         "For −0.02/+0.01 the lower deviation is −0.02 and the upper 0.01.",
     ),
@@ -479,7 +479,7 @@ CATALOGUE = _rules(
     (
         "E328",
         "junction fillet wider than the bore",
-        "{place} {name} = {value} mm: at most the radius of the bore, {other:g} mm, is required.",
+        "{place} {name} = {value} mm: at most the radius of the bore, {other} mm, is required.",
         "Check the fillet radius and its unit.",
         "A fillet between disk and wall cannot reach beyond the axis.",
     ),
@@ -494,14 +494,14 @@ CATALOGUE = _rules(
     (
         "W401",
         "disk does not meet the wall",
-        "{place} {name} = {value} mm differs from the mean radius {other:g} mm.",
+        "{place} {name} = {value} mm differs from the mean radius {other} mm.",
         "Leave the cell blank, unless the model of a source is to be repeated.",
         "A cup's disk ends where the wall begins, and a hat's flange begins there. The value is used as entered.",
     ),
     (
         "W402",
         "beyond yield",
-        "{place}: von Mises stress {value} MPa in the {detail} exceeds the yield strength {other:g} MPa.",
+        "{place}: von Mises stress {value} MPa in the {detail} exceeds the yield strength {other} MPa.",
         "Keep the torque below the elastic limit torque of Results, thicken that section, or take a stronger material.",
         "Linear elasticity no longer holds: the real wind-up is greater and part of it stays.",
     ),
@@ -515,7 +515,7 @@ CATALOGUE = _rules(
     (
         "W404",
         "elastic constants disagree",
-        "{place} {name} = {value} GPa, but E and ν give {other:g} GPa; the entered value is used.",
+        "{place} {name} = {value} GPa, but E and ν give {other} GPa; the entered value is used.",
         "Clear the shear modulus or correct E and ν.",
         "For an isotropic material G = E/(2(1 + ν)). A difference over 0.05 % is reported.",
     ),
@@ -606,14 +606,14 @@ CATALOGUE = _rules(
     (
         "W416",
         "fillets overlap on the disk",
-        "{place} {name} = {value} mm: fillets take more than the {other:g} mm of disk between hub and bore.",
+        "{place} {name} = {value} mm: fillets take more than the {other} mm of disk between hub and bore.",
         "Check both fillet radii and the disk inner radius.",
         "Such a part cannot be made as drawn. The wind-up adds both fillets by formula; it is an approximation.",
     ),
     (
         "W417",
         "fillet beyond yield",
-        "{place} {name} = {value} mm: its peak von Mises stress {detail} MPa exceeds the yield strength {other:g} MPa.",
+        "{place} {name} = {value} mm: its peak von Mises stress {detail} MPa exceeds the yield strength {other} MPa.",
         "Enlarge the fillet, thicken the disk there, or lower the torque.",
         "By two-dimensional elasticity, which adds to the thin disk's stress what the fillet concentrates. A ductile "
         "part yields there before its section does; under alternating torque it fatigues there.",
@@ -621,7 +621,7 @@ CATALOGUE = _rules(
     (
         "W418",
         "unusual wall",
-        "{place} {name} = {value} mm is {detail} of the mean diameter {other:g} mm; 0.01 to 0.015 is usual.",
+        "{place} {name} = {value} mm is {detail} of the mean diameter {other} mm; 0.01 to 0.015 is usual.",
         "Check wall and radius for a diameter entered as a radius, or the other way round, and for the decimal point.",
         "Flexsplines have walls of 0.01 to 0.015 of their diameter. Outside 0.006 to 0.02 it is reported; above 0.05 "
         "I506 and W403 speak of it.",
@@ -629,7 +629,7 @@ CATALOGUE = _rules(
     (
         "W419",
         "large hub",
-        "{place} {name} = {value} mm exceeds 0.7 of the bore radius {other:g} mm.",
+        "{place} {name} = {value} mm exceeds 0.7 of the bore radius {other} mm.",
         "Check for a diameter entered as a radius.",
         "A hub of about half the bore is usual. A disk much narrower than that is hardly flexible enough.",
     ),
@@ -669,7 +669,7 @@ CATALOGUE = _rules(
     (
         "W424",
         "torque above catalogue drives",
-        "{place} {name} = {value} N·m exceeds {other:g} N·m, twice T2 of catalogue drives of size {detail}.",
+        "{place} {name} = {value} N·m exceeds {other} N·m, twice T2 of catalogue drives of size {detail}.",
         "Check torque and radius, and their units.",
         "T2 is the torque where the second slope of a drive's stiffness ends in a maker's catalogue, the greatest of "
         "its ratios. It is no rated torque, but a torque above twice T2 is unusual for the size.",
@@ -770,8 +770,8 @@ CATALOGUE = _rules(
         "decimal comma recognised",
         '{file} writes numbers with a decimal comma: {place} "{value}" was read as {suggestion}.',
         "Nothing to do, if the numbers of the report are yours.",
-        "In a table separated by semicolons, tabs or bars a comma is the decimal sign when at least three times as many "
-        "commas as points can be nothing else. Numbers with a point, such as 1.200, are then errors, not guessed at.",
+        "In a table separated by semicolons, tabs or bars a comma is the decimal sign when at least three times as "
+        "many commas as points can be nothing else. Numbers with a point, such as 1.200, are then errors.",
     ),
     (
         "I511",

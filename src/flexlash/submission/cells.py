@@ -9,7 +9,7 @@ import unicodedata
 from dataclasses import dataclass
 
 from flexlash.columns import Column
-from flexlash.submission.number_texts import Measure, meant_number
+from flexlash.submission.number_texts import Meant, Measure, meant_number
 from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Percentage, RawValue, Unstored
 
 __all__ = ["Fault", "as_number", "as_text"]
@@ -62,13 +62,11 @@ def as_number(
     if from_text and _NUMBER.fullmatch(readable) and not isinstance(value, DoubtfulNumber):
         number = float(readable)
         return number if math.isfinite(number) else Fault(code="E212", value=text)
-    if column is None:
-        return Fault(code="E202", value=value)
-    meant = meant_number(str(value), column, measure)
-    if isinstance(value, DoubtfulNumber):
-        words = f"{text.replace('.', ',')} with this table's decimal comma" if meant.words == text else meant.words
-        return Fault(code="E202", value=value, suggestion=words)
-    return Fault(code="E202", value=value, suggestion=meant.words, repair=meant.repair)
+    meant = meant_number(str(value), column, measure) if column else Meant()
+    if not isinstance(value, DoubtfulNumber):
+        return Fault(code="E202", value=value, suggestion=meant.words, repair=meant.repair)
+    words = f"{text.replace('.', ',')} with this table's decimal comma" if meant.words == text else meant.words
+    return Fault(code="E202", value=value, suggestion=words)
 
 
 def _percentage(value: Percentage, column: Column | None, measure: Measure | None) -> float | Fault:

@@ -154,7 +154,7 @@ def _settle_numbers(rows: _Rows) -> tuple[int, int] | None:
     Commas and points that can be nothing but decimal signs are counted. Where commas prevail, numbers with a point
     are in doubt; elsewhere those whose point may separate thousands, as soon as one comma must be decimal.
     """
-    found = {sign: [(*at, text) for *at, text in _texts(rows) if _SIGNS[sign].fullmatch(text)] for sign in _SIGNS}
+    found = {sign: [cell for cell in _texts(rows) if kind.fullmatch(cell[2])] for sign, kind in _SIGNS.items()}
     commas, points = found["decimal comma"], found["decimal point"]
     open_commas, open_points = found["any comma"], found["any point"]
     plain = [(number, place) for number, place, text in commas if _COMMA.fullmatch(text)]
