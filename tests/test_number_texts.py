@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from flexlash.columns import SETTINGS, columns_of
-from flexlash.submission.number_texts import Measure, meant_number
+from flexlash.submission.number_texts import Measure, is_both_ways, meant_number
 
 COLUMNS = {
     **columns_of("Variants"),
@@ -110,9 +110,9 @@ GUESSED = [
     (WALL, "approx. 1.6", "1.6"),
     (WALL, "±0.02", "0.02"),
     (WALL, "± 0,02 mm", "0.02"),
-    ("upper_deviation", "±0.02", "0.02"),
-    ("lower_deviation", "±0.02", "-0.02"),
-    ("lower_deviation", "+/-0,02", "-0.02"),
+    ("upper_deviation", "±0.02", "-0.02 in lower and 0.02 in upper"),
+    ("lower_deviation", "±0.02", "-0.02 in lower and 0.02 in upper"),
+    ("lower_deviation", "+/-0,02", "-0.02 in lower and 0.02 in upper"),
     (WALL, "1/4", "0.25"),
     (WALL, "½", "0.5"),
     (WALL, '1 1/4"', "31.75"),
@@ -175,3 +175,32 @@ def test_a_deviation_takes_the_unit_beside_it():
     assert meant_number("-0.02 mm", column, Measure(quantity="length", si=1e-6)).repair == -20
     assert meant_number("5 %", column, Measure(quantity="ratio", si=0.01)).repair == 5
     assert meant_number("5 %", column, Measure(quantity="length", si=1e-3)).numbers == ()
+
+
+OPEN = {
+    "5 %": "5, and % as the deviation unit",
+    "-2,5%": "-2.5, and % as the deviation unit",
+    "±5 %": "-5 in lower and 5 in upper, and % as the deviation unit",
+    "± 0.1 mm": "-0.1 in lower and 0.1 in upper",
+    "±-0.1": "-0.1 in lower and 0.1 in upper",
+    "±100 µm": "-0.1 in lower and 0.1 in upper",
+    "±5 kg": "",
+    "±1,600": "",
+    "± %": "",
+}
+
+
+@pytest.mark.parametrize("text", OPEN)
+def test_two_cells_are_suggested_where_one_entry_needs_them(text):
+    """Per cent beside a blank unit, and ± in one cell, are told with every cell that they take; never written."""
+    measure = Measure(quantity="length", si=1e-3, unit_is_open=True)
+    for key in ("lower_deviation", "upper_deviation"):
+        meant = meant_number(text, COLUMNS[key], measure)
+        assert (meant.words if meant.entries else "", meant.repair) == (OPEN[text], None)
+    assert is_both_ways(text) == ("±" in text)
+
+
+def test_both_ways_in_per_cent_where_the_unit_says_so():
+    """Beside the unit %, ±5 % takes two cells and no other unit."""
+    measure = Measure(quantity="ratio", si=0.01)
+    assert meant_number("±5 %", COLUMNS["lower_deviation"], measure).words == "-5 in lower and 5 in upper"

@@ -8,10 +8,10 @@ import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from flexlash.columns import Column
+from flexlash.columns import Column, columns_of
 from flexlash.units import Unit, find_unit
 
-__all__ = ["Meant", "Measure", "meant_number"]
+__all__ = ["Meant", "Measure", "is_both_ways", "meant_number"]
 
 _MINUS = "\u2010\u2011\u2012\u2013\u2014\u2212\ufe63\uff0d"
 _SIGNS = str.maketrans(dict.fromkeys(_MINUS, "-") | {"\u066b": ".", "\u066c": "'", "\u2019": "'"})
@@ -35,18 +35,24 @@ _GROUPED = re.compile(
 )
 _FRACTION = re.compile(_SIGN + r"(?:(?P<whole>\d+)\s+)?(?P<over>\d{1,2})\s*/\s*(?P<under>[1-9]\d?)" + _REST, re.ASCII)
 _TWO_READINGS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}", re.ASCII)
+_DEVIATION = columns_of("Tolerances")["upper_deviation"]
+_DEVIATIONS = frozenset({"lower_deviation", "upper_deviation"})
 _NO_UNIT = re.compile(r"(?<![A-Za-z^])\d|[014-9]")
 """A digit that is no exponent of a unit."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Measure:
-    """What the numbers of a cell stand for: quantity, size of 1 in SI, and the bounds of the column in SI."""
+    """What the numbers of a cell stand for: quantity, size of 1 in SI, and the bounds of the column in SI.
+
+    `unit_is_open` where a cell beside it, still blank, may say that they are per cent.
+    """
 
     quantity: str
     si: float
     minimum: float = -math.inf
     maximum: float = math.inf
+    unit_is_open: bool = False
 
     @classmethod
     def of(cls, column: Column, factor: float = 1.0) -> Measure:
@@ -65,15 +71,19 @@ class Measure:
 
 @dataclass(frozen=True, kw_only=True)
 class Meant:
-    """The numbers that a text may mean, in the unit of its cell; `certain` when it can be no other."""
+    """The numbers that a text may mean, in the unit of its cell; `certain` when it can be no other.
+
+    `entries` says in words what to write where that takes more than one cell.
+    """
 
     numbers: tuple[str, ...] = ()
     certain: bool = False
+    entries: str = ""
 
     @property
     def words(self) -> str:
         """The suggestion as a message names it: `1.6`, or `1.6 or 1600`."""
-        return " or ".join(self.numbers)
+        return self.entries or " or ".join(self.numbers)
 
     @property
     def repair(self) -> float | None:
@@ -90,13 +100,14 @@ def meant_number(text: str, column: Column, measure: Measure | None = None) -> M
     (1.6, '1.6 or 1600', '')
     """
     measure = measure or Measure.of(column)
+    if column.key in _DEVIATIONS and (entries := _deviations(_plain(text), measure)):
+        return Meant(entries=entries)
     bare, certain = _plain(text), True
     if rough := _ROUGHLY.match(bare):
         bare, certain = bare[rough.end() :], False
     factor = 1.0
     if both := _BOTH_WAYS.match(bare):
         bare, certain = bare[both.end() :], False
-        factor = -1.0 if column.key == "lower_deviation" else 1.0
     elif mark := _ROUND.match(bare):
         round_factor = _round_factor(mark[0].strip(), column)
         if round_factor is None:
@@ -107,6 +118,27 @@ def meant_number(text: str, column: Column, measure: Measure | None = None) -> M
     fitting = [number for number, fits in found.items() if fits]
     certain = certain and len(fitting) == 1 and not _FRACTION.fullmatch(bare)
     return Meant(numbers=tuple(fitting or found), certain=certain)
+
+
+def is_both_ways(text: str) -> bool:
+    """Whether a text begins with ± or the like, and so says two deviations at once."""
+    return bool(_BOTH_WAYS.match(_plain(text)))
+
+
+def _deviations(bare: str, measure: Measure) -> str:
+    """Return what to write for ±0.1 or 5 % in the cell of a deviation; empty where its number alone says it."""
+    both = _BOTH_WAYS.match(bare)
+    bare = bare[both.end() :] if both else bare
+    per_cent = measure.unit_is_open and bare.endswith("%")
+    readings = dict(_readings(bare.removesuffix("%").rstrip() if per_cent else bare))
+    if len(readings) != 1 or not (both or per_cent):
+        return ""
+    found = _in_cell(*readings.popitem(), _DEVIATION, measure, 1.0)
+    if found is None:
+        return ""
+    number = found[0].lstrip("-") if both else found[0]
+    entry = f"-{number} in lower and {number} in upper" if both else number
+    return f"{entry}, and % as the deviation unit" if per_cent else entry
 
 
 def _plain(text: str) -> str:

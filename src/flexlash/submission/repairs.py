@@ -18,6 +18,7 @@ def repair_of(finding: Finding) -> str | float | None:
     | E202 | 5 % where the unit is known: 5 in a column of per cent, 0.05 in a ratio | number |
     | E202 | R3.5 for a radius, Ø80 for a diameter | number |
     | E202 | 1,600 · ~1.6 · ca. 1.6 · ±0.02 · 1/4 · Ø80 for a radius · out of bounds · unknown unit | nothing |
+    | E202 | 5 % beside a blank deviation unit · a table's number whose decimal sign is in doubt | nothing |
     | E203 | a date | nothing |
     | E112 | a header that resembles one column only, with a unit that is known or not needed | header |
     | E209, E307, E309 | a name at least 85 % like one of the list, no other as near, digits alike | name |

@@ -166,9 +166,11 @@ class _Cell:
             return Measure(quantity="ratio", si=0.01)
         column = DIMENSIONS.get(dimension.casefold())
         if column is None or column.quantity == "ratio":
-            return Measure(quantity="", si=1.0)
+            return Measure(quantity="", si=1.0, unit_is_open=not unit)
         found = find_unit(unit, column.quantity) if unit else column.si_unit
-        return Measure(quantity=column.quantity, si=found.si) if found else Measure(quantity="", si=1.0)
+        if found is None:
+            return Measure(quantity="", si=1.0)
+        return Measure(quantity=column.quantity, si=found.si, unit_is_open=not unit)
 
 
 def _typed(cell: _Cell, ledger: Ledger) -> str | float | None:
