@@ -282,6 +282,17 @@ def test_distributions(distribution):
         ({"limits_sigma": "3σ"}, [("E202", "H2")]),
         ({"grade": None, "lower_deviation": "±0.02"}, [("E202", "C2")]),
         ({"grade": Unstored()}, [("E206", "F2")]),
+        ({"grade": "IT 7", "distribution": "gaussian"}, [("E209", "G2"), ("E210", "F2")]),
+        ({"grade": "IT 7", "dimension": "wall"}, [("E209", "B2"), ("E210", "F2")]),
+        ({"grade": "IT9", "dimension": "torque", "limits_sigma": 0}, [("E207", "H2"), ("E320", "F2")]),
+        ({"grade": None, "lower_deviation": "x"}, [("E202", "C2"), ("E317", "D2")]),
+        ({"grade": None, "lower_deviation": "x", "upper_deviation": 1}, [("E202", "C2")]),
+        ({"grade": None, "distribution": "gaussian"}, [("E209", "G2"), ("E317", "C2"), ("E317", "D2")]),
+        ({"grade": None, "lower_deviation": 1, "upper_deviation": 0, "limits_sigma": 0},
+         [("E207", "H2"), ("E318", "C2")]),
+        ({"deviation_unit": "furlong", "distribution": "gaussian"}, [("E209", "G2"), ("E211", "E2")]),
+        ({"deviation_unit": "furlong", "dimension": "wall"}, [("E209", "B2")]),
+        ({"dimension": "wall", "lower_deviation": 0}, [("E209", "B2"), ("E316", "F2")]),
     ],
 )  # fmt: skip
 def test_a_faulty_tolerance_row_is_named(change, told):
@@ -292,6 +303,23 @@ def test_a_faulty_tolerance_row_is_named(change, told):
     assert classes["fine"] == []
     assert len(classes["other"]) == 1
     assert not ledger.everything
+
+
+def test_faults_of_a_row_that_stands_twice():
+    """A row that stands twice is judged in its cells like any other."""
+    _, ledger = _classes(GRADE, GRADE | {"grade": "IT 7"})
+    assert _told(ledger) == [("E319", "B2"), ("E319", "B3"), ("E210", "F3")]
+
+
+@pytest.mark.parametrize(
+    ("unit", "words"),
+    [(None, "5, and % as the deviation unit"), ("%", "5"), ("mm", "")],
+)
+def test_per_cent_in_a_deviation(unit, words):
+    """A deviation of 5 % beside a blank unit needs the unit %, so that nobody types 5 and gets millimetres."""
+    _, ledger = _classes(DEVIATIONS | {"upper_deviation": "5 %", "deviation_unit": unit})
+    (found,) = ledger.findings
+    assert (found.code, found.cell, found.suggestion) == ("E202", "D2", words)
 
 
 def test_messages_of_tolerances():

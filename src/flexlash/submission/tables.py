@@ -11,6 +11,7 @@ from flexlash.columns import DIMENSIONS, ENTRY_SHEETS, MATERIALS, SETTINGS, TOLE
 from flexlash.submission.cells import Fault, as_number, as_text
 from flexlash.submission.grade_texts import meant_grade
 from flexlash.submission.ledger import Ledger
+from flexlash.submission.number_texts import is_both_ways
 from flexlash.submission.reading.read import RawSheet, RawValue
 from flexlash.submission.spellings import misspelt, plain, spelt_alike, suggested
 from flexlash.submission.tabulate import Table
@@ -34,6 +35,7 @@ BUILT_IN_SHEETS = {"Materials": "materials", "Tolerances": "standard_class"}
 """Sheets that a submission may lack, with the table that is used instead."""
 
 _CONSTANTS = ("youngs_modulus_GPa", "poisson_ratio", "shear_modulus_GPa")
+_DEVIATIONS = ("lower_deviation", "upper_deviation")
 _UNGRADED = frozenset({"hub_fillet_radius", "junction_fillet_radius"})
 
 
@@ -174,43 +176,63 @@ def tolerance_classes_of(table: Table, ledger: Ledger) -> dict[str, list[Toleran
             continue
         key = plain(name)
         classes[key] += []
-        sound = row not in doubled and record["dimension"] is not None
-        sound = sound and not any((row, column) in table.faulty for column in _TOLERANCE)
-        if sound and _check_tolerance(table, ledger, record):
+        sound = _check_tolerance(table, ledger, record) and row not in doubled
+        if (
+            sound
+            and record["dimension"] is not None
+            and not any((row, column) in table.faulty for column in _TOLERANCE)
+        ):
             classes[key].append(_tolerance_row(record))
+            _check_shift(table, ledger, record)
         else:
             ledger.spoil("class", key, table.sheet, row)
     return dict(classes)
 
 
 def _check_tolerance(table: Table, ledger: Ledger, record: dict[str, Any]) -> bool:
-    """Check the cells of a tolerance row against one another; return whether they are sound."""
-    row, dimension, grade = record["row"], record["dimension"], record["grade"]
-    column = DIMENSIONS[dimension]
-    lower, upper = record["lower_deviation"], record["upper_deviation"]
+    """Check the cells of a tolerance row, as far as they have no fault yet; return whether nothing was found."""
+    row = record["row"]
+    record = {key: None if (row, key) in table.faulty else value for key, value in record.items()}
     before = len(ledger.findings)
-    unit = record["deviation_unit"]
-    if unit and unit.strip() != "%" and find_unit(unit, column.quantity) is None:
-        _blame(table, ledger, "E211", row, "deviation_unit", value=unit, dimension=dimension, unit=column.unit)
-    if grade is not None:
-        if lower is not None or upper is not None:
-            _blame(table, ledger, "E316", row, "grade", value=grade)
-        elif not is_grade(grade):
-            meant = meant_grade(grade)
-            repair = None if grade.isdecimal() else meant or None
-            _blame(table, ledger, "E210", row, "grade", value=grade, suggestion=meant, repair=repair)
-        elif column.quantity != "length" or dimension in _UNGRADED:
-            _blame(table, ledger, "E320", row, "grade", value=grade, other=dimension)
-    else:
-        for key in ("lower_deviation", "upper_deviation"):
-            if record[key] is None:
-                _blame(table, ledger, "E317", row, key)
-        if lower is not None and upper is not None and lower > upper:
-            _blame(table, ledger, "E318", row, "lower_deviation", value=lower, other=upper)
-    sound = len(ledger.findings) == before
-    if sound and lower and lower == upper:
-        _blame(table, ledger, "W410", row, "upper_deviation", value=upper)
-    return sound
+    column, unit = DIMENSIONS.get(record["dimension"]), record["deviation_unit"]
+    if column and unit and unit.strip() != "%" and find_unit(unit, column.quantity) is None:
+        _blame(table, ledger, "E211", row, "deviation_unit", value=unit, dimension=column.dimension, unit=column.unit)
+    if record["grade"] is not None:
+        _check_grade(table, ledger, record, column)
+    elif (row, "grade") not in table.faulty:
+        _check_deviations(table, ledger, record)
+    return len(ledger.findings) == before
+
+
+def _check_grade(table: Table, ledger: Ledger, record: dict[str, Any], column: Column | None) -> None:
+    """Require that a grade stands alone, exists and applies to its dimension, where that is known."""
+    row, grade = record["row"], record["grade"]
+    if any(record[key] is not None for key in _DEVIATIONS):
+        _blame(table, ledger, "E316", row, "grade", value=grade)
+    elif not is_grade(grade):
+        meant = meant_grade(grade)
+        repair = None if grade.isdecimal() else meant or None
+        _blame(table, ledger, "E210", row, "grade", value=grade, suggestion=meant, repair=repair)
+    elif column and (column.quantity != "length" or column.dimension in _UNGRADED):
+        _blame(table, ledger, "E320", row, "grade", value=grade, other=column.dimension)
+
+
+def _check_deviations(table: Table, ledger: Ledger, record: dict[str, Any]) -> None:
+    """Require both deviations, the lower first; one cell that says both is its own finding alone."""
+    row, (lower, upper) = record["row"], (record[key] for key in _DEVIATIONS)
+    faulty = [str(table.entered(row, key)) for key in _DEVIATIONS if (row, key) in table.faulty]
+    for key in _DEVIATIONS:
+        if record[key] is None and (row, key) not in table.faulty and not any(map(is_both_ways, faulty)):
+            _blame(table, ledger, "E317", row, key)
+    if lower is not None and upper is not None and lower > upper:
+        _blame(table, ledger, "E318", row, "lower_deviation", value=lower, other=upper)
+
+
+def _check_shift(table: Table, ledger: Ledger, record: dict[str, Any]) -> None:
+    """Warn of deviations that shift a dimension without scatter."""
+    lower, upper = (record[key] for key in _DEVIATIONS)
+    if lower and lower == upper:
+        _blame(table, ledger, "W410", record["row"], "upper_deviation", value=upper)
 
 
 def settings_of(table: Table, ledger: Ledger) -> Settings:
