@@ -115,6 +115,7 @@ def _variants(folder: Path) -> Made:
         {"backlash_limit_arcmin": 1},
         {"torque_Nm": 2500},
         {"mean_radius_mm": 160, "torque_Nm": 100, "cylinder_length_mm": 1600},
+        {"mean_radius_mm": 0.08},
     )
     rows[0]["Customer"] = "Example Ltd"
     text = _text(rows, LABELS | {"mean_radius_mm": "Mean radius r_m", "disk_cone_angle_deg": "Disk cone angle [mrad]"})

@@ -393,6 +393,9 @@ def test_explain_prints_meaning_and_mend():
     out = CliRunner().invoke(cli, ["explain", "e303"]).stdout
     assert out.startswith("E303 error: hub outside the disk\n")
     assert "Mend: Check for a diameter" in out
+    assert CliRunner().invoke(cli, ["explain", " 303"]).stdout == out
+    for unknown in ("999", "30", "E", ""):
+        assert CliRunner().invoke(cli, ["explain", unknown]).exit_code == 2
     for code in CATALOGUE:
         assert "{" not in CliRunner().invoke(cli, ["explain", code]).stdout
     assert "W402  warning  beyond yield" in CliRunner().invoke(cli, ["explain"]).stdout

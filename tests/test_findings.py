@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import flexlash
-from flexlash.findings import CATALOGUE, Finding, finding, shown
+from flexlash.findings import CATALOGUE, Finding, finding, shown, spelled_out
 
 SOURCE = Path(flexlash.__file__).parent
 JARGON = re.compile(
@@ -213,3 +213,32 @@ def test_texts_from_outside_are_inert_in_messages():
     assert placed.message.isprintable()
     assert placed.variant == "a·"
     assert placed.sheet == "S\n"
+
+
+@pytest.mark.parametrize(
+    ("value", "kind"),
+    [(datetime.date(2026, 4, 1), "date 2026-04-01"), (datetime.time(1, 6), "time 01:06:00")],
+)
+def test_a_time_is_no_date(value, kind):
+    """A time in a cell is called a time."""
+    assert f"holds the {kind}:" in _filled("E203", value=value).message
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [
+        (80000.0, 4, "80,000"),
+        (800000.0, 4, "800,000"),
+        (9999.0, 4, "9999"),
+        (1600.0, 4, "1600"),
+        (1234567.0, 4, "1,235,000"),
+        (-80000.0, 4, "-80,000"),
+        (0.00016, 4, "0.00016"),
+        (40.123456, 6, "40.1235"),
+    ],
+)
+def test_numbers_without_a_power_of_ten(value, digits, text):
+    """Large numbers are written out, with commas only where none can be a decimal comma by its size."""
+    assert spelled_out(value, digits) == text
+    if digits == 6:
+        assert f"radius {text} mm" in _filled("E303", other=value).message

@@ -16,6 +16,10 @@ REFUSED = {
     "a PDF": ("E101", b"%PDF-1.7\n1 0 obj\n<<>>\nendobj\n"),
     "a web page": ("E101", b"<html><table><tr><td>Variant</td></tr></table></html>"),
     "a letter in RTF": ("E101", b"{\\rtf1 Variant}"),
+    "a picture": ("E101", b"\x89PNG\r\n\x1a\n" + b"\0" * 20),
+    "a photo": ("E101", b"\xff\xd8\xff\xe0" + b"\0" * 20),
+    "a single word": ("E101", b"x"),
+    "a sentence": ("E101", b"hello world\n"),
     "an empty archive": ("E101", b"PK\x05\x06" + b"\0" * 18),
     "an old .xls": ("E104", OLE2 + b"\0" * 504 + "Workbook".encode("utf-16-le")),
     "an old .xls whose sectors form a loop": ("E104", OLE2 + b"\0" * 68 + b"\0\0\0\0" * 1000),
@@ -53,6 +57,36 @@ def test_a_refusal_is_an_outcome_that_names_the_file(what, tmp_path):
     assert str(tmp_path) not in outcome.findings[0].message
 
 
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        ("a picture", "a picture"),
+        ("a photo", "a picture"),
+        ("a PDF", "PDF"),
+        ("a letter in RTF", "RTF"),
+        ("a web page", "web page"),
+        ("a sentence", "no table"),
+        ("random bytes", "neither a workbook nor a table"),
+    ],
+)
+def test_other_files_are_named(what, words):
+    """A picture, a document or a sentence is refused as what it is."""
+    with pytest.raises(Refusal) as caught:
+        kind_of(REFUSED[what][1])
+    assert words in caught.value.facts["found"]
+
+
+def test_a_lock_file_is_named(tmp_path):
+    """The small file that Excel puts beside an open workbook is refused by its name; a real one of that name is not."""
+    path = tmp_path / "~$good.xlsx"
+    path.write_bytes(b"\x05Anna " + b" " * 49 + b"\x05\0A\0n\0n\0a\0" + b" \0" * 50)
+    (found,) = check(path).findings
+    assert found.code == "E101"
+    assert "lock file" in found.message
+    path.write_bytes(book_of())
+    assert read_bytes(path) == book_of() or len(book_of()) <= 1024
+
+
 def test_an_old_workbook_is_named():
     """A workbook of the old format is refused by the name of that format."""
     with pytest.raises(Refusal) as caught:
@@ -67,7 +101,8 @@ ACCEPTED = {
     "a table with a byte order mark": ("csv", b"\xef\xbb\xbfVariant;Material\na;b\n"),
     "a table that Excel saved as Unicode Text": ("csv", "Variant\tMaterial\na\tb\n".encode("utf-16")),
     "a table in UTF-16 the other way round": ("csv", b"\xfe\xff" + "Variant\ta\n".encode("utf-16-be")),
-    "a single word": ("csv", b"x"),
+    "a column of two rows": ("csv", b"Variant\na\n"),
+    "a lone header row": ("csv", b"Variant;Material"),
 }
 
 

@@ -125,7 +125,10 @@ FAULTS = [
     ("１.６", "E202", "1.6"),
     ("5%", "E202", ""),
     ("n/a", "E202", ""),
-    (datetime.datetime(2026, 4, 1), "E203", ""),  # noqa: DTZ001
+    (datetime.datetime(2026, 4, 1), "E203", "1.4"),  # noqa: DTZ001
+    (datetime.datetime(1980, 12, 1), "E203", "12.80"),  # noqa: DTZ001
+    (datetime.datetime(1980, 12, 3), "E203", ""),  # noqa: DTZ001
+    (datetime.time(1, 4), "E203", ""),
     (True, "E204", ""),
     (ErrorCell("#REF!"), "E205", ""),
     (Unstored(), "E206", ""),

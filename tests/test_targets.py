@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from flexlash.targets import beside, mended_targets, report_targets
+from flexlash.targets import beside, mended_targets, report_targets, template_target
 
 
 def _names(targets, folder):
@@ -76,3 +76,11 @@ def test_a_folder_is_made(tmp_path):
     """A folder that does not exist is made, also where it ends in a slash."""
     report_targets([Path("a.xlsx")], tmp_path / "new" / "deep")
     assert (tmp_path / "new" / "deep").is_dir()
+
+
+@pytest.mark.parametrize("name", ["t.csv", "t", "t.xls"])
+def test_a_template_is_a_workbook(tmp_path, name):
+    """A template is not written under another ending than .xlsx, which Excel would refuse to open."""
+    with pytest.raises(ValueError, match=r"must end in \.xlsx"):
+        template_target(tmp_path / name, None, force=True)
+    assert template_target(tmp_path / "t.XLSX", None, force=False) == tmp_path / "t.XLSX"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from flexlash.columns import DIMENSIONS, VARIANTS, columns_of
+from flexlash.findings import spelled_out
 from flexlash.mechanics.nominal import Numbers, nominal_numbers
 from flexlash.mechanics.stiffness import catalogue_torque
 from flexlash.submission.headers import plain
@@ -210,7 +211,7 @@ def _exceeds(one: float | str | None, other: float | str | None) -> bool:
 
 
 def _megapascals(stress: float | str | None) -> str:
-    return f"{float(stress or 0) / 1e6:.4g}"
+    return spelled_out(float(stress or 0) / 1e6)
 
 
 def _warn_calibration(validated: Validated, variant: Variant) -> None:

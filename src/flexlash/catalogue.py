@@ -125,8 +125,8 @@ CATALOGUE = _rules(
         "misspelt header",
         "{place}: the header {value} is unknown but probably means {name}.",
         "Write {label}, or a name that does not resemble a column of the template.",
-        "A misspelt optional column would otherwise be left out of the calculation without a word; a required one would "
-        "be missing. Rows that hold a value under it are not computed.",
+        "A misspelt optional column would otherwise be left out of the calculation without a word; a required one "
+        "would be missing. Rows that hold a value under it are not computed.",
     ),
     (
         "E113",
@@ -486,10 +486,10 @@ CATALOGUE = _rules(
     (
         "E329",
         "unit slipped, row contradictory",
-        "{place} {name} = {value} is about {other} {detail}, and contradicts {contradicted}.",
+        "{place} {name} = {value} is about {other} and contradicts {contradicted}.",
         "Enter the value in the unit of the header, or mend the header's unit.",
-        "Metres in a column of millimetres, for instance. Because of this one value the row makes no part, so it is not "
-        "computed; the cell that it contradicts is probably right.",
+        "Metres in a column of millimetres, for instance. Because of this one value the row makes no part, so it is "
+        "not computed; the cell that it contradicts is probably right.",
     ),
     (
         "W401",
@@ -638,8 +638,8 @@ CATALOGUE = _rules(
         "unit slipped",
         "{place} {name} = {value} is about {other} {detail}.",
         "Enter the value in the unit of the header, or mend the header's unit.",
-        "Metres in a column of millimetres, MPa or Pa in a column of GPa, N·mm or kN·m in a column of N·m: each value is "
-        "compared with the rest of its row, or with real materials. It is used as entered.",
+        "Metres in a column of millimetres, MPa or Pa in a column of GPa, N·mm or kN·m in a column of N·m: each value "
+        "is compared with the rest of its row, or with real materials. It is used as entered.",
     ),
     (
         "W421",
@@ -789,18 +789,18 @@ CATALOGUE = _rules(
         "An older template is read as before; what it has no column for counts as blank.",
     ),
     (
-        "I514",
-        "percentage read",
-        "{place} {name} shows {value} and was read as {detail} %.",
-        "Nothing to do.",
-        "Excel stores 5% as 0.05; where per cent are wanted, what the cell shows is read.",
-    ),
-    (
         "I513",
         "marked copy skipped",
         "{file} is a marked copy of a submission; it was skipped.",
         "Mend and submit your own file, or take the copy itself with --marked-copies.",
         "Marked copies carry a mark by which they are recognised when a whole folder is submitted. What a copy could "
         "not take over, such as charts, is only in your own file.",
+    ),
+    (
+        "I514",
+        "percentage read",
+        "{place} {name} shows {value} and was read as {detail} %.",
+        "Nothing to do.",
+        "Excel stores 5% as 0.05; where per cent are wanted, what the cell shows is read.",
     ),
 )

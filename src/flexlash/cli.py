@@ -120,12 +120,13 @@ def explain(code: str | None) -> None:
         for rule in CATALOGUE.values():
             click.echo(f"{rule.code}  {rule.level:8} {rule.title}")
         return
-    known = code.strip().upper()
-    if known not in CATALOGUE:
+    wanted = code.strip().upper()
+    meant = [known for known in CATALOGUE if wanted in {known, known[1:]}]
+    if len(meant) != 1:
         raise click.UsageError(f"{shown(code)} is not a finding's code. flexlash explain lists them all.")
     from flexlash.explanations import explanation_of
 
-    for line in explanation_of(known).lines():
+    for line in explanation_of(meant[0]).lines():
         click.echo(line)
 
 

@@ -31,6 +31,7 @@ _WORDS = {
     "requirement": "what the column holds",
     "setting": "SETTING",
     "choices": "the entries of the cell's drop-down list",
+    "kind": "date or time",
     "contradicted": "another cell",
 }
 _ANY = "…"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import math
 from collections import defaultdict
 from collections.abc import Sequence
@@ -58,8 +59,10 @@ def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **f
     """
     rule = CATALOGUE[code]
     place = f"{sheet}!{cell}" if sheet and cell else sheet or str(facts.get("file", ""))
-    inert = {key: shown(fact, _LONGEST) if isinstance(fact, str) else fact for key, fact in facts.items()}
-    words = {"file": "The file", **inert, "place": shown(place, _LONGEST), "value": shown(facts.get("value", ""))}
+    value = facts.get("value", "")
+    inert = {key: _inert(fact) for key, fact in facts.items()}
+    kind = "date" if isinstance(value, datetime.date) else "time"
+    words = {"file": "The file", "kind": kind, **inert, "place": shown(place, _LONGEST), "value": shown(value)}
     suggestion = str(inert.get("suggestion", ""))
     message = rule.message.format(**words)
     if suggestion and "{suggestion}" not in rule.message:
@@ -71,12 +74,19 @@ def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **f
         cell=cell,
         column=column,
         variant=str(inert.get("variant", "")),
-        value=shown(facts.get("entered", facts.get("value", ""))),
+        value=shown(facts.get("entered", value)),
         message=message,
         fix=rule.fix.format(**words),
         suggestion=suggestion,
         repair=facts.get("repair"),
     )
+
+
+def _inert(fact: Any) -> Any:
+    """Return a fact as a message names it: a text without harm, a number without a power of ten."""
+    if isinstance(fact, float):
+        return spelled_out(fact, 6)
+    return shown(fact, _LONGEST) if isinstance(fact, str) else fact
 
 
 def shown(value: Any, longest: int = 60) -> str:

@@ -10,6 +10,7 @@ from flexlash.columns import DIMENSIONS
 from flexlash.elasticity import MISSING, is_available
 from flexlash.elasticity.part import section_problem
 from flexlash.elasticity.twist import ElasticityCheck, elasticity_check
+from flexlash.findings import spelled_out
 from flexlash.mechanics.strength import von_mises_stress
 from flexlash.submission.validate import Validated
 from flexlash.variant import Variant
@@ -100,7 +101,7 @@ def _compare(validated: Validated, one: Computed) -> None:
         if isinstance(shear, float) and limit is not None and von_mises_stress(shear) > limit:
             column = DIMENSIONS[f"{fillet}_radius"]
             value = f"{one.variant.dimensions[column.dimension] / column.si_unit.si:.10g}"
-            peak = f"{von_mises_stress(shear) / _MEGAPASCAL:.4g}"
+            peak = spelled_out(float(von_mises_stress(shear)) / _MEGAPASCAL)
             facts = {"name": column.name, "value": value, "detail": peak, "other": limit / _MEGAPASCAL}
             blame(validated, "W417", one.variant, column.key, **facts)
 

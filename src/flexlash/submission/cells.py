@@ -6,7 +6,7 @@ import datetime
 import math
 import re
 import unicodedata
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from flexlash.columns import Column
 from flexlash.submission.number_texts import Meant, Measure, meant_number
@@ -15,6 +15,9 @@ from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCe
 __all__ = ["Fault", "as_number", "as_text"]
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII)
+_TYPED_THIS_YEAR = 2020
+"""Year from which on a date is taken for day and month; Excel adds the year in which they are typed."""
+
 _DATES = (datetime.date, datetime.time, datetime.timedelta)
 
 
@@ -42,6 +45,15 @@ def _not_an_entry(value: RawValue) -> Fault | None:
     return None
 
 
+def _typed_before(value: object) -> str:
+    """Return the number that Excel probably made a date of: 1.6 the first of June, 12.80 December 1980."""
+    if not isinstance(value, datetime.date) or isinstance(value, datetime.datetime):
+        return ""
+    if value.year >= _TYPED_THIS_YEAR:
+        return f"{value.day}.{value.month}"
+    return f"{value.month}.{value.year % 100:02d}" if value.day == 1 else ""
+
+
 def as_number(
     value: RawValue, column: Column | None = None, *, from_text: bool, measure: Measure | None = None
 ) -> float | Fault:
@@ -51,7 +63,7 @@ def as_number(
     printed unit.
     """
     if fault := _not_an_entry(value):
-        return fault
+        return replace(fault, suggestion=_typed_before(fault.value)) if column else fault
     if isinstance(value, Percentage):
         return _percentage(value, column, measure)
     if isinstance(value, int | float):

@@ -16,10 +16,28 @@ __all__ = ["Kind", "Refusal", "kind_of", "read_bytes"]
 Kind = Literal["workbook", "parquet", "csv"]
 
 _MEBI = 2**20
+_NEITHER = "the content is neither a workbook nor a table"
 _ARCHIVE = b"PK\x03\x04"
 _OLE2 = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _PARQUET = b"PAR1"
-_OTHERS = (b"PK", b"%PDF", b"{\\rtf", b"<")
+_OTHERS = {
+    b"\x89PNG": "it is a picture",
+    b"\xff\xd8\xff": "it is a picture",
+    b"GIF8": "it is a picture",
+    b"II*\0": "it is a picture",
+    b"MM\0*": "it is a picture",
+    b"%PDF": "it is a PDF document",
+    b"{\\rtf": "it is a text document (RTF)",
+    b"<": "it is a web page or XML text",
+    b"PK": _NEITHER,
+}
+"""What files of other kinds begin with."""
+
+_LOCK = "~$"
+"""What the name of the file begins with by which Excel marks a workbook as open."""
+
+_GREATEST_LOCK = 1024
+_SIGNS = frozenset(b",;\t|")
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _FLAGS = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 
@@ -42,6 +60,8 @@ def read_bytes(path: Path, limits: ReadingLimits | None = None) -> bytes:
             data += file.read()
     if not data:
         raise Refusal("E101", found="the file is empty")
+    if path.name.startswith(_LOCK) and len(data) <= _GREATEST_LOCK:
+        raise Refusal("E101", found="it is Excel's lock file of a workbook that is open; submit the workbook itself")
     return data
 
 
@@ -73,6 +93,11 @@ def _kind(data: bytes) -> Kind:
         raise Refusal("E103") if locked else Refusal("E104", found="an old Excel file (.xls)")
     if data.startswith(_UTF_16):
         return "csv"
-    if b"\0" in data[:4096] or data.startswith(_OTHERS):
-        raise Refusal("E101", found="the content is neither a workbook nor a table")
+    for beginning, found in _OTHERS.items():
+        if data.startswith(beginning):
+            raise Refusal("E101", found=found)
+    if b"\0" in data[:4096]:
+        raise Refusal("E101", found=_NEITHER)
+    if len(data.split()) and len(data.strip().splitlines()) == 1 and _SIGNS.isdisjoint(data):
+        raise Refusal("E101", found="its text is a single line and no table")
     return "csv"
