@@ -24,6 +24,7 @@ from flexlash.submission.tables import (
     tolerance_classes_of,
 )
 from flexlash.submission.tabulate import Table, tabulate
+from flexlash.submission.unused_classes import tell_unused_classes
 from flexlash.submission.versions import TEMPLATE_VERSION, check_version, tell_additions
 from flexlash.variant import Material, Settings, ToleranceRow, Variant
 
@@ -86,6 +87,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     result.table = tables.get("Variants")
     if result.table is not None:
         _check_rows(result, result.table)
+        tell_unused_classes(tables.get("Tolerances"), result.table, result.classes, ledger)
     _tell_other_sources(submission, ledger)
     if result.table is not None and not ledger.everything:
         result.variants = [
