@@ -116,12 +116,14 @@ def _variants(folder: Path) -> Made:
         {"torque_Nm": 2500},
         {"mean_radius_mm": 160, "torque_Nm": 100, "cylinder_length_mm": 1600},
         {"mean_radius_mm": 0.08},
+        {"notes": "moved by a comma"},
     )
     rows[0]["Customer"] = "Example Ltd"
     text = _text(rows, LABELS | {"mean_radius_mm": "Mean radius r_m", "disk_cone_angle_deg": "Disk cone angle [mrad]"})
     text = text.replace(",120,", f",{120 / 180 * 3141.592653589793},", 1)
-    first, second, *rest = text.splitlines()
-    return _file(folder, "\n".join([first, f"{second},unnamed", *rest, *[""] * 70, ",,,?", ""]))
+    first, *rest, last = text.splitlines()
+    rest = [f"{first},,Drawing", f"{rest[0]},unnamed,", *(f"{line},," for line in rest[1:]), f"{last},,,1,6"]
+    return _file(folder, "\n".join([*rest, *[""] * 70, ",,,?", ""]))
 
 
 def _tables(folder: Path) -> Made:
@@ -148,6 +150,7 @@ def _tables(folder: Path) -> Made:
         for number, row in enumerate(classes, start=1)
     ]
     rows += [{"tolerance_class": "twice", **wall, "grade": "IT7"}] * 2
+    rows += [{"tolerance_class": name, **wall, "grade": "IT7"} for name in ("press fit", "pres fit")]
     steel = {"youngs_modulus_GPa": 211, "poisson_ratio": 0.3, "shear_modulus_GPa": ""}
     materials = [
         {"material": "20Cr2Ni4", **steel},
@@ -158,6 +161,7 @@ def _tables(folder: Path) -> Made:
     ]
     variants = _numbered(*({"tolerance_class": f"T{number}"} for number in range(1, len(classes) + 1)))
     variants[-1] |= {"rim_length_mm": 158, "rim_thickness_mm": 3.2}
+    variants += [CUP | {"variant": "pressed", "tolerance_class": "press fit"}]
     options = {}
     for name, table in (("tolerances", rows), ("materials", materials)):
         options[name] = folder / f"{name}.csv"

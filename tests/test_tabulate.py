@@ -7,7 +7,9 @@ import pytest
 
 from flexlash.submission.checks import check_cells
 from flexlash.submission.ledger import Ledger
+from flexlash.submission.reading.delimited import read_table
 from flexlash.submission.reading.read import ErrorCell, RawSheet, Unstored
+from flexlash.submission.tables import tolerance_classes_of
 from flexlash.submission.tabulate import tabulate
 
 HEADERS = ["Variant", "Material", "Torque T [N·m]", "Cylinder length l [mm]", "Wall thickness Δ [mm]"]
@@ -331,6 +333,56 @@ def test_a_value_without_a_header_is_told():
     _, ledger = _tabulate({1: HEADERS, 2: ROW, 3: ["B", *ROW[1:], None, 3.2], 4: ["C", *ROW[1:], 1, 3.4]})
     assert _told(ledger, "info") == [("I509", "F4"), ("I509", "G3")]
     assert ledger.findings[0].message.startswith("Variants!F4: the values of column F have no header")
+
+
+def _shifted(text, name="Variants"):
+    ledger = Ledger("a.csv")
+    table = tabulate(read_table(text.encode(), name), name, ledger)
+    check_cells(table, ledger)
+    return table, ledger
+
+
+SURPLUS = {
+    "an unquoted decimal comma": (",", "A,20Cr2Ni4,800,160,1,6", "F2", "decimal comma"),
+    "two of them": (",", "A,20Cr2Ni4,800,160,5,1,6", "F2", "decimal comma"),
+    "behind blank cells": (",", "A,20Cr2Ni4,800,160,1,,x", "G2", "decimal comma"),
+    "a text as well": (",", "A,20Cr2Ni4,x,160,1,6", "F2", "decimal comma"),
+    "another separator": (";", "A;20Cr2Ni4;800;160;1,6;2", "F2", "separator"),
+}
+
+
+@pytest.mark.parametrize("what", SURPLUS)
+def test_a_row_with_more_cells_than_headers_is_one_error(what):
+    """Of a delimited text's row that is longer than its headers only the first column is used, with one finding."""
+    sign, row, cell, words = SURPLUS[what]
+    table, ledger = _shifted("\n".join([sign.join(HEADERS), row, f"B{row[1:10]}{sign}800{sign}160{sign}1", ""]))
+    assert _told(ledger, "error", "warning") == [("E215", cell)]
+    assert words in next(found.message for found in ledger.findings if found.code == "E215")
+    assert ledger.rows == {2}
+    assert table.frame["variant"].to_list() == ["A", "B"]
+    assert table.frame["torque_Nm"].to_list() == [None, 800]
+
+
+def test_blank_cells_beyond_the_headers_are_no_surplus():
+    """Separators and spaces behind the last column of a delimited text do no harm."""
+    _, ledger = _shifted("\n".join([",".join(HEADERS), "A,20Cr2Ni4,800,160,1.6,, ,", ""]))
+    assert _told(ledger) == []
+
+
+def test_a_value_under_a_blank_header_of_a_delimited_text():
+    """A column without a header before the last header is told as in a workbook, and moves nothing."""
+    _, ledger = _shifted("\n".join([",".join([*HEADERS, "", "Notes"]), "A,20Cr2Ni4,800,160,1.6,5,x", ""]))
+    assert _told(ledger) == [("I509", "F2")]
+
+
+def test_a_shifted_tolerance_spoils_its_class_alone():
+    """A row of Tolerances that is longer than its headers leaves other classes usable."""
+    heads = "tolerance_class,dimension,lower_deviation,upper_deviation"
+    text = f"{heads}\nfine,wall_thickness,-0,02,0,02\nother,wall_thickness,-0.02,0.02\n"
+    table, ledger = _shifted(text, "Tolerances")
+    classes = tolerance_classes_of(table, ledger)
+    assert _told(ledger) == [("E215", "E2")]
+    assert (ledger.classes, ledger.everything, len(classes["other"])) == ({"fine"}, False, 1)
 
 
 def test_extra_columns_of_one_name():

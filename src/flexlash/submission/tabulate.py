@@ -80,9 +80,14 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
     )
     read = {place: columns[key] for key, place in heading.places.items()}
     records: list[dict[str, Any]] = []
-    for number, cells in _data_rows(sheet, heading, next(iter(columns)), ledger):
+    first_key = next(iter(columns))
+    for number, cells in _data_rows(sheet, heading, first_key, ledger):
         record: dict[str, Any] = {"row": number}
+        if surplus := _surplus(sheet, heading, number):
+            _blame_surplus(table, number, surplus, sheet, ledger)
         for place, value in cells.items():
+            if surplus and place != heading.places.get(first_key):
+                continue
             if place in read:
                 cell = _Cell(table=table, column=read[place], row=number, value=value, beside=cells)
                 record[read[place].key] = _typed(cell, ledger)
@@ -94,6 +99,28 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
     types = {key: pl.Float64 if column.is_number else pl.String for key, column in columns.items()}
     table.frame = pl.DataFrame(records, schema={"row": pl.Int64, **types}, orient="row")
     return table
+
+
+def _surplus(sheet: RawSheet, heading: Heading, row: int) -> list[int]:
+    """Return the places of a delimited text's row that lie beyond the last header, as behind an unquoted comma."""
+    if sheet.manner is None:
+        return []
+    last = max(sheet.rows[heading.row])
+    return [place for place, value in sheet.rows[row].items() if place > last and _as_shown(value)]
+
+
+def _blame_surplus(table: Table, row: int, surplus: list[int], sheet: RawSheet, ledger: Ledger) -> None:
+    """Record that a row has more cells than headers, so that nothing tells which value belongs to which."""
+    table.faulty |= {(row, key) for key in columns_of(table.schema)}
+    comma = sheet.manner is not None and sheet.manner.delimiter == ","
+    ledger.add(
+        "E215",
+        sheet=table.sheet,
+        cell=f"{column_letters(surplus[0])}{row}",
+        value=_as_shown(sheet.rows[row][surplus[0]]),
+        detail="an unquoted decimal comma makes two cells of one" if comma else "a separator stands once too often",
+        rows=[row] if table.schema == "Variants" else [],
+    )
 
 
 def _spoil(ledger: Ledger, schema: str, row: int) -> None:
@@ -124,7 +151,7 @@ def _data_rows(
         }
         entered = {place: value for place, value in cells.items() if place in named}
         if len(entered) > 1 or first in entered:
-            for place in cells.keys() - named:
+            for place in cells.keys() - named - {*_surplus(sheet, heading, number)}:
                 nameless.setdefault(place, number)
             yield number, entered
         elif cells:
