@@ -280,6 +280,14 @@ CATALOGUE = _rules(
         "Merged cells hold one value at their top left corner; the others are empty, whatever they seem to show.",
     ),
     (
+        "E215",
+        "more cells than headers",
+        '{place} = "{value}": the row has more cells than there are headers; {detail}.',
+        "Separate the columns by semicolons, or write decimal points; clear the cell if it is stray.",
+        "In a table separated by commas 1,6 without quotes fills two cells and moves all that follow under the wrong "
+        "headers. Nothing of such a row is used but its first column.",
+    ),
+    (
         "E216",
         "percentage instead of a number",
         "{place} {name} shows {value}: {requirement} is required.",
@@ -701,6 +709,14 @@ CATALOGUE = _rules(
         "{place}: this sheet holds the headers of {other} as well, but only the sheet {other} is read.",
         "Move its rows to the sheet {other}, submit it as a file of its own, or delete it.",
         "Excel names the copy of a sheet Variants (2); what stands there takes no part in the calculation.",
+    ),
+    (
+        "W429",
+        "class resembles another",
+        '{place} {name} = "{value}": no variant uses this class.',
+        "Mend the spelling in every row of the class, or delete these rows.",
+        "A dimension without a row in a variant's class is exact, so that a misspelt class takes its tolerance away "
+        "from everybody. An unused class with a name of its own is no fault.",
     ),
     (
         "I501",
