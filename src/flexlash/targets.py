@@ -29,10 +29,10 @@ def template_target(output: Path | None, old: Path | None, *, force: bool) -> Pa
 
     default = old.with_name(f"{old.stem}-v{TEMPLATE_VERSION}.xlsx") if old else Path("flexlash-template.xlsx")
     target = output or default
-    if target.suffix.lower() != ".xlsx":
-        raise ValueError(f"A template is a workbook: -o must end in .xlsx, not {target.name}.")
     if old and target.exists() and old.exists() and target.samefile(old):
         raise ValueError("-o is the old file, which flexlash never overwrites.")
+    if target.suffix.lower() != ".xlsx":
+        raise ValueError(f"A template is a workbook: -o must end in .xlsx, not {target.name}.")
     if target.exists() and not force:
         raise ValueError(f"{target} exists and may be filled; choose another -o, or --force.")
     return target
