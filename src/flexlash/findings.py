@@ -47,10 +47,6 @@ _LONGEST = 400
 """Most characters of a text that a message quotes from outside."""
 
 
-_GROUPED = 10_000
-"""Number from which on digits are grouped by commas; 1,600 could be read with a decimal comma."""
-
-
 def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **facts: Any) -> Finding:
     """Return a finding with the catalogue's words filled in.
 
@@ -106,10 +102,10 @@ def spelled_out(value: float, digits: int = 4) -> str:
     """Return a number rounded to so many digits, without a power of ten unless it is tiny.
 
     >>> spelled_out(80000.0), spelled_out(0.0016), spelled_out(1600.0)
-    ('80,000', '0.0016', '1600')
+    ('80000', '0.0016', '1600')
     """
     rounded = float(f"{value:.{digits}g}")
-    return f"{rounded:,.15g}" if abs(rounded) >= _GROUPED else f"{rounded:.15g}"
+    return f"{rounded:.15g}"
 
 
 def cell_ranges(cells: Sequence[str], most: int = 20) -> str:
