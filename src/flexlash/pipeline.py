@@ -20,6 +20,7 @@ from flexlash.results import result_record, results_frame
 from flexlash.submission.mending.repair import Repair
 from flexlash.submission.reading.gate import kind_of, read_bytes
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.raw import column_number
 from flexlash.submission.reading.read import RawSheet, Reading, Submission, read_table
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.stops import stopped_by
@@ -205,8 +206,7 @@ def _place_order(submission: Submission) -> Callable[[Finding], tuple[int, int, 
     def key(found: Finding) -> tuple[int, int, int, str]:
         letters = found.cell.rstrip("0123456789")
         row = int(found.cell[len(letters) :] or 0)
-        column = sum((ord(letter) - 64) * 26**power for power, letter in enumerate(reversed(letters)))
-        return sheets.get(found.sheet, -1), row, column, found.code
+        return sheets.get(found.sheet, -1), row, column_number(letters), found.code
 
     return key
 

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from xml.parsers import expat
 from xml.sax.saxutils import escape
 
+from flexlash.submission.reading.raw import column_letters, column_number
+
 __all__ = ["CellSpan", "before_end", "cell_spans", "cell_xml", "spliced", "xml_text"]
 
 _NOT_ALLOWED = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -57,9 +59,9 @@ class _Cells:
             self.column += 1
             self.address = attributes.get("r", "")
             if self.address:
-                self.column = _number(self.address.rstrip("0123456789"))
+                self.column = column_number(self.address.rstrip("0123456789"))
             else:
-                self.address = f"{_letters(self.column)}{self.row}"
+                self.address = f"{column_letters(self.column)}{self.row}"
             if self.address in self.wanted:
                 self.begin = self.parser.CurrentByteIndex
                 self.prefix = f"{prefix}:" if prefix else ""
@@ -81,21 +83,6 @@ class _Cells:
                 is_formula=self.is_formula,
             )
             self.begin = -1
-
-
-def _number(letters: str) -> int:
-    number = 0
-    for letter in letters:
-        number = number * 26 + ord(letter) - 64
-    return number
-
-
-def _letters(number: int) -> str:
-    letters = ""
-    while number:
-        number, rest = divmod(number - 1, 26)
-        letters = chr(65 + rest) + letters
-    return letters
 
 
 def spliced(part: bytes, changes: Mapping[tuple[int, int], bytes]) -> bytes:

@@ -18,6 +18,7 @@ __all__ = [
     "Submission",
     "Unstored",
     "column_letters",
+    "column_number",
 ]
 
 ERROR_WORDS = frozenset((
@@ -145,3 +146,15 @@ def column_letters(number: int) -> str:
         number, rest = divmod(number - 1, 26)
         letters = chr(65 + rest) + letters
     return letters
+
+
+def column_number(letters: str) -> int:
+    """Return the number of a column's letters.
+
+    >>> column_number("AB")
+    28
+    """
+    number = 0
+    for letter in letters:
+        number = number * 26 + ord(letter) - 64
+    return number

@@ -10,6 +10,7 @@ import re
 
 from flexlash.submission.reading.elements import MAIN, Elements
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.raw import column_number
 from flexlash.submission.reading.refusal import Refusal
 
 __all__ = ["MAXIMUM_COLUMN", "MAXIMUM_ROW", "Worksheet"]
@@ -31,10 +32,7 @@ def _place(reference: str) -> tuple[int, int]:
     match = _REFERENCE.fullmatch(reference)
     if match is None:
         raise Refusal("E102")
-    column = 0
-    for letter in match[1]:
-        column = column * 26 + ord(letter) - 64
-    row = int(match[2])
+    row, column = int(match[2]), column_number(match[1])
     if row > MAXIMUM_ROW or column > MAXIMUM_COLUMN:
         raise Refusal("E102")
     return row, column

@@ -13,6 +13,7 @@ from flexlash.submission.reading.archive import unpacked
 from flexlash.submission.reading.elements import MAIN, Elements, Listing
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.package import Package, SheetPart, open_package
+from flexlash.submission.reading.raw import column_number
 
 __all__ = ["Leftovers", "Place", "leftovers"]
 
@@ -113,7 +114,4 @@ def _notes(package: Package, sheet: SheetPart, limits: ReadingLimits) -> list[Pl
 def _place(reference: str) -> Place:
     """Return row and column of an address; what is none counts as row and column 0."""
     match = _REFERENCE.fullmatch(reference)
-    column = 0
-    for letter in match[1] if match else "":
-        column = column * 26 + ord(letter) - 64
-    return (int(match[2]), column) if match else (0, 0)
+    return (int(match[2]), column_number(match[1])) if match else (0, 0)
