@@ -161,7 +161,7 @@ def test_limits_on_the_command_line(command, tmp_path):
     for arguments, environment in ((["--limit", "cells=3"], {}), ([], {"FLEXLASH_LIMIT": "cells=3 rows=5"})):
         done = CliRunner().invoke(cli, [command, str(path), *arguments], env=environment)
         assert done.exit_code == 4
-        assert "the number of cells is 4; at most 3 may be read (setting cells)" in " ".join(done.output.split())
+        assert "the number of cells is 4; at most 3 is allowed (setting cells)" in " ".join(done.output.split())
     done = CliRunner().invoke(cli, [command, str(path), "--limit", "cells=4"])
     assert "setting cells" not in done.output
 
