@@ -460,3 +460,27 @@ def test_no_color_is_honoured(table, sound):
     """With NO_COLOR, or into a pipe, no escape codes are printed."""
     done = _flexlash("check", table([{**sound, "torque_Nm": ""}]), NO_COLOR="1")
     assert "\x1b" not in done.stdout + done.stderr
+
+
+def test_where_check_writes(table, sound, tmp_path, main_in, capsys):
+    """A marked copy goes where -o says, a workbook or a folder; -o without anything to write is a usage error."""
+    path = table([{**sound, "torque_Nm": ""}])
+    assert main_in("check", path, "--annotate", "-o", tmp_path / "marked.xlsx") == 4
+    assert (tmp_path / "marked.xlsx").exists()
+    assert main_in("check", path, "--annotate", "-o", tmp_path / "folder") == 4
+    assert (tmp_path / "folder" / "submission-checked.xlsx").exists()
+    capsys.readouterr()
+    assert main_in("check", path, "-o", tmp_path / "x.xlsx") == 2
+    assert "--apply-fixes or --annotate" in capsys.readouterr().err
+    assert main_in("check", path, "--annotate", "-o", tmp_path / "x.csv") == 2
+    assert "must end in .xlsx" in capsys.readouterr().err
+
+
+def test_the_next_command_names_the_mended_file(table, sound, tmp_path, main_in, capsys):
+    """After mending, the closing lines speak of the new file, which is the one to run."""
+    path = table([{**sound, "wall_thickness_mm": "1,6 mm"}])
+    assert main_in("check", path, "--apply-fixes", "-o", tmp_path / "new.csv") == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "1 cell mended:"
+    assert lines[-1] == f"Next: flexlash run {tmp_path / 'new.csv'}"
+    assert f"{tmp_path / 'new.csv'}: 1 of 1 rows ready." in lines

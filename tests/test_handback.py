@@ -10,6 +10,8 @@ from python_calamine import CalamineWorkbook
 from flexlash.cli import cli
 from flexlash.handback import sealed
 from flexlash.pipeline import check, mend, run
+from flexlash.submission.mending.splices import cell_spans, spliced
+from flexlash.submission.reading.archive import packed, unpacked
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
 
@@ -252,3 +254,17 @@ def test_a_percentage_in_a_cell(workbook, sound, tmp_path):
         else:
             assert codes == ["E216", "E216"]
             assert outcome.exit_code == 4
+
+
+def test_a_formula_is_left_to_its_author(workbook, sound, tmp_path):
+    """A cell whose text comes from a formula is told, but not mended: the formula would be lost."""
+    parts = unpacked(workbook([sound]).read_bytes(), ReadingLimits())
+    part = next(name for name in parts if name.endswith("sheet1.xml"))
+    span = cell_spans(parts[part], frozenset({"H5"}))["H5"]
+    cell = b'<c r="H5" s="%s" t="str"><f>"1,6"</f><v>1,6</v></c>' % span.style.encode()
+    parts[part] = spliced(parts[part], {(span.start, span.end): cell})
+    path = tmp_path / "formula.xlsx"
+    path.write_bytes(packed(parts))
+    outcome, repairs = mend(path, tmp_path / "new.xlsx")
+    assert [(found.code, found.cell, found.suggestion) for found in outcome.findings] == [("E202", "H5", "1.6")]
+    assert (repairs, outcome.outputs) == ([], [])
