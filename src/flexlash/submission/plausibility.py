@@ -89,6 +89,21 @@ def find_slips(table: Table, ledger: Ledger) -> None:
             ledger.slips[table.sheet, record["row"], found[0]] = _slip(table, sound, found)
 
 
+def _facts(slip: Slip) -> dict[str, Any]:
+    """Return what a finding says of a slipped cell."""
+    return {
+        "sheet": slip.sheet,
+        "cell": slip.cell,
+        "column": slip.column,
+        "name": columns_of(slip.schema)[slip.column].name,
+        "variant": slip.variant,
+        "value": slip.shown,
+        "entered": slip.entered,
+        "other": slip.times,
+        "detail": slip.beside,
+    }
+
+
 def settle(ledger: Ledger) -> None:
     """Leave each cell its error alone: drop the doubts about its proportions, and record only the other slips."""
     wrong = {(found.sheet, found.cell) for found in ledger.findings if found.level == "error"}
@@ -97,19 +112,7 @@ def settle(ledger: Ledger) -> None:
     ]
     for slip in ledger.slips.values():
         if (slip.sheet, slip.cell) not in wrong:
-            ledger.add(
-                "W420",
-                sheet=slip.sheet,
-                cell=slip.cell,
-                column=slip.column,
-                name=columns_of(slip.schema)[slip.column].name,
-                variant=slip.variant,
-                value=slip.shown,
-                entered=slip.entered,
-                other=slip.times,
-                detail=slip.beside,
-                suggestion=slip.suggestion,
-            )
+            ledger.add("W420", suggestion=slip.suggestion, **_facts(slip))
 
 
 def tell_contradiction(slip: Slip, contradicted: str, ledger: Ledger) -> None:
@@ -117,20 +120,7 @@ def tell_contradiction(slip: Slip, contradicted: str, ledger: Ledger) -> None:
     if any((found.sheet, found.cell) == (slip.sheet, slip.cell) for found in ledger.findings):
         ledger.rows.add(slip.row)
         return
-    ledger.add(
-        "E329",
-        sheet=slip.sheet,
-        cell=slip.cell,
-        column=slip.column,
-        name=columns_of(slip.schema)[slip.column].name,
-        variant=slip.variant,
-        value=slip.shown,
-        entered=slip.entered,
-        other=slip.times,
-        detail=slip.beside,
-        contradicted=contradicted,
-        rows=[slip.row],
-    )
+    ledger.add("E329", contradicted=contradicted, rows=[slip.row], **_facts(slip))
 
 
 def _slip(table: Table, record: Mapping[str, Any], found: tuple[str, float, str]) -> Slip:
