@@ -72,7 +72,7 @@ EDGES = {
     "xlsxwriter": {"submission", "report"},
     "pandera": {"submission"},
     "click": {"cli", "terminal"},
-    "scipy": {"mechanics", "tolerance"},
+    "scipy": {"mechanics", "report", "tolerance"},
     "skfem": {"elasticity"},
     "matplotlib": {"report"},
 }

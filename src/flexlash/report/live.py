@@ -1,0 +1,285 @@
+"""Formulas of the report that carry their own value: written once, evaluated as they are built.
+
+A `Live` is an Excel expression with what it comes to. Arithmetic on Lives gives Lives, so that a sheet's numbers are
+worked out by the very operations that its cells show, and every cell is stored with its result.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from scipy.special import ndtr, ndtri
+from xlsxwriter.utility import xl_rowcol_to_cell
+
+__all__ = [
+    "MISSING",
+    "Live",
+    "Operand",
+    "Value",
+    "call",
+    "cosine",
+    "exponential",
+    "fill",
+    "first_of",
+    "fixed",
+    "greatest",
+    "joined",
+    "least",
+    "live",
+    "logarithm",
+    "maximum_place",
+    "normal_score",
+    "normal_share",
+    "place_of_name",
+    "put",
+    "root",
+    "sine",
+    "total",
+    "when",
+]
+
+Value: TypeAlias = float | str | bool
+Operand: TypeAlias = "Live | float | str"
+
+MISSING = "#N/A"
+"""What a cell shows that has nothing to draw: charts leave a gap."""
+
+_ATOM, _POWER, _PRODUCT, _SUM, _TEXT, _COMPARISON = range(6)
+"""Kinds of expression; one needs parentheses inside a kind that binds closer."""
+
+
+@dataclass(frozen=True)
+class Live:
+    """An Excel expression without its equals sign, what it comes to, and how loosely its last operation binds."""
+
+    text: str
+    value: Value
+    kind: int = _ATOM
+
+    def __add__(self, other: Operand) -> Live:
+        return _both(self, "+", other, _SUM, operator.add)
+
+    def __radd__(self, other: Operand) -> Live:
+        return live(other) + self
+
+    def __sub__(self, other: Operand) -> Live:
+        return _both(self, "-", other, _SUM, operator.sub)
+
+    def __rsub__(self, other: Operand) -> Live:
+        return live(other) - self
+
+    def __mul__(self, other: Operand) -> Live:
+        return _both(self, "*", other, _PRODUCT, operator.mul)
+
+    def __rmul__(self, other: Operand) -> Live:
+        return live(other) * self
+
+    def __truediv__(self, other: Operand) -> Live:
+        return _both(self, "/", other, _PRODUCT, _ratio)
+
+    def __rtruediv__(self, other: Operand) -> Live:
+        return live(other) / self
+
+    def __pow__(self, other: Operand) -> Live:
+        return _both(self, "^", other, _POWER, _power)
+
+    def __neg__(self) -> Live:
+        return live(0.0) - self
+
+    def __lt__(self, other: Operand) -> Live:
+        return _both(self, "<", other, _COMPARISON, operator.lt)
+
+    def __le__(self, other: Operand) -> Live:
+        return _both(self, "<=", other, _COMPARISON, operator.le)
+
+    def __gt__(self, other: Operand) -> Live:
+        return _both(self, ">", other, _COMPARISON, operator.gt)
+
+    def __ge__(self, other: Operand) -> Live:
+        return _both(self, ">=", other, _COMPARISON, operator.ge)
+
+    def equals(self, other: Operand) -> Live:
+        """Return whether both are the same, as Excel compares them: letter case does not count."""
+        return _both(self, "=", other, _COMPARISON, _same)
+
+    @property
+    def number(self) -> float:
+        """The value of an expression that is a number; raise TypeError for others."""
+        if isinstance(self.value, bool) or not isinstance(self.value, int | float):
+            raise TypeError(f"{self.text} is {self.value!r}, not a number")
+        return float(self.value)
+
+
+def live(operand: Operand) -> Live:
+    """Return a constant as an expression.
+
+    >>> live(2.0) * (live(3.0) + 1)
+    Live(text='2*(3+1)', value=8.0, kind=2)
+    """
+    if isinstance(operand, Live):
+        return operand
+    if isinstance(operand, str):
+        doubled = operand.replace('"', '""')
+        return Live(f'"{doubled}"', operand)
+    return Live(_digits(operand), float(operand), _ATOM if operand >= 0 else _SUM)
+
+
+def _digits(number: float) -> str:
+    """Return a number with as many digits as make it what it is, within what Excel reads."""
+    return f"{number:.0f}" if number == int(number) and abs(number) < 1e15 else repr(float(number)).replace("e", "E")  # noqa: PLR2004
+
+
+def _both(one: Live, sign: str, other: Operand, kind: int, work: Callable[[Any, Any], Any]) -> Live:
+    """Return two expressions joined by a sign; errors of either pass through."""
+    second = live(other)
+    failed = next((side.value for side in (one, second) if _is_error(side.value)), None)
+    value = failed if failed is not None else work(one.value, second.value)
+    return Live(f"{_within(one, kind)}{sign}{_within(second, kind - 1)}", value, kind)
+
+
+def _within(side: Live, kind: int) -> str:
+    """Return an expression as it stands inside another kind of expression."""
+    return f"({side.text})" if side.kind > kind else side.text
+
+
+def _is_error(value: Value) -> bool:
+    return isinstance(value, str) and value.startswith("#")
+
+
+def _ratio(one: float, two: float) -> Value:
+    return one / two if two else "#DIV/0!"
+
+
+def _power(one: float, two: float) -> Value:
+    try:
+        found = one**two
+    except (ZeroDivisionError, OverflowError):
+        return "#NUM!"
+    return found if isinstance(found, float) else "#NUM!"
+
+
+def _same(one: Value, two: Value) -> bool:
+    if isinstance(one, str) and isinstance(two, str):
+        return one.casefold() == two.casefold()
+    return type(one) is type(two) and one == two
+
+
+def call(name: str, arguments: Sequence[Operand], value: Value) -> Live:
+    """Return a worksheet function of expressions with the value it has."""
+    return Live(f"{name}({','.join(live(one).text for one in arguments)})", value)
+
+
+def _of_number(name: str, argument: Operand, work: Callable[[float], float]) -> Live:
+    one = live(argument)
+    return call(name, [one], one.value if _is_error(one.value) else work(one.number))
+
+
+def root(argument: Operand) -> Live:
+    """Return a square root."""
+    return _of_number("SQRT", argument, math.sqrt)
+
+
+def sine(argument: Operand) -> Live:
+    """Return a sine."""
+    return _of_number("SIN", argument, math.sin)
+
+
+def cosine(argument: Operand) -> Live:
+    """Return a cosine."""
+    return _of_number("COS", argument, math.cos)
+
+
+def exponential(argument: Operand) -> Live:
+    """Return a power of e."""
+    return _of_number("EXP", argument, math.exp)
+
+
+def logarithm(argument: Operand) -> Live:
+    """Return a natural logarithm."""
+    return _of_number("LN", argument, math.log)
+
+
+def normal_share(score: Operand) -> Live:
+    """Return the share of a standard normal below a score."""
+    one = live(score)
+    value = one.value if _is_error(one.value) else float(ndtr(one.number))
+    return call("_xlfn.NORM.S.DIST", [one, Live("TRUE", value=True)], value)
+
+
+def normal_score(share: Operand) -> Live:
+    """Return the score that this share of a standard normal stays below."""
+    return _of_number("_xlfn.NORM.S.INV", share, lambda one: float(ndtri(one)))
+
+
+def least(*operands: Operand) -> Live:
+    """Return the least of numbers."""
+    return call("MIN", operands, min(live(one).number for one in operands))
+
+
+def greatest(*operands: Operand) -> Live:
+    """Return the greatest of numbers."""
+    return call("MAX", operands, max(live(one).number for one in operands))
+
+
+def joined(*texts: Live | str) -> Live:
+    """Return texts one after the other; `fixed` makes a text of a number."""
+    parts = [live(one) for one in texts]
+    failed = next((one.value for one in parts if _is_error(one.value)), None)
+    value = "".join(str(one.value) for one in parts) if failed is None else failed
+    return Live("&".join(_within(one, _SUM) for one in parts), value, _TEXT)
+
+
+def fixed(number: Operand, decimals: int) -> Live:
+    """Return a number as a text: FIXED, since the letters of TEXT differ between languages of Excel."""
+    one = live(number)
+    value = one.value if _is_error(one.value) else f"{one.number:.{decimals}f}"
+    return call("FIXED", [one, float(decimals), Live("TRUE", value=True)], value)
+
+
+def when(condition: Live, then: Operand, otherwise: Operand) -> Live:
+    """Return one of two expressions."""
+    one, two = live(then), live(otherwise)
+    value = condition.value if _is_error(condition.value) else (one if condition.value else two).value
+    return call("IF", [condition, one, two], value)
+
+
+def first_of(wanted: Live, otherwise: Operand) -> Live:
+    """Return an expression, or another one where it is an error."""
+    two = live(otherwise)
+    return call("IFERROR", [wanted, two], two.value if _is_error(wanted.value) else wanted.value)
+
+
+def total(cells: str, values: Sequence[float]) -> Live:
+    """Return the sum of a range that holds these values."""
+    return Live(f"SUM({cells})", math.fsum(values))
+
+
+def maximum_place(cells: str, values: Sequence[float]) -> Live:
+    """Return the place, from 1, of the greatest number of a range that holds these values."""
+    return Live(f"MATCH(MAX({cells}),{cells},0)", float(1 + max(range(len(values)), key=lambda place: values[place])))
+
+
+def place_of_name(name: Live, names: str, all_names: Sequence[str]) -> Live:
+    """Return the place, from 1, of a name in a range: MATCH alone ignores letter case and takes * and ? for any."""
+    value = float(all_names.index(str(name.value)) + 1)
+    return Live(f'MATCH(TRUE,INDEX(EXACT({names},{name.text}&""),0),0)', value)
+
+
+def put(sheet: Any, row: int, column: int, what: Live, style: Any) -> Live:
+    """Write an expression into a cell with its value and return a reference to that cell."""
+    value = what.value
+    sheet.write_formula(row, column, f"={what.text}", style, float(value) if isinstance(value, bool) else value)
+    return Live(xl_rowcol_to_cell(row, column, row_abs=True, col_abs=True), value)
+
+
+def fill(sheet: Any, row: int, column: int, entry: float | str, style: Any) -> Live:
+    """Write what a reader may change, or a constant, into a cell and return a reference to it; blank for no text."""
+    if isinstance(entry, str):
+        sheet.write_string(row, column, entry, style) if entry else sheet.write_blank(row, column, None, style)
+    else:
+        sheet.write_number(row, column, entry, style)
+    return Live(xl_rowcol_to_cell(row, column, row_abs=True, col_abs=True), entry)

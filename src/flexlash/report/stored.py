@@ -1,0 +1,73 @@
+"""Data sheets behind the sheets that move: one row per drawn variant, looked up by its place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from xlsxwriter.utility import xl_col_to_name
+
+from flexlash.report.live import Live
+from flexlash.report.styles import Book
+
+__all__ = ["FIRST_ROW", "Stored"]
+
+FIRST_ROW = 2
+"""Row, from 0, of the first variant; above it stand a note and the headings."""
+
+Row = Mapping[str, "str | float | None"]
+
+
+class Stored:
+    """A data sheet whose rows are the drawn variants, worst first, and whose columns are found by heading.
+
+    Each row holds the headings in the same order; a blank cell is None.
+    """
+
+    def __init__(self, name: str, rows: Sequence[Row]) -> None:
+        self.name = name
+        self.rows = rows
+        self.headings = list(rows[0]) if rows else []
+        self._places = {heading: place for place, heading in enumerate(self.headings)}
+
+    def place(self, heading: str) -> int:
+        """Return the place of a column, from 0."""
+        return self._places[heading]
+
+    def cells(self, heading: str) -> str:
+        """Return the range of a column, the variants alone."""
+        letter = xl_col_to_name(self._places[heading])
+        return f"{self.name}!${letter}${FIRST_ROW + 1}:${letter}${FIRST_ROW + len(self.rows)}"
+
+    def series(self, heading: str, count: int | None = None) -> list[Any]:
+        """Return a column's range as charts want it, of all variants or the first few."""
+        place = self._places[heading]
+        last = FIRST_ROW + (len(self.rows) if count is None else count) - 1
+        return [self.name, FIRST_ROW, place, last, place]
+
+    def pick(self, place: Live, heading: str) -> Live:
+        """Return what a column holds for the variant at a place, from 1; a blank is an empty text."""
+        value = self.rows[int(place.number) - 1][heading]
+        cells = self.cells(heading)
+        if any(row[heading] is None for row in self.rows):
+            blank = f'IF(INDEX({cells},{place.text})="","",INDEX({cells},{place.text}))'
+            return Live(blank, "" if value is None else value)
+        return Live(f"INDEX({cells},{place.text})", "" if value is None else value)
+
+    def write(self, book: Book, note: str) -> None:
+        """Write the sheet."""
+        sheet = book.sheet(self.name)
+        sheet.write_string(0, 0, note, book.format("quiet"))
+        for place, heading in enumerate(self.headings):
+            sheet.write_string(1, place, heading, book.format("header"))
+        sheet.set_column(0, 1, 24)
+        text, number = book.format("text"), book.format("text", "general")
+        for row, values in enumerate(self.rows, start=FIRST_ROW):
+            for place, value in enumerate(values.values()):
+                if isinstance(value, str):
+                    sheet.write_string(row, place, value, text)
+                elif value is not None:
+                    sheet.write_number(row, place, value, number)
+        sheet.freeze_panes(FIRST_ROW, 1)
+        sheet.repeat_rows(0, 1)
+        sheet.print_area(0, 0, max(FIRST_ROW, FIRST_ROW + len(self.rows) - 1), min(11, max(len(self.headings) - 1, 0)))
