@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-__all__ = ["convert", "needs_libreoffice"]
+__all__ = ["convert", "convert_all", "needs_libreoffice"]
 
 needs_libreoffice = pytest.mark.skipif(
     not all(map(shutil.which, ("soffice", "pdfinfo", "pdftotext"))),
@@ -26,6 +26,11 @@ _PROFILE = """<?xml version="1.0" encoding="UTF-8"?>
 
 def convert(path: Path, ending: str, folder: Path) -> Path:
     """Return the recalculated workbook in another form, written into a folder of its own."""
+    return convert_all([path], ending, folder)[0]
+
+
+def convert_all(paths: list[Path], ending: str, folder: Path) -> list[Path]:
+    """Return the recalculated workbooks in another form; starting takes longer than converting one more."""
     profile = folder / "profile"
     (profile / "user").mkdir(parents=True, exist_ok=True)
     (profile / "user" / "registrymodifications.xcu").write_text(_PROFILE, encoding="utf-8")
@@ -38,7 +43,7 @@ def convert(path: Path, ending: str, folder: Path) -> Path:
         ending,
         "--outdir",
         str(target),
-        str(path),
+        *map(str, paths),
     ]
-    subprocess.run(command, check=True, capture_output=True, timeout=180)
-    return target / f"{path.stem}.{ending}"
+    subprocess.run(command, check=True, capture_output=True, timeout=180 + 10 * len(paths))
+    return [target / f"{path.stem}.{ending}" for path in paths]

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.special import ndtri
+from scipy.special import ndtr
 
 from b3_160 import CUP, NOMINAL
 from flexlash.mechanics import flexspline
+from flexlash.tolerance.curves import CURVE_SCORES, curve_of
 from flexlash.tolerance.limits import Limits
 from flexlash.tolerance.spreading import variations_of
-from flexlash.tolerance.variation import CURVE_PROBABILITIES, PERCENTILES, Draws
+from flexlash.tolerance.variation import PERCENTILES, Draws
 
 thorough = settings(deadline=None, max_examples=30, derandomize=True)
 
@@ -72,7 +73,8 @@ def test_coverage_interval_is_symmetric_in_probability(method, coverage):
     """The coverage interval leaves the same share of units below and above."""
     found = spread(coverage=coverage, method=method)
     ends = [found.statistics["coverage_low"], found.statistics["coverage_high"]]
-    order = np.interp(ends, found.curve, CURVE_PROBABILITIES)
+    curve = curve_of(((CUP, NOMINAL, LIMITS, None), found), Draws(method=method, samples=None, seed=0))
+    order = ndtr(np.interp(ends, curve.outputs, CURVE_SCORES))
     assert order == pytest.approx([(1 - coverage) / 2, (1 + coverage) / 2], abs=0.003)
     if coverage == 0.95:
         assert ends == [found.statistics["p2_5"], found.statistics["p97_5"]]
@@ -150,35 +152,6 @@ def test_shares_are_those_of_the_first_order_budget():
     assert found.totals == pytest.approx(budget, abs=2e-3)
 
 
-@each_method
-def test_curve_and_histogram(method):
-    """The curve rises over its probabilities; the histogram's heights are shares of all units."""
-    found = spread(method=method)
-    assert found.curve.shape == (len(CURVE_PROBABILITIES),)
-    assert (np.diff(found.curve) > 0).all()
-    assert list(CURVE_PROBABILITIES) == sorted(CURVE_PROBABILITIES)
-    for name, probability in PERCENTILES.items():
-        place = CURVE_PROBABILITIES.index(probability)
-        assert found.curve[place] == pytest.approx(found.statistics[name], rel=1e-12)
-    assert found.edges.shape == (41,)
-    assert found.heights.shape == (40,)
-    assert (found.heights >= 0).all()
-    assert found.heights.sum() == pytest.approx(0.999, abs=3e-4)
-
-
-def test_curve_and_histogram_of_lines_are_the_model_itself():
-    """The curve and histogram of one scattering dimension are, to 1e-4, those of its known distribution."""
-    limits = {"youngs_modulus": LIMITS["youngs_modulus"]}
-    found = spread(limits)
-    middle, sd = 211e9, 8e9 / 6
-    exact = [float(CUP(NOMINAL | {"youngs_modulus": middle - sd * ndtri(p)})) for p in CURVE_PROBABILITIES]
-    assert np.abs(found.curve - exact).max() <= 1e-4 * found.statistics["sd"]
-    cumulative = 0.0005 + np.cumsum(found.heights)
-    for edge, share in zip(found.edges[1:], cumulative, strict=True):
-        modulus = EXACT * middle / edge
-        assert share == pytest.approx(0.5 * math.erfc((modulus - middle) / sd / math.sqrt(2)), abs=1e-4)
-
-
 def test_without_a_limit_there_is_no_probability():
     """Without a backlash limit there is neither probability nor index."""
     assert not {key for key in spread().statistics if key.startswith(("probability", "ppk"))}
@@ -243,7 +216,6 @@ def test_without_tolerances_everything_is_exact(method):
         assert found.statistics[key] == 0
     assert found.words["first_order_valid"] == "yes"
     assert found.shares == found.totals == found.swings == {}
-    assert found.curve is found.edges is found.heights is None
     assert "probability_over_limit" not in found.statistics
 
 
@@ -314,11 +286,10 @@ def test_seed_moves_the_statistics_by_their_standard_errors(method):
 
 
 def test_the_same_seed_gives_the_same_bits():
-    """Drawn again from the same seed, every statistic has the same bits, and so has the curve."""
+    """Drawn again from the same seed, every statistic has the same bits."""
     for method in METHODS:
         first, second = (spread(method=method, samples=2**10, limit=1.09e-3) for _ in range(2))
         assert first.statistics == second.statistics
-        assert (first.curve == second.curve).all()
 
 
 @thorough

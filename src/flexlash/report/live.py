@@ -6,8 +6,10 @@ worked out by the very operations that its cells show, and every cell is stored 
 
 from __future__ import annotations
 
+import bisect
 import math
 import operator
+import statistics
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -22,6 +24,8 @@ __all__ = [
     "Value",
     "call",
     "cosine",
+    "count_up_to",
+    "entry_of",
     "exponential",
     "fill",
     "first_of",
@@ -31,14 +35,13 @@ __all__ = [
     "least",
     "live",
     "logarithm",
-    "maximum_place",
+    "middle",
     "normal_score",
     "normal_share",
     "place_of_name",
     "put",
     "root",
     "sine",
-    "total",
     "when",
 ]
 
@@ -104,7 +107,7 @@ class Live:
 
     def equals(self, other: Operand) -> Live:
         """Return whether both are the same, as Excel compares them: letter case does not count."""
-        return _both(self, "=", other, _COMPARISON, _same)
+        return _both(self, "=", other, _COMPARISON, operator.eq)
 
     @property
     def number(self) -> float:
@@ -134,11 +137,23 @@ def _digits(number: float) -> str:
 
 
 def _both(one: Live, sign: str, other: Operand, kind: int, work: Callable[[Any, Any], Any]) -> Live:
-    """Return two expressions joined by a sign; errors of either pass through."""
+    """Return two expressions joined by a sign; errors of either pass through, and a text is no number."""
     second = live(other)
-    failed = next((side.value for side in (one, second) if _is_error(side.value)), None)
-    value = failed if failed is not None else work(one.value, second.value)
+    values = one.value, second.value
+    if failed := [value for value in values if _is_error(value)]:
+        value = failed[0]
+    elif kind == _COMPARISON:
+        value = work(*map(_rank, values))
+    else:
+        value = "#VALUE!" if any(isinstance(value, str) for value in values) else work(*values)
     return Live(f"{_within(one, kind)}{sign}{_within(second, kind - 1)}", value, kind)
+
+
+def _rank(value: Value) -> tuple[int, Value]:
+    """Return what Excel compares: any text is more than any number, letter case does not count."""
+    if isinstance(value, str):
+        return 1, value.casefold()
+    return (2 if isinstance(value, bool) else 0), value
 
 
 def _within(side: Live, kind: int) -> str:
@@ -162,12 +177,6 @@ def _power(one: float, two: float) -> Value:
     return found if isinstance(found, float) else "#NUM!"
 
 
-def _same(one: Value, two: Value) -> bool:
-    if isinstance(one, str) and isinstance(two, str):
-        return one.casefold() == two.casefold()
-    return type(one) is type(two) and one == two
-
-
 def call(name: str, arguments: Sequence[Operand], value: Value) -> Live:
     """Return a worksheet function of expressions with the value it has."""
     return Live(f"{name}({','.join(live(one).text for one in arguments)})", value)
@@ -175,7 +184,9 @@ def call(name: str, arguments: Sequence[Operand], value: Value) -> Live:
 
 def _of_number(name: str, argument: Operand, work: Callable[[float], float]) -> Live:
     one = live(argument)
-    return call(name, [one], one.value if _is_error(one.value) else work(one.number))
+    if isinstance(one.value, str):
+        return call(name, [one], one.value if _is_error(one.value) else "#VALUE!")
+    return call(name, [one], work(one.number))
 
 
 def root(argument: Operand) -> Live:
@@ -205,9 +216,8 @@ def logarithm(argument: Operand) -> Live:
 
 def normal_share(score: Operand) -> Live:
     """Return the share of a standard normal below a score."""
-    one = live(score)
-    value = one.value if _is_error(one.value) else float(ndtr(one.number))
-    return call("_xlfn.NORM.S.DIST", [one, Live("TRUE", value=True)], value)
+    one = _of_number("", score, lambda number: float(ndtr(number)))
+    return call("_xlfn.NORM.S.DIST", [score, Live("TRUE", value=True)], one.value)
 
 
 def normal_score(share: Operand) -> Live:
@@ -217,12 +227,25 @@ def normal_score(share: Operand) -> Live:
 
 def least(*operands: Operand) -> Live:
     """Return the least of numbers."""
-    return call("MIN", operands, min(live(one).number for one in operands))
+    return _of_numbers("MIN", operands, min)
 
 
 def greatest(*operands: Operand) -> Live:
     """Return the greatest of numbers."""
-    return call("MAX", operands, max(live(one).number for one in operands))
+    return _of_numbers("MAX", operands, max)
+
+
+def middle(*operands: Operand) -> Live:
+    """Return the middle one of an odd number of numbers."""
+    return _of_numbers("MEDIAN", operands, statistics.median)
+
+
+def _of_numbers(name: str, operands: Sequence[Operand], work: Callable[[list[Any]], float]) -> Live:
+    values = [live(one).value for one in operands]
+    texts = [value for value in values if isinstance(value, str)]
+    if texts:
+        return call(name, operands, next(filter(_is_error, texts), "#VALUE!"))
+    return call(name, operands, float(work(values)))
 
 
 def joined(*texts: Live | str) -> Live:
@@ -253,14 +276,15 @@ def first_of(wanted: Live, otherwise: Operand) -> Live:
     return call("IFERROR", [wanted, two], two.value if _is_error(wanted.value) else wanted.value)
 
 
-def total(cells: str, values: Sequence[float]) -> Live:
-    """Return the sum of a range that holds these values."""
-    return Live(f"SUM({cells})", math.fsum(values))
+def entry_of(cells: str, place: Live, values: Sequence[Value]) -> Live:
+    """Return the entry at a place, from 1, of a range that holds these values."""
+    return Live(f"INDEX({cells},{place.text})", values[int(place.number) - 1])
 
 
-def maximum_place(cells: str, values: Sequence[float]) -> Live:
-    """Return the place, from 1, of the greatest number of a range that holds these values."""
-    return Live(f"MATCH(MAX({cells}),{cells},0)", float(1 + max(range(len(values)), key=lambda place: values[place])))
+def count_up_to(wanted: Live, cells: str, values: Sequence[float]) -> Live:
+    """Return how many numbers of a rising range, which holds these values, do not exceed the wanted one."""
+    count = float(bisect.bisect_right(values, wanted.number))
+    return Live(f"IFERROR(MATCH({wanted.text},{cells},1),0)", count)
 
 
 def place_of_name(name: Live, names: str, all_names: Sequence[str]) -> Live:

@@ -7,7 +7,7 @@ from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
 
-from flexlash.report.live import Live
+from flexlash.report.live import Live, when
 from flexlash.report.styles import Book
 
 __all__ = ["FIRST_ROW", "Stored"]
@@ -45,14 +45,14 @@ class Stored:
         last = FIRST_ROW + (len(self.rows) if count is None else count) - 1
         return [self.name, FIRST_ROW, place, last, place]
 
-    def pick(self, place: Live, heading: str) -> Live:
-        """Return what a column holds for the variant at a place, from 1; a blank is an empty text."""
+    def pick(self, place: Live, heading: str, times: Live | None = None) -> Live:
+        """Return what a column holds for the variant at a place, from 1, times a factor; a blank is an empty text."""
         value = self.rows[int(place.number) - 1][heading]
-        cells = self.cells(heading)
-        if any(row[heading] is None for row in self.rows):
-            blank = f'IF(INDEX({cells},{place.text})="","",INDEX({cells},{place.text}))'
-            return Live(blank, "" if value is None else value)
-        return Live(f"INDEX({cells},{place.text})", "" if value is None else value)
+        found = Live(f"INDEX({self.cells(heading)},{place.text})", "" if value is None else value)
+        scaled = found if times is None else found * times
+        if all(row[heading] is not None for row in self.rows):
+            return scaled
+        return when(found.equals(""), "", scaled)
 
     def write(self, book: Book, note: str) -> None:
         """Write the sheet."""

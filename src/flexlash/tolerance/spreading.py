@@ -21,7 +21,7 @@ from flexlash.tolerance.statistics import line_variations, point_variation
 from flexlash.tolerance.variation import PERCENTILES, Draws, Task, Variation
 from flexlash.workers import mapped
 
-__all__ = ["spread_rows", "variations_of"]
+__all__ = ["RowsAlike", "spread_rows", "variations_of"]
 
 WORTH_A_WORKER = 1000
 """Rows per worker below which starting it costs more than it saves."""
@@ -60,7 +60,7 @@ def spread_batch(tasks: Sequence[Task], draws: Draws) -> list[Variation]:
 
 def variations_of(tasks: Sequence[Task], draws: Draws) -> list[Variation]:
     """Return the spreads of rows that have the same model, dimensions and shapes of distribution."""
-    rows = _Alike(tasks)
+    rows = RowsAlike(tasks)
     if not rows.limits:
         values = np.broadcast_to(rows.backlash(rows.centre), len(tasks))
         return [_exact(float(value), limit) for value, limit in zip(values, rows.over, strict=True)]
@@ -82,7 +82,7 @@ def variations_of(tasks: Sequence[Task], draws: Draws) -> list[Variation]:
     return rows.beside([found[row] for row in notes], draws.coverage)
 
 
-class _Alike:
+class RowsAlike:
     """Rows alike, by dimension: `centre` (rows,) at mid-limits, `limits` of the dimensions that scatter."""
 
     def __init__(self, tasks: Sequence[Task]) -> None:

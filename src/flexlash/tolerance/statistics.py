@@ -9,12 +9,11 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.special import ndtr, ndtri
 
 from flexlash.arrays import Array
 from flexlash.tolerance.capability import ppk_normal, ppk_upper
 from flexlash.tolerance.course import Inputs, RowModel, Rows, course_of
-from flexlash.tolerance.crossings import crossing_at, moments_of, normal_density, quantiles_of
+from flexlash.tolerance.crossings import crossing_at, moments_of, quantiles_of
 from flexlash.tolerance.line_nets import line_net, mirrored_net
 from flexlash.tolerance.line_spread import (
     SETTLED,
@@ -25,17 +24,11 @@ from flexlash.tolerance.line_spread import (
     unsettled,
 )
 from flexlash.tolerance.lines import FAULTS, NODES, STEPS, Lines
-from flexlash.tolerance.quantile_curve import QuantileCurve
 from flexlash.tolerance.shares import variance_shares
 from flexlash.tolerance.spread import Spread
-from flexlash.tolerance.variation import CURVE_PROBABILITIES, HISTOGRAM_BINS, PERCENTILES, Draws, Variation
+from flexlash.tolerance.variation import PERCENTILES, Draws, Variation
 
 __all__ = ["line_variations", "point_variation"]
-
-_FURTHER = (0.0005, 0.2119, 0.7881, 0.9995)
-"""Knots of the quantile curve between and beyond the percentiles printed."""
-
-_HISTOGRAM_CUT = 0.0005
 
 _BLOCK = 1 << 16
 """Numbers of an array that leave room in the cache for a few others."""
@@ -47,7 +40,7 @@ class _Levels:
     def __init__(self, coverage: float) -> None:
         self.named = PERCENTILES | {"coverage_low": (1 - coverage) / 2, "coverage_high": (1 + coverage) / 2}
         # Rounded, since (1 − 0.95)/2 is not quite 0.025.
-        shares = list(dict.fromkeys(round(share, 12) for share in (*SETTLED, *self.named.values(), *_FURTHER)))
+        shares = list(dict.fromkeys(round(share, 12) for share in (*SETTLED, *self.named.values())))
         self.probabilities = np.array(shares)
         self.places = {name: shares.index(round(share, 12)) for name, share in self.named.items()}
 
@@ -144,7 +137,6 @@ class _Reading:
         moments = moments_of(self._lines).widened(self._margin)
         net = mirrored_net(draws.seed, len(inputs.names), self._lines.lines)
         first, total = variance_shares(model, inputs, net, moments.sd[rows] ** 2)
-        curve, edges, heights = self._curves(rows)
         numbers = self._quantile_numbers() | self._over_numbers()
         numbers |= {
             "mean": moments.mean,
@@ -162,9 +154,6 @@ class _Reading:
                 words=_words("line", notes[rows[place]]),
                 shares=dict(zip(inputs.names, first[:, place].tolist(), strict=True)),
                 totals=dict(zip(inputs.names, total[:, place].tolist(), strict=True)),
-                curve=curve[:, place].copy(),
-                edges=edges[:, place].copy(),
-                heights=heights[:, place].copy(),
             )
             for place, values in enumerate(zip(*columns.values(), strict=True))
         ]
@@ -187,22 +176,6 @@ class _Reading:
             f"probability_over_limit{end}": np.where(self._limited, values, np.nan) for end, values in named.items()
         }
 
-    def _curves(self, rows: Rows) -> tuple[Array, Array, Array]:
-        """Return curve, bin edges and bin heights of some rows, (k, rows) each."""
-        order = np.argsort(self._levels.probabilities)
-        scores = ndtri(self._levels.probabilities[order])
-        density = self._quantiles.density[order][:, rows]
-        knots = QuantileCurve(
-            scores=scores,
-            outputs=self._quantiles.output[order][:, rows],
-            rises=normal_density(scores)[:, None] / np.maximum(density, np.finfo(float).tiny),
-        )
-        first, last = knots.outputs_at(ndtri(np.array([_HISTOGRAM_CUT, 1 - _HISTOGRAM_CUT])))
-        steps = np.linspace(0, 1, HISTOGRAM_BINS + 1)[:, None]
-        edges = first + (last - first) * steps
-        heights = np.diff(ndtr(knots.scores_at(edges)), axis=0)
-        return knots.outputs_at(ndtri(np.array(CURVE_PROBABILITIES))), edges, heights
-
 
 def point_variation(spread: Spread, limit: float | None, draws: Draws, note: str = "") -> Variation:
     """Return the statistics of one row's spread."""
@@ -221,15 +194,11 @@ def point_variation(spread: Spread, limit: float | None, draws: Draws, note: str
             "probability_over_limit_low": low,
             "probability_over_limit_high": high,
         }
-    edges, heights = spread.histogram(HISTOGRAM_BINS)
     return Variation(
         statistics=_finished(numbers, spread.size),
         words=_words(spread.method, note),
         shares=spread.shares,
         totals=spread.total_shares,
-        curve=spread.quantile(np.array(CURVE_PROBABILITIES)),
-        edges=edges,
-        heights=heights,
     )
 
 

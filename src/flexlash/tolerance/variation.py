@@ -13,7 +13,7 @@ from flexlash.tolerance.limits import Limits
 from flexlash.tolerance.sampling import UnitPoints
 from flexlash.tolerance.spread import Method
 
-__all__ = ["CURVE_PROBABILITIES", "HISTOGRAM_BINS", "PERCENTILES", "Draws", "Task", "Variation"]
+__all__ = ["PERCENTILES", "Draws", "Task", "Variation"]
 
 PERCENTILES = {
     "p0_135": 0.00135,
@@ -24,13 +24,6 @@ PERCENTILES = {
     "p97_5": 0.975,
     "p99_865": 0.99865,
 }
-CURVE_PROBABILITIES = (
-    0.00135, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5,
-    0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 0.975, 0.99, 0.995, 0.9975, 0.99865,
-)  # fmt: skip
-"""Where the cumulative curve of the report is stored."""
-
-HISTOGRAM_BINS = 40
 
 Task: TypeAlias = tuple[
     Callable[[Mapping[str, Array | float]], Array], Mapping[str, float], Mapping[str, Limits], float | None
@@ -69,12 +62,11 @@ class Draws:
 
 @dataclass(frozen=True, kw_only=True)
 class Variation:
-    """Spread of one variant [SI]: statistics by result key without unit, shares by dimension, two curves.
+    """Spread of one variant [SI]: statistics by result key without unit, shares by dimension.
 
     `words` are what is said in words: by which method, with which note. `totals` are the total indices beside the
-    first-order `shares`. `curve` are the values at `CURVE_PROBABILITIES`; `edges` (bins + 1,) and `heights` (bins,) a
-    histogram whose heights are shares of all units; the three are None when nothing scatters. `swings` is the
-    backlash with one dimension at its lower and upper limit and the others in the middle of theirs.
+    first-order `shares`. `swings` is the backlash with one dimension at its lower and upper limit and the others in the
+    middle of theirs.
     """
 
     statistics: dict[str, float | None]
@@ -82,6 +74,3 @@ class Variation:
     shares: dict[str, float] = field(default_factory=dict)
     totals: dict[str, float] = field(default_factory=dict)
     swings: dict[str, tuple[float, float]] = field(default_factory=dict)
-    curve: Array | None = None
-    edges: Array | None = None
-    heights: Array | None = None

@@ -1,0 +1,98 @@
+"""The data sheet Curves: what the charts and the Explorer look up, one row per drawn variant, angles in arcmin."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from flexlash.findings import shown
+from flexlash.report.selection import Drawn
+from flexlash.report.stored import Stored
+from flexlash.summary import dimension_words, share_words
+from flexlash.tolerance.curves import CURVE_SCORES, HISTOGRAM_BINS
+from flexlash.units import ARCMIN
+
+__all__ = ["CAUSES", "CURVES_NOTE", "SEGMENTS", "error_heading", "score_heading", "stored_curves"]
+
+CURVES_NOTE = (
+    "Stored distributions behind the charts [arcmin]. z: percentile at this normal score, computed, not interpolated; "
+    "e: standard error of that score; bins and causes are shares of all units and of the variance."
+)
+CAUSES = 8
+"""Most dimensions of a tornado."""
+
+SEGMENTS = {
+    "rim": "Tooth rim",
+    "wall": "Wall",
+    "junction_fillet": "Junction fillet",
+    "disk_body": "Disk",
+    "hub_fillet": "Hub fillet",
+}
+_LABEL = 24
+"""Most characters of a name under a chart."""
+
+_ERROR_DIGITS = 4
+_RESULTS = {
+    "Mean": "mean_arcmin",
+    "sd": "sd_arcmin",
+    "P97.5": "p97_5_arcmin",
+    "P99.865": "p99_865_arcmin",
+    "Nominal": "backlash_arcmin",
+    "Worst case low": "worst_case_low_arcmin",
+    "Worst case high": "worst_case_high_arcmin",
+    "Cylinder only": "cylinder_only_backlash_arcmin",
+}
+
+
+def score_heading(score: float) -> str:
+    """Return the heading of the percentile at a normal score."""
+    return f"z {score:+.1f}"
+
+
+def error_heading(score: float) -> str:
+    """Return the heading of the standard error of the score of a percentile."""
+    return f"e {score:+.1f}"
+
+
+def stored_curves(drawn: Sequence[Drawn]) -> Stored:
+    """Return the data sheet of the drawn variants, worst first."""
+    return Stored("Curves", [dict(_entries(one)) for one in drawn])
+
+
+def _entries(one: Drawn) -> Iterator[tuple[str, str | float | None]]:
+    """Yield a variant's headings and values in order."""
+    row, curve = one.row, one.curve
+    yield "Variant", row["variant"]
+    yield "Label", shown(row["variant"], longest=_LABEL)
+    yield "Over limit", None if row["backlash_limit_arcmin"] is None else share_words(row)
+    yield "P2.5", row["p2_5_arcmin"]
+    yield "P2.5 to P97.5", row["p97_5_arcmin"] - row["p2_5_arcmin"]
+    yield "P50", row["p50_arcmin"]
+    yield "Limit", row["backlash_limit_arcmin"]
+    yield from ((heading, row[key]) for heading, key in _RESULTS.items())
+    yield "Rarest share", curve.rarest
+    outputs = (curve.outputs / ARCMIN).tolist()
+    yield from ((score_heading(score), value) for score, value in zip(CURVE_SCORES, outputs, strict=True))
+    errors = (float(f"{error:.{_ERROR_DIGITS - 1}e}") for error in curve.score_errors.tolist())
+    yield from ((error_heading(score), error) for score, error in zip(CURVE_SCORES, errors, strict=True))
+    yield "Bin start", float(curve.edges[0]) / ARCMIN
+    yield "Bin width", float(curve.edges[-1] - curve.edges[0]) / HISTOGRAM_BINS / ARCMIN
+    yield from ((f"Bin {number}", height) for number, height in enumerate(curve.heights.tolist(), start=1))
+    yield from _causes(one)
+    for segment, name in SEGMENTS.items():
+        angle = one.computed.nominal.get(f"{segment}_windup")
+        yield name, 2 * angle / ARCMIN if isinstance(angle, float) else 0.0
+
+
+def _causes(one: Drawn) -> Iterator[tuple[str, str | float | None]]:
+    """Yield the dimensions that move the backlash most, by their share of the variance, and how far each does."""
+    variation = one.computed.variation
+    ranked: list[tuple[str, float]] = []
+    if variation is not None:
+        ranked = sorted(variation.shares.items(), key=lambda item: (-item[1], item[0]))[:CAUSES]
+    for number in range(1, CAUSES + 1):
+        name, share = ranked[number - 1] if number <= len(ranked) else ("", None)
+        low, high = variation.swings[name] if variation is not None and name else (None, None)
+        yield f"Cause {number}", dimension_words(name) if name else None
+        yield f"Share {number}", share
+        yield f"Low {number}", None if low is None else low / ARCMIN
+        yield f"High {number}", None if high is None else high / ARCMIN

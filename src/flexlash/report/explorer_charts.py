@@ -1,0 +1,189 @@
+"""The Explorer's charts: density, cumulative curve, tornado, segments, each drawn from cells that follow the choice."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flexlash.report.curves_sheet import CAUSES, SEGMENTS
+from flexlash.report.explorer_choice import Choice
+from flexlash.report.explorer_working import COLUMN, CURVE_ROW, Working
+from flexlash.report.live import Live, fixed, greatest, joined, least, live, put, when
+from flexlash.report.styles import GRID, PALETTE, Book
+from flexlash.tolerance.curves import CURVE_SCORES, HISTOGRAM_BINS
+
+__all__ = ["write_charts"]
+
+_BINS = COLUMN + 11
+_BAR_ROW = CURVE_ROW
+_CAUSE_ROW = _BAR_ROW + HISTOGRAM_BINS + 2
+_SEGMENT_ROW = _CAUSE_ROW + CAUSES + 2
+_TITLE_ROW = _SEGMENT_ROW + 3
+_DRAWN_SCORE = 3.41
+"""The cumulative curve is drawn as far as this score on both sides, from 0.03 to 99.97 % of units."""
+
+_FIRST_CHART, _CHART_ROWS = 17, 21
+_COLOURS = ("grey", "blue", "sky", "orange", "red")
+_WIDTHS, _HEIGHT = (560, 440), 410
+_RIGHT = 3
+
+
+def write_charts(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:
+    """Write the cells behind the four charts, and draw them."""
+    titles = _titles(book, sheet, choice, working, limit)
+    charts = (
+        (_density(book, sheet, choice, limit), "Histogram of the picked variant, the part over the limit in red"),
+        (_cumulative(book, sheet, working, limit), "Cumulative curve of the picked variant with the limit"),
+        (_tornado(book, sheet, choice), "Tornado of the picked variant: what each dimension does between its limits"),
+        (_segments(book, sheet, choice), "Backlash of each segment of the picked variant"),
+    )
+    for number, (chart, text) in enumerate(charts):
+        chart.set_title({"name": titles[number], "name_font": {"size": 11, "color": PALETTE["ink"]}, "overlay": False})
+        row, right = _FIRST_CHART + number // 2 * _CHART_ROWS, number % 2
+        size = (_WIDTHS[right], _HEIGHT)
+        book.insert(sheet, row, _RIGHT if right else 0, chart, size=size, text=text)
+
+
+def _titles(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> list[str]:
+    """Write the charts' titles, which name the unit, and return where they stand."""
+    unit = joined(" [", choice.unit, "]")
+    beyond = joined("; the limit ", fixed(when(limit.equals(""), 0.0, limit), 2), " lies outside")
+    seen = when(limit.equals(""), "; no limit", when(_in_picture(working, limit), "", beyond))
+    texts = (
+        joined("Density of the backlash", unit),
+        joined("Share of units below a backlash", unit, seen),
+        joined("Tornado: change between limits", unit),
+        joined("Where the nominal backlash arises", unit),
+    )
+    plain = book.format("text")
+    cells = [put(sheet, _TITLE_ROW + row, _BINS, text, plain) for row, text in enumerate(texts)]
+    return [f"=Explorer!{cell.text}" for cell in cells]
+
+
+def _drawn(working: Working) -> tuple[int, int]:
+    """Return the places of the first and last percentile that the cumulative curve draws."""
+    inside = [place for place, score in enumerate(CURVE_SCORES) if abs(score) < _DRAWN_SCORE]
+    return inside[0], min(inside[-1], len(working.backlash) - 1)
+
+
+def _in_picture(working: Working, limit: Live) -> Live:
+    """Return whether the limit lies not much farther out than the drawn curve."""
+    first, last = working.backlash[0], working.backlash[-1]
+    value = bool((limit >= first).value) and bool((limit <= last).value)
+    return Live(f"AND({limit.text}>={first.text},{limit.text}<={last.text})", value)
+
+
+def _density(book: Book, sheet: Any, choice: Choice, limit: Live) -> Any:
+    """Return the histogram; the bin in which the limit lies has both colours."""
+    quiet, plain = book.format("quiet"), book.format("text", "general")
+    for offset, text in enumerate(("bin middle", "within", "over the limit", "bin begins")):
+        sheet.write_string(_BAR_ROW - 1, _BINS + offset, text, quiet)
+    width = put(sheet, _BAR_ROW - 2, _BINS + 3, choice.angle("Bin width"), plain)
+    begins = choice.angle("Bin start")
+    for number in range(HISTOGRAM_BINS):
+        row = _BAR_ROW + number
+        begins = put(sheet, row, _BINS + 3, begins + width if number else begins, plain)
+        put(sheet, row, _BINS, begins + width / 2, plain)
+        height = choice.text(f"Bin {number + 1}")
+        inside = when(width > 0.0, least(greatest((limit - begins) / width, 0.0), 1.0), 1.0)
+        within = put(sheet, row, _BINS + 1, when(limit.equals(""), height, height * inside), plain)
+        put(sheet, row, _BINS + 2, height - within, plain)
+    last = _BAR_ROW + HISTOGRAM_BINS - 1
+    chart = book.chart("column", "", subtype="stacked")
+    for offset, name, colour in ((1, "within the limit", "blue"), (2, "over the limit", "red")):
+        chart.add_series({
+            "name": name,
+            "categories": ["Explorer", _BAR_ROW, _BINS, last, _BINS],
+            "values": ["Explorer", _BAR_ROW, _BINS + offset, last, _BINS + offset],
+            "fill": {"color": PALETTE[colour]},
+            "border": {"none": True},
+            "gap": 4,
+        })  # fmt: skip
+    labels = {"num_format": "0.00", "num_font": {"rotation": -45, "size": 8}, "interval_unit": 5}
+    chart.set_x_axis({**labels, "num_format_linked": False})
+    chart.set_y_axis({"num_format": "0%", "major_gridlines": GRID, "num_font": {"size": 8}})
+    return chart
+
+
+def _cumulative(book: Book, sheet: Any, working: Working, limit: Live) -> Any:
+    """Return the cumulative curve with the limit as a line, where that lies in the picture."""
+    quiet, plain = book.format("quiet"), book.format("text", "general")
+    column = _BINS + 5
+    for offset, text in enumerate(("limit", "share")):
+        sheet.write_string(_BAR_ROW - 1, column + offset, text, quiet)
+    # A limit outside becomes a line without length, since readers differ in what they draw of a missing number.
+    none, inside = limit.equals(""), _in_picture(working, limit)
+    middle = working.backlash[len(working.backlash) // 2]
+    for row, share in ((_BAR_ROW, 0.0), (_BAR_ROW + 1, 1.0)):
+        put(sheet, row, column, when(none, middle, when(inside, limit, middle)), plain)
+        put(sheet, row, column + 1, when(none, 0.0, when(inside, share, 0.0)), plain)
+    first, last = (CURVE_ROW + place for place in _drawn(working))
+    chart = book.chart("scatter", "", subtype="straight")
+    for name, rows, columns, line in (
+        ("share below", (first, last), (COLUMN + 2, COLUMN + 1), {"color": PALETTE["blue"], "width": 2.25}),
+        ("limit", (_BAR_ROW, _BAR_ROW + 1), (column, column + 1), {
+            "color": PALETTE["red"], "width": 1.5, "dash_type": "dash",
+        }),
+    ):  # fmt: skip
+        chart.add_series({
+            "name": name,
+            "categories": ["Explorer", rows[0], columns[0], rows[1], columns[0]],
+            "values": ["Explorer", rows[0], columns[1], rows[1], columns[1]],
+            "line": line,
+        })  # fmt: skip
+    chart.set_x_axis({"num_format": "0.00", "major_gridlines": {"visible": False}, "num_font": {"size": 8}})
+    chart.set_y_axis({"min": 0, "max": 1, "num_format": "0%", "major_gridlines": GRID, "num_font": {"size": 8}})
+    return chart
+
+
+def _tornado(book: Book, sheet: Any, choice: Choice) -> Any:
+    """Return what each dimension does between its limits, the greatest share of the variance on top."""
+    quiet, plain = book.format("quiet"), book.format("text", "general")
+    for offset, text in enumerate(("dimension (share of variance)", "at lower limit", "at upper limit")):
+        sheet.write_string(_CAUSE_ROW - 1, _BINS + offset, text, quiet)
+    for number in range(1, CAUSES + 1):
+        row = _CAUSE_ROW + number - 1
+        name = choice.text(f"Cause {number}")
+        low, high = choice.angle(f"Low {number}"), choice.angle(f"High {number}")
+        share = choice.text(f"Share {number}")
+        given = name.equals("")
+        percent = fixed(when(given, 0.0, share * 100.0), 0)
+        put(sheet, row, _BINS, when(given, "", joined(name, " (", percent, " %)")), plain)
+        half = (high - low) / 2
+        put(sheet, row, _BINS + 1, when(given, 0.0, live(0.0) - half), plain)
+        put(sheet, row, _BINS + 2, when(given, 0.0, half), plain)
+    last = _CAUSE_ROW + CAUSES - 1
+    chart = book.chart("bar", "")
+    for offset, label, colour in ((1, "at its lower limit", "sky"), (2, "at its upper limit", "blue")):
+        chart.add_series({
+            "name": label,
+            "categories": ["Explorer", _CAUSE_ROW, _BINS, last, _BINS],
+            "values": ["Explorer", _CAUSE_ROW, _BINS + offset, last, _BINS + offset],
+            "fill": {"color": PALETTE[colour]},
+            "overlap": 100,
+            "gap": 40,
+        })  # fmt: skip
+    chart.set_x_axis({"num_format": "0.000", "major_gridlines": GRID, "num_font": {"size": 8}})
+    chart.set_y_axis({"reverse": True, "label_position": "low", "num_font": {"size": 8}})
+    return chart
+
+
+def _segments(book: Book, sheet: Any, choice: Choice) -> Any:
+    """Return one bar of the segments from the open end to the hub."""
+    quiet, plain = book.format("quiet"), book.format("text", "general")
+    chart = book.chart("bar", "", subtype="stacked")
+    sheet.write_string(_SEGMENT_ROW, _BINS, "nominal", quiet)
+    for offset, (segment, colour) in enumerate(zip(SEGMENTS.values(), _COLOURS, strict=True), start=1):
+        sheet.write_string(_SEGMENT_ROW - 1, _BINS + offset, segment, quiet)
+        put(sheet, _SEGMENT_ROW, _BINS + offset, choice.angle(segment), plain)
+        chart.add_series({
+            "name": ["Explorer", _SEGMENT_ROW - 1, _BINS + offset],
+            "categories": ["Explorer", _SEGMENT_ROW, _BINS, _SEGMENT_ROW, _BINS],
+            "values": ["Explorer", _SEGMENT_ROW, _BINS + offset, _SEGMENT_ROW, _BINS + offset],
+            "fill": {"color": PALETTE[colour]},
+            "border": {"color": "#FFFFFF", "width": 0.5},
+            "data_labels": {"value": True, "num_format": "0.00;;;", "font": {"size": 9}},
+            "gap": 60,
+        })  # fmt: skip
+    chart.set_x_axis({"num_format": "0.0", "major_gridlines": GRID, "num_font": {"size": 8}})
+    chart.set_y_axis({"visible": False})
+    return chart

@@ -1,0 +1,143 @@
+"""Behind the Explorer: the picked variant's percentiles, and how a share or a limit is read off between them.
+
+Four neighbouring percentiles make a cubic of the normal score over the backlash, or of the backlash over the score.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from xlsxwriter.utility import xl_col_to_name
+
+from flexlash.report.curves_sheet import error_heading, score_heading
+from flexlash.report.explorer_choice import Choice
+from flexlash.report.live import Live, count_up_to, entry_of, fill, greatest, least, middle, normal_share, put, when
+from flexlash.report.styles import Book
+from flexlash.tolerance.curves import CURVE_SCORES
+
+__all__ = ["COLUMN", "CURVE_ROW", "Read", "Working"]
+
+COLUMN = 8
+"""First column of the working, beyond the printed page."""
+
+CURVE_ROW = 3
+"""Row, from 0, of the least percentile."""
+
+_STEP = CURVE_SCORES[1] - CURVE_SCORES[0]
+_LAST = len(CURVE_SCORES)
+_BLOCK = COLUMN + 5
+
+
+@dataclass(frozen=True, kw_only=True)
+class Read:
+    """A share read off: the score of the limit, the standard error of that, and the share over it."""
+
+    score: Live
+    error: Live
+    share: Live
+
+
+class Working:
+    """The picked variant's curve in four columns, and blocks of cells that read from it."""
+
+    def __init__(self, book: Book, sheet: Any, choice: Choice) -> None:
+        self._sheet = sheet
+        self._quiet = book.format("quiet")
+        self._plain = book.format("text", "general")
+        self._next_row = CURVE_ROW
+        sheet.write_string(1, COLUMN, "Working behind figures and charts: nothing to change here.", self._quiet)
+        for offset, text in enumerate(("score z", "share below", "backlash", "error of z")):
+            sheet.write_string(CURVE_ROW - 1, COLUMN + offset, text, self._quiet)
+        sheet.set_column(COLUMN, COLUMN + 20, 12)
+        self.backlash: list[Live] = []
+        self.errors: list[Live] = []
+        for row, score in enumerate(CURVE_SCORES, start=CURVE_ROW):
+            at = fill(sheet, row, COLUMN, score, self._plain)
+            put(sheet, row, COLUMN + 1, normal_share(at), self._plain)
+            self.backlash.append(put(sheet, row, COLUMN + 2, choice.angle(score_heading(score)), self._plain))
+            self.errors.append(put(sheet, row, COLUMN + 3, choice.text(error_heading(score)), self._plain))
+        self.is_level = self.cell("nothing scatters", self.backlash[-1] <= self.backlash[0])
+
+    def cell(self, label: str, what: Live) -> Live:
+        """Write a step of the working with its label and return the reference to it."""
+        self._sheet.write_string(self._next_row, _BLOCK, label, self._quiet)
+        self._next_row += 1
+        return put(self._sheet, self._next_row - 1, _BLOCK + 1, what, self._plain)
+
+    def read_share(self, limit: Live) -> Read:
+        """Return what the curve says of the units over a limit."""
+        asked = self.cell("limit asked", limit)
+        outputs = [one.number for one in self.backlash]
+        below = self.cell("percentiles up to it", count_up_to(asked, self._cells(2), outputs))
+        start = self.cell("first of the four", least(greatest(below, 2.0), float(_LAST - 2)) - 1)
+        nodes = self._four(start, 2, outputs)
+        cubic = self._cubic(asked, nodes, self._four(start, 0, CURVE_SCORES))
+        left = self.cell("percentile before it", least(greatest(below, 1.0), float(_LAST - 1)))
+        before = entry_of(self._cells(0), left, CURVE_SCORES)
+        held = middle(before, cubic, before + _STEP)
+        first, last = self.backlash[0], self.backlash[-1]
+        beyond = when(asked <= first, CURVE_SCORES[0], when(asked >= last, CURVE_SCORES[-1], held))
+        score = self.cell("score of the limit", when(self.is_level, 0.0, beyond))
+        error = self.cell("its standard error", self._error_at(score, left))
+        over = when(self.is_level, when(asked < first, 1.0, 0.0), normal_share(-score))
+        return Read(score=score, error=error, share=self.cell("share over it", over))
+
+    def read_output(self, wanted: Live) -> tuple[Live, Live]:
+        """Return the backlash at a score, and its standard error."""
+        score = self.cell("score asked", middle(CURVE_SCORES[0], wanted, CURVE_SCORES[-1]))
+        left = self.cell(
+            "percentile before it",
+            least(greatest(_whole((score - CURVE_SCORES[0]) / _STEP) + 1, 1.0), float(_LAST - 1)),
+        )
+        start = self.cell("first of the four", least(greatest(left, 2.0), float(_LAST - 2)) - 1)
+        outputs = [one.number for one in self.backlash]
+        found = self._cubic(score, self._four(start, 0, CURVE_SCORES), self._four(start, 2, outputs))
+        rise = (entry_of(self._cells(2), left + 1, outputs) - entry_of(self._cells(2), left, outputs)) / _STEP
+        return self.cell("backlash there", found), self.cell("its standard error", self._error_at(score, left) * rise)
+
+    def _cells(self, offset: int) -> str:
+        letter = xl_col_to_name(COLUMN + offset)
+        return f"${letter}${CURVE_ROW + 1}:${letter}${CURVE_ROW + _LAST}"
+
+    def _four(self, start: Live, offset: int, values: Sequence[float]) -> list[Live]:
+        """Write four neighbours of a column, side by side, and return the references."""
+        label = "backlash of the four" if offset else "scores of the four"
+        self._sheet.write_string(self._next_row, _BLOCK, label, self._quiet)
+        self._next_row += 1
+        return [
+            put(
+                self._sheet,
+                self._next_row - 1,
+                _BLOCK + 1 + step,
+                entry_of(self._cells(offset), start + step if step else start, values),
+                self._plain,
+            )
+            for step in range(4)
+        ]
+
+    def _cubic(self, at: Live, nodes: Sequence[Live], values: Sequence[Live]) -> Live:
+        """Write the cubic through four points and return the reference to what it is at a place."""
+        total: Live | None = None
+        for one, value in zip(nodes, values, strict=True):
+            weight = value
+            for other in nodes:
+                if other is not one:
+                    weight = weight * ((at - other) / (one - other))
+            total = weight if total is None else total + weight
+        if total is None:
+            raise ValueError("a cubic needs points")
+        return self.cell("cubic through them", when(self.is_level, values[0], total))
+
+    def _error_at(self, score: Live, left: Live) -> Live:
+        """Return the standard error of a score, in a straight line between percentiles."""
+        errors = [one.number for one in self.errors]
+        first = entry_of(self._cells(3), left, errors)
+        second = entry_of(self._cells(3), left + 1, errors)
+        before = entry_of(self._cells(0), left, CURVE_SCORES)
+        return first + (score - before) / _STEP * (second - first)
+
+
+def _whole(number: Live) -> Live:
+    return Live(f"INT({number.text})", float(number.number // 1))

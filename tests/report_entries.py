@@ -1,0 +1,65 @@
+"""A report as its reader leaves it: some cells typed into, and what a recalculation makes of it."""
+
+from __future__ import annotations
+
+import re
+import warnings
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+import openpyxl
+
+__all__ = ["error_cells", "sheet_part", "typed", "values_of"]
+
+
+def sheet_part(archive: zipfile.ZipFile, sheet: str) -> str:
+    """Return the part that holds a sheet."""
+    workbook = archive.read("xl/workbook.xml").decode()
+    relations = archive.read("xl/_rels/workbook.xml.rels").decode()
+    (relation,) = re.findall(rf'<sheet name="{re.escape(sheet)}"[^>]*r:id="(\w+)"', workbook)
+    (target,) = re.findall(rf'<Relationship Id="{relation}"[^>]*Target="([^"]+)"', relations)
+    return f"xl/{target}"
+
+
+def typed(report: Path, target: Path, sheet: str, entries: Mapping[str, str | float]) -> Path:
+    """Write the report with entries typed into a sheet; an empty text empties the cell."""
+    with zipfile.ZipFile(report) as source, zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as copy:
+        part = sheet_part(source, sheet)
+        for item in source.infolist():
+            data = source.read(item)
+            if item.filename == part:
+                text = data.decode()
+                for cell, entry in entries.items():
+                    text, count = re.subn(
+                        rf'<c r="{cell}"( s="\d+")?[^>]*?(?:/>|>.*?</c>)',
+                        lambda match, cell=cell, entry=entry: _cell(cell, match[1] or "", entry),
+                        text,
+                        count=1,
+                    )
+                    assert count == 1, f"{sheet}!{cell} is not there"
+                data = text.encode()
+            copy.writestr(item.filename, data)
+    return target
+
+
+def _cell(cell: str, style: str, entry: str | float) -> str:
+    if entry == "":
+        return f'<c r="{cell}"{style}/>'
+    if isinstance(entry, str):
+        return f'<c r="{cell}"{style} t="inlineStr"><is><t>{escape(entry)}</t></is></c>'
+    return f'<c r="{cell}"{style}><v>{entry!r}</v></c>'
+
+
+def values_of(path: Path, sheet: str) -> dict[str, object]:
+    """Return the stored values of a sheet by address."""
+    with path.open("rb") as file, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        book = openpyxl.load_workbook(file, data_only=True, read_only=False)
+    return {cell.coordinate: cell.value for row in book[sheet].iter_rows() for cell in row if cell.value is not None}
+
+
+def error_cells(values: Mapping[str, object]) -> list[str]:
+    """Return the addresses of cells that show an error."""
+    return [cell for cell, value in values.items() if isinstance(value, str) and value.startswith("#")]

@@ -1,0 +1,218 @@
+"""The Explorer: what its formulas say of any variant and any limit is what the program says."""
+
+from __future__ import annotations
+
+import zipfile
+
+import pytest
+from scipy.special import ndtri
+
+import regenerate
+from flexlash.pipeline import run
+from flexlash.units import ARCMIN
+from libreoffice import convert, convert_all, needs_libreoffice
+from report_entries import error_cells, typed, values_of
+
+VARIANT, UNIT, LIMIT, WANTED = "B4", "B5", "B6", "B7"
+USED, SHARE, LOW, HIGH, PPM, VERDICT, FOUND, FOUND_ERROR = (f"B{row}" for row in range(9, 17))
+OUTER = 1e-6
+"""The rarest share whose reading is promised to be within 1 %."""
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """Return the study's outcome and the path of its report."""
+    path = tmp_path_factory.mktemp("study") / "report.xlsx"
+    return run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path), path
+
+
+def _rows(outcome):
+    return {row["variant"]: row for row in outcome.results.iter_rows(named=True)}
+
+
+def test_the_worst_variant_is_picked_and_answered(study):
+    """As written, the Explorer shows the worst variant at its own limit with the numbers of Results."""
+    outcome, path = study
+    values = values_of(path, "Explorer")
+    row = _rows(outcome)[values[VARIANT]]
+    assert row["probability_over_limit"] == max(one["probability_over_limit"] for one in _rows(outcome).values())
+    assert values[USED] == row["backlash_limit_arcmin"]
+    assert values[SHARE] == pytest.approx(row["probability_over_limit"], rel=1e-6)
+    assert values["F4"] == pytest.approx(row["backlash_arcmin"], rel=1e-14)
+    assert values["F9"] == pytest.approx(row["p97_5_arcmin"], rel=1e-14)
+    assert values["F14"] == pytest.approx(row["ppk"], rel=1e-12)
+    assert values[FOUND] == pytest.approx(row["p99_865_arcmin"], rel=1e-9)
+    assert values[VERDICT] == "red"
+    assert not error_cells(values)
+
+
+@needs_libreoffice
+def test_stored_values_are_those_of_a_recalculation(study, tmp_path):
+    """Every formula of Explorer holds what LibreOffice makes of it."""
+    stored = values_of(study[1], "Explorer")
+    again = values_of(convert(study[1], "xlsx", tmp_path), "Explorer")
+    assert stored.keys() == again.keys()
+    for cell, value in stored.items():
+        assert again[cell] == (pytest.approx(value, rel=1e-7, abs=1e-12) if isinstance(value, float) else value), cell
+
+
+SHARES = (0.999999, 0.999, 0.9, 0.5, 0.2, 0.025, 0.00135, 1e-4, 1e-5, 1.2e-6)
+SHAPES = {
+    "normal": "standard,wall_thickness,-0.05,0.05,normal,3\nstandard,disk_inner_radius,-0.4,0.4,normal,3\n",
+    "uniform": "standard,wall_thickness,-0.05,0.05,uniform,\nstandard,disk_inner_radius,-0.4,0.4,uniform,\n",
+    "mixed": "standard,wall_thickness,-0.05,0.02,triangular,\nstandard,cylinder_length,-0.4,0.4,uniform,\n"
+    "standard,youngs_modulus,-5000,5000,normal,2\n",
+}
+
+
+def _five(sound):
+    """Return five variants of different kinds."""
+    cup = {**sound, "disk_hub_thickness_mm": "4", "hub_fillet_radius_mm": "2"}
+    return [
+        {**sound, "variant": "a?"},
+        {**sound, "variant": "A?", "wall_thickness_mm": "1.2"},
+        {**cup, "variant": "thick hub"},
+        {**sound, "variant": "cylinder", "flexspline_type": "cylinder", "disk_inner_radius_mm": ""},
+        {**sound, "variant": "long", "cylinder_length_mm": "300"},
+    ]
+
+
+@needs_libreoffice
+@pytest.mark.parametrize("shape", SHAPES)
+def test_any_variant_and_any_limit_agree_with_the_program(table, sound, tmp_path, shape):
+    """Five variants at ten limits each, from 1 ppm to all but 1 ppm: the reading is within 1 % of the program's share.
+
+    The limits are typed into the report, LibreOffice recalculates it, and a run with those very limits answers beside.
+    """
+    tolerances = tmp_path / "tolerances.csv"
+    head = "tolerance_class,dimension,lower_deviation,upper_deviation,distribution,limits_sigma\n"
+    tolerances.write_text(head + SHAPES[shape], encoding="utf-8")
+    given = {"tolerances": tolerances, "samples": 1024}
+    rows = _five(sound)
+    report = tmp_path / "report.xlsx"
+    outcome = run(table(rows), report, **given)
+    curves = {one.variant.name: outcome.curves[one.variant.row] for one in outcome.computed.values()}
+    asked = [(row, float(f"{_at(curves[row['variant']], share):.9g}")) for row in rows for share in SHARES]
+    every = [{**row, "variant": f"{n}", "backlash_limit_arcmin": repr(limit)} for n, (row, limit) in enumerate(asked)]
+    told = _rows(run(table(every), None, **given))
+    books = [
+        typed(report, tmp_path / f"{n}.xlsx", "Explorer", {VARIANT: row["variant"], LIMIT: limit})
+        for n, (row, limit) in enumerate(asked)
+    ]
+    seen = set()
+    for number, book in enumerate(convert_all(books, "xlsx", tmp_path / "again")):
+        values, program = values_of(book, "Explorer"), told[str(number)]
+        assert not error_cells(values)
+        share = program["probability_over_limit"]
+        assert values[USED] == asked[number][1]
+        assert min(share, 1 - share) >= 0.8 * OUTER
+        assert values[SHARE] == pytest.approx(share, rel=0.01 * min(1, (1 - share) / share))
+        assert values[PPM] == pytest.approx(program["ppm_over_limit"], rel=0.01)
+        reach = [values[LOW] - values[SHARE], values[HIGH] - values[SHARE]]
+        told_reach = [program[f"probability_over_limit_{end}"] - share for end in ("low", "high")]
+        assert reach == pytest.approx(told_reach, rel=0.3, abs=2e-4 * min(share, 1 - share))
+        assert values["F14"] == pytest.approx(program["ppk"], rel=1e-9)
+        seen.add((values["F4"], values[VERDICT]))
+    assert len({nominal for nominal, _ in seen}) == 5
+    assert {verdict for _, verdict in seen} == {"green", "amber", "red"}
+
+
+def _at(curve, share):
+    """Return the backlash that this share of units exceeds, roughly [arcmin]."""
+    from flexlash.tolerance.curves import CURVE_SCORES
+
+    score = -ndtri(share)
+    place = min(max(int((score + 5) / 0.2), 0), len(CURVE_SCORES) - 2)
+    part = (score - CURVE_SCORES[place]) / 0.2
+    return float(curve.outputs[place] * (1 - part) + curve.outputs[place + 1] * part) / ARCMIN
+
+
+@needs_libreoffice
+def test_the_limit_for_a_wanted_share_is_the_programs_percentile(study, tmp_path):
+    """The limit read off for 0.135, 2.5 and 50 % of units over it is P99.865, P97.5 and P50 of Results."""
+    outcome, path = study
+    wanted = {0.00135: "p99_865_arcmin", 0.025: "p97_5_arcmin", 0.5: "p50_arcmin", 0.95: "p5_arcmin"}
+    name = "B3-160 hat"
+    books = [
+        typed(path, tmp_path / f"{n}.xlsx", "Explorer", {VARIANT: name, WANTED: share})
+        for n, share in enumerate(wanted)
+    ]
+    for key, book in zip(wanted.values(), convert_all(books, "xlsx", tmp_path / "again"), strict=True):
+        values = values_of(book, "Explorer")
+        assert values[FOUND] == pytest.approx(_rows(outcome)[name][key], rel=1e-8)
+        error = _rows(outcome)[name][key.replace("_arcmin", "_standard_error_arcmin")]
+        assert values[FOUND_ERROR] == pytest.approx(1.96 * error, rel=0.05)
+
+
+@needs_libreoffice
+def test_the_unit_is_switched_in_one_cell(study, tmp_path):
+    """In arcsec every angle is sixty times as much, the typed limit is read so, and no share changes."""
+    book = typed(study[1], tmp_path / "seconds.xlsx", "Explorer", {UNIT: "arcsec", LIMIT: 6.16 * 60})
+    minutes = typed(study[1], tmp_path / "minutes.xlsx", "Explorer", {LIMIT: 6.16})
+    one, other = (values_of(path, "Explorer") for path in convert_all([book, minutes], "xlsx", tmp_path / "again"))
+    for cell in (USED, FOUND, FOUND_ERROR, *(f"F{row}" for row in range(4, 14))):
+        assert one[cell] == pytest.approx(60 * other[cell], rel=1e-9), cell
+    for cell in (SHARE, LOW, HIGH, PPM, "F14"):
+        assert one[cell] == pytest.approx(other[cell], rel=1e-6), cell
+    assert one["G4"] == one["C9"] == "arcsec"
+    assert any("[arcsec]" in str(value) for value in one.values())
+    assert not any("[arcmin]" in str(value) for value in one.values())
+
+
+@needs_libreoffice
+def test_without_limit_or_scatter_nothing_is_an_error(table, sound, tmp_path):
+    """A variant without a limit says so; one that does not scatter is over a limit or not; no cell is an error."""
+    tolerances = tmp_path / "tolerances.csv"
+    tolerances.write_text(
+        "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n", encoding="utf-8"
+    )
+    rows = [{**sound, "variant": "none", "backlash_limit_arcmin": ""}]
+    run(table(rows), tmp_path / "none.xlsx")
+    run(table(rows), tmp_path / "level.xlsx", tolerances=tolerances)
+    books = [
+        tmp_path / "none.xlsx",
+        typed(tmp_path / "none.xlsx", tmp_path / "far.xlsx", "Explorer", {LIMIT: 99.0}),
+        typed(tmp_path / "none.xlsx", tmp_path / "near.xlsx", "Explorer", {LIMIT: 0.01}),
+        typed(tmp_path / "level.xlsx", tmp_path / "under.xlsx", "Explorer", {LIMIT: 99.0}),
+        typed(tmp_path / "level.xlsx", tmp_path / "over.xlsx", "Explorer", {LIMIT: 0.01}),
+    ]
+    none, far, near, under, over = (
+        values_of(path, "Explorer") for path in convert_all(books, "xlsx", tmp_path / "again")
+    )
+    for values in (none, far, near, under, over):
+        assert not error_cells(values)
+    assert none[SHARE] == none[PPM] == none["F14"] == "none"
+    assert none[VERDICT] == "–"
+    assert "type one above" in none["C10"]
+    assert far[SHARE] == pytest.approx(2.9e-7, rel=0.02)
+    assert far["C10"].startswith("at most")
+    assert near["C10"].startswith("at least")
+    assert (under[SHARE], over[SHARE]) == (0, 1)
+    assert (under[VERDICT], over[VERDICT]) == ("green", "red")
+
+
+@pytest.mark.parametrize("how", [{"method": "sobol", "samples": 4096}, {"method": "random", "samples": 16}], ids=str)
+def test_points_tell_no_rarer_share_than_they_hold(table, sound, tmp_path, how):
+    """With plain points a share below one in all points is told as a bound."""
+    outcome = run(table([{**sound, "backlash_limit_arcmin": "99"}]), tmp_path / "report.xlsx", **how)
+    values = values_of(tmp_path / "report.xlsx", "Explorer")
+    assert values[SHARE] == pytest.approx(1 / outcome.results["spread_points"][0])
+    assert values["C10"].startswith("at most")
+    assert not error_cells(values)
+
+
+def test_charts_hold_their_points_and_say_what_they_are(study):
+    """The four charts of Explorer have stored points, titles with the unit, and alternative texts."""
+    with zipfile.ZipFile(study[1]) as archive:
+        charts = {name: archive.read(name).decode() for name in archive.namelist() if name.startswith("xl/charts/")}
+        drawings = "".join(
+            archive.read(name).decode() for name in archive.namelist() if name.startswith("xl/drawings/drawing")
+        )
+    mine = [text for text in charts.values() if "<c:f>Explorer!" in text]
+    assert len(mine) == 4
+    for text in mine:
+        assert "[arcmin]" in text
+        assert text.count("<c:numCache>") == text.count("<c:numRef>") > 0
+        assert '<c:ptCount val="0"/>' not in text
+    for words in ("Histogram of the picked", "Cumulative curve of the picked", "Tornado of the picked", "each segment"):
+        assert words in drawings
