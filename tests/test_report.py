@@ -15,7 +15,6 @@ from flexlash.columns import DIMENSIONS
 from flexlash.pipeline import run
 from flexlash.report import selection
 from flexlash.report.about_sheet import PROOF
-from flexlash.report.summary_sheet import light, sentences
 from flexlash.report.workbook import report_bytes
 from flexlash.result_columns import CROSS_CHECK, FINDINGS, RESULTS, result_columns
 from flexlash.summary import dimension_words
@@ -23,8 +22,9 @@ from flexlash.units import ARCMIN
 from libreoffice import convert, needs_libreoffice
 
 SHEETS = [
-    "Summary", "Results", "Spread", "Sensitivity", "Sections", "Strength", "Findings", "Submission", "Materials",
-    "Tolerances", "Settings", "About", "Curves",
+    "Summary", "Results", "Spread", "Compare", "Ranking", "Contributions", "Trace", "Trace steps", "Sensitivity",
+    "Sections", "Strength", "Findings", "Submission", "Materials", "Tolerances", "Settings", "About", "Curves",
+    "Compared", "Inputs",
 ]  # fmt: skip
 
 
@@ -56,36 +56,20 @@ def test_the_sheets_stand_in_order(study):
 
 
 def test_results_repeat_the_frame(study):
-    """The Results sheet holds every number of the frame below label and key."""
+    """The Results sheet holds every number of the frame below label and key, errors and estimated shares rounded."""
     outcome, path = study
     sheet = _open(path)["Results"]
     rows = list(sheet.iter_rows(values_only=True))
     assert list(rows[0]) == [column.label for column in RESULTS]
     assert list(rows[1]) == [column.key for column in RESULTS]
     for written, row in zip(rows[2:], outcome.results.iter_rows(), strict=True):
-        for value, number in zip(written, row, strict=True):
-            assert value == (pytest.approx(number, rel=1e-15) if isinstance(number, float) else number)
-
-
-def test_summary_sentences_say_the_worst(study):
-    """The Summary names the worst variant, its P97.5, its share over the limit and what causes it."""
-    outcome, path = study
-    texts = [cell.value for row in _open(path)["Summary"].iter_rows(max_col=1) for cell in row if cell.value]
-    said = list(sentences(outcome, selection.drawn_variants(outcome)))
-    assert [f"•  {one}" for one in said] == [text for text in texts if str(text).startswith("•")]
-    assert said[0] == "11 of 11 variants were computed."
-    assert said[1] == "3 of 11 variants with a limit have more than 2.5 % of their units over it."
-    assert re.match(r"97\.5 % of the units of B3-160 case 5 stay below 6\.2\d+′; the limit of 3\.8′", said[2])
-    assert "Young's modulus" in said[3]
-
-
-def test_verdict_follows_its_rule():
-    """Green, amber and red follow P97.5 and P99.865 against the limit."""
-    row = {"p97_5_arcmin": 2.0, "p99_865_arcmin": 3.0}
-    assert light({**row, "backlash_limit_arcmin": 3.0}) == "green"
-    assert light({**row, "backlash_limit_arcmin": 2.5}) == "amber"
-    assert light({**row, "backlash_limit_arcmin": 1.9}) == "red"
-    assert light({**row, "backlash_limit_arcmin": None}) == "–"
+        for column, value, number in zip(RESULTS, written, row, strict=True):
+            rounding = {"rel": 1e-15}
+            if "standard_error" in column.key:
+                rounding = {"rel": 5e-4, "abs": 0}
+            elif column.key in {"main_contributor_share", "interaction_share"}:
+                rounding = {"abs": 5.001e-6}
+            assert value == (pytest.approx(number, **rounding) if isinstance(number, float) else number)
 
 
 def _digits(number_format):
@@ -140,15 +124,13 @@ def test_results_without_scatter_show_their_usual_digits(table, sound, tmp_path)
 
 
 def test_a_cross_check_stands_in_the_report(table, sound, tmp_path):
-    """With a cross-check Results has its columns, the Summary says who agrees and About what was compared."""
-    outcome = run(table([sound]), tmp_path / "report.xlsx", cross_check=True)
+    """With a cross-check Results has its columns and About says what was compared."""
+    run(table([sound]), tmp_path / "report.xlsx", cross_check=True)
     book = _open(tmp_path / "report.xlsx")
     columns = [column.key for column in (*RESULTS, *CROSS_CHECK)]
     assert [cell.value for cell in book["Results"][2]] == columns
     assert book["Results"].auto_filter.ref.startswith("A2:")
     assert book["Results"].cell(3, columns.index("cross_check") + 1).value == "agrees"
-    said = list(sentences(outcome, selection.drawn_variants(outcome)))
-    assert any(one.startswith("Plain Monte Carlo agrees for 1 of 1 variants; ") for one in said)
     about = [cell.value for row in book["About"].iter_rows(max_col=1) for cell in row if cell.value]
     assert any(str(one).startswith("•  Cross-check: plain Monte Carlo beside the spread.") for one in about)
     assert "Cross-check" in about
@@ -192,7 +174,7 @@ def test_sensitivity_has_first_order_and_total_indices(study):
             if words in columns:
                 for heading, indices in ((words, one.variation.shares), (f"{words}, total", one.variation.totals)):
                     value = sheet.cell(row, columns[heading]).value
-                    assert value == (pytest.approx(indices[name], rel=1e-15) if name in indices else None)
+                    assert value == (pytest.approx(indices[name], abs=5.001e-6) if name in indices else None)
     assert set(firsts) == {dimension_words(name) for one in outcome.computed.values() for name in one.variation.shares}
 
 
@@ -285,10 +267,14 @@ def test_findings_link_to_their_cells(faulty):
     outcome, path = faulty
     book = _open(path)
     sheet = book["Findings"]
-    assert [cell.value for cell in sheet[1]] == [column.label for column in FINDINGS]
-    for row, found in zip(sheet.iter_rows(min_row=2), outcome.findings, strict=True):
-        assert [cell.value or "" for cell in row] == list(found.as_dictionary().values())
-        assert row[3].hyperlink.location == f"'Submission'!{found.cell}"
+    labels = [column.label for column in FINDINGS]
+    header = next(row[0].row for row in sheet.iter_rows() if [cell.value for cell in row] == labels)
+    for row, found in zip(sheet.iter_rows(min_row=header + 1), outcome.findings, strict=True):
+        expected = found.as_dictionary()
+        key = expected.pop("column")
+        assert [cell.value or "" for cell in (*row[:5], *row[6:])] == list(expected.values())
+        assert row[5].value.endswith(f"\n{key}")
+        assert row[3].hyperlink.location == f"Submission!{found.cell}"
         assert book["Submission"][found.cell].fill.fgColor.rgb == "FFF8CBAD"
 
 
@@ -315,7 +301,8 @@ def test_text_of_a_submission_is_inert(table, sound, tmp_path):
             for cell in row:
                 if cell.value in names:
                     assert cell.data_type == "s"
-                    assert cell.hyperlink is None
+                    link = cell.hyperlink
+                    assert link is None or (link.target is None and link.location[:7] in {"Results", "Submiss"})
 
 
 def test_charts_have_cached_points_and_alternative_texts(study):
@@ -323,12 +310,12 @@ def test_charts_have_cached_points_and_alternative_texts(study):
     with zipfile.ZipFile(study[1]) as archive:
         charts = [name for name in archive.namelist() if name.startswith("xl/charts/chart")]
         drawings = [name for name in archive.namelist() if name.startswith("xl/drawings/drawing")]
-        assert len(charts) == 5
+        assert len(charts) > 5
         for name in charts:
             text = archive.read(name).decode()
             assert text.count("<c:v>") > 10
         texts = "".join(archive.read(name).decode() for name in drawings)
-    assert len(re.findall(r'descr="[^"]+"', texts)) == 5
+    assert len(re.findall(r'descr="[^"]+"', texts)) == len(charts)
 
 
 def test_spread_can_be_picked_for_every_variant(study):
@@ -356,14 +343,10 @@ def test_stored_heights_are_shares(study):
 def test_only_the_worst_are_drawn_when_there_are_many(table, sound, tmp_path, monkeypatch):
     """With more variants than can be drawn the report holds the worst and says so."""
     monkeypatch.setattr(selection, "DRAWN", 3)
-    monkeypatch.setattr("flexlash.report.summary_sheet._LISTED", 2)
-    monkeypatch.setattr("flexlash.report.summary_sheet._CHARTED", 2)
     rows = [{**sound, "variant": f"v{number}", "torque_Nm": 700.0 + 10 * number} for number in range(5)]
     run(table(rows), tmp_path / "report.xlsx", samples=256)
     book = _open(tmp_path / "report.xlsx")
     assert [cell.value for cell in book["Curves"]["A"][2:]] == ["v4", "v3", "v2"]
-    texts = " ".join(str(cell.value) for row in book["Summary"].iter_rows() for cell in row if cell.value)
-    assert "The 2 worst of 3 are listed" in texts
     assert book["Results"].max_row == 7
 
 
@@ -373,30 +356,10 @@ def test_a_report_without_scatter_or_limit(table, sound, tmp_path):
     tolerances.write_text(
         "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n", encoding="utf-8"
     )
-    outcome = run(table([{**sound, "backlash_limit_arcmin": ""}]), tmp_path / "report.xlsx", tolerances=tolerances)
+    run(table([{**sound, "backlash_limit_arcmin": ""}]), tmp_path / "report.xlsx", tolerances=tolerances)
     book = _open(tmp_path / "report.xlsx")
-    assert list(sentences(outcome, selection.drawn_variants(outcome)))[1].endswith(
-        "stay below 3.687′; no limit was given for it."
-    )
     assert book["Sensitivity"]["A4"].value is None
     assert book["Spread"]["B4"].value.startswith("=IF(")
-
-
-def test_the_summary_names_what_was_not_computed(faulty):
-    """The first sentence names the first variants that were not computed and counts the others."""
-    outcome, _ = faulty
-    said = next(sentences(outcome, selection.drawn_variants(outcome)))
-    assert said.startswith("3 of 27 variants were computed. Not computed, see Findings: fault E201, fault E202,")
-    assert said.endswith("and 20 more.")
-
-
-def test_a_given_shear_modulus_without_tolerance_is_said(table, sound, tmp_path):
-    """A material that gives G has no scatter in class standard, which the Summary says."""
-    materials = tmp_path / "materials.csv"
-    materials.write_text("material,shear_modulus_GPa\n20Cr2Ni4,81\n", encoding="utf-8")
-    outcome = run(table([sound]), materials=materials, samples=256)
-    said = list(sentences(outcome, selection.drawn_variants(outcome)))
-    assert said[-1] == "The shear modulus of 1 variants is given and has no tolerance: it does not scatter."
 
 
 def test_long_names_do_not_spill(table, sound, tmp_path):
@@ -479,7 +442,7 @@ def test_a_name_with_a_star_picks_itself(table, sound, tmp_path):
     sheet = _open(convert(tmp_path / "picked.xlsx", "xlsx", tmp_path), data_only=True)["Spread"]
     assert sheet["C3"].value == 2
     assert sheet["B5"].value == pytest.approx(outcome.results["mean_arcmin"][1], rel=1e-12)
-    assert sheet["B12"].value == "fewer than 0.001 ppb"
+    assert sheet["B12"].value == "practically none"
 
 
 @needs_libreoffice
@@ -492,56 +455,9 @@ def test_every_sheet_prints_on_whole_pages(name, request, tmp_path):
     assert pages.count("Summary") == 1
     assert pages.count("Results") == 4
     assert pages.count("Spread") == 1
-    assert pages.count("Findings") == 1
+    assert pages.count("Findings") in {1, 2}
     assert pages.count("Strength") == 1
     assert len(pages) <= 24
-
-
-def test_the_summary_says_what_yields_first(study):
-    """The Summary names the variant nearest to yield, its governing section and its reserve."""
-    outcome, _ = study
-    said = [one for one in sentences(outcome, selection.drawn_variants(outcome)) if one.startswith("Nearest to yield")]
-    rows = list(outcome.results.iter_rows(named=True))
-    torque = {one.variant.name: one.variant.dimensions["torque"] for one in outcome.computed.values()}
-    reserve = {row["variant"]: row["elastic_limit_torque_Nm"] / torque[row["variant"]] for row in rows}
-    least = min(reserve.values())
-    first = next(
-        one.row for one in selection.drawn_variants(outcome) if reserve[one.row["variant"]] <= least * 1.000001
-    )
-    assert said == [
-        f"Nearest to yield is {first['variant']}: its {first['governing_section']} yields at {least:.3g} times the "
-        "torque, corners not counted."
-    ]
-    assert not any("elasticity" in one for one in sentences(outcome, selection.drawn_variants(outcome)))
-
-
-def test_without_a_yield_strength_nothing_is_near_to_yield(table, sound, tmp_path):
-    """Of materials without a yield strength the Summary says nothing about yield."""
-    materials = tmp_path / "materials.csv"
-    materials.write_text("material,youngs_modulus_GPa,poisson_ratio\n20Cr2Ni4,211,0.3\n", encoding="utf-8")
-    outcome = run(table([sound]), materials=materials, method="random", samples=16)
-    assert not any("yield" in one for one in sentences(outcome, selection.drawn_variants(outcome)))
-
-
-def test_the_summary_says_how_far_the_formula_is_off(workbook, sound):
-    """With the elasticity check the Summary gives the range of differences; without a checked row nothing."""
-    pytest.importorskip("skfem", reason="scikit-fem is not installed here")
-    odd = {**sound, "variant": "odd", "disk_outer_radius_mm": 100.0}
-    outcome = run(workbook([sound, odd]), elasticity=True, method="random", samples=16)
-    difference = outcome.results["elasticity_difference_percent"][0]
-    (said,) = [one for one in sentences(outcome, selection.drawn_variants(outcome)) if "elasticity" in one]
-    assert f"is {difference:+.2f} % off (1 checked" in said
-    outcome = run(workbook([odd]), elasticity=True, method="random", samples=16)
-    assert not any("elasticity" in one for one in sentences(outcome, selection.drawn_variants(outcome)))
-
-
-def test_the_summary_names_what_the_verdict_does_not_show(table, sound):
-    """Variants that yield or are softer than a drive are named in the Summary, the first four of them."""
-    rows = [{**sound, "variant": f"T {number}", "torque_Nm": 12000 + number} for number in range(5)]
-    outcome = run(table(rows), method="random", samples=16)
-    said = list(sentences(outcome, selection.drawn_variants(outcome)))
-    assert "Beyond yield: T 0, T 1, T 2, T 3 and 1 more (W402, see Findings)." in said
-    assert not any("W411" in one for one in said)
 
 
 def test_the_elasticity_sheet_says_what_was_not_checked(table, sound, tmp_path):

@@ -45,12 +45,17 @@ _FORMATS: dict[str, dict[str, Any]] = {
     },
     "text": {},
     "indented": {"indent": 1},
+    "indented wrap": {"indent": 1, "text_wrap": True},
     "wrap": {"text_wrap": True},
+    "topic": {"bold": True, "valign": "top", "font_color": PALETTE["ink"]},
+    "said": {"text_wrap": True, "valign": "top"},
+    "topic link": {"bold": True, "valign": "top", "font_color": PALETTE["blue"], "underline": 1},
     "quiet": {"font_color": "#595959", "italic": True},
+    "hint": {"font_color": "#595959", "italic": True, "align": "left"},
     "label": {"bold": True, "font_color": "#404040"},
     "big": {
         "bold": True,
-        "font_size": 20,
+        "font_size": 16,
         "align": "center",
         "font_color": PALETTE["ink"],
         "top": 1,
@@ -60,6 +65,8 @@ _FORMATS: dict[str, dict[str, Any]] = {
     },
     "caption": {
         "align": "center",
+        "valign": "top",
+        "text_wrap": True,
         "font_color": "#595959",
         "bottom": 1,
         "left": 1,
@@ -85,10 +92,24 @@ _FORMATS: dict[str, dict[str, Any]] = {
     "link": {"font_color": PALETTE["blue"], "underline": 1},
     "figure": {"align": "right"},
     "input": {"num_format": "@", "bg_color": "#FFF5D6", "border": 1, "border_color": PALETTE["orange"], "bold": True},
+    "base": {"bg_color": "#FFF5D6", "bottom": 1, "bottom_color": PALETTE["orange"]},
+    "more": {"bg_color": "#FBE3B8"},
+    "less": {"bg_color": "#D3E7F5"},
+    "turned": {
+        "font_size": 10,
+        "rotation": 90,
+        "align": "center",
+        "valign": "bottom",
+        "border": 1,
+        "border_color": "#8EA9C1",
+        "bg_color": PALETTE["pale"],
+    },
+    "small figure": {"font_size": 9, "align": "center"},
     "error": {"bg_color": "#F8CBAD"},
     "warning": {"bg_color": "#FFE699"},
     "ok": {"bg_color": "#C6E5D8"},
 }
+_FORMATS |= {f"big {level}": _FORMATS["big"] | _FORMATS[level] for level in ("error", "warning", "ok")}
 
 
 _MOST_DECIMALS = 8

@@ -9,16 +9,25 @@ import xlsxwriter
 
 from flexlash.outcome import Outcome
 from flexlash.report.about_sheet import write_about
+from flexlash.report.carried_sheet import write_carried
+from flexlash.report.compare_sheet import write_compare
+from flexlash.report.compared import COMPARED_NOTE, compared_variants
+from flexlash.report.contributions_sheet import write_contributions
+from flexlash.report.curves_sheet import CURVES_NOTE, stored_curves
 from flexlash.report.elasticity_sheet import write_elasticity, write_stress
+from flexlash.report.explorer_sheet import write_explorer
+from flexlash.report.findings_sheet import write_findings
+from flexlash.report.inputs import INPUTS_NOTE, stored_inputs
+from flexlash.report.ranking_sheet import write_ranking
 from flexlash.report.results_sheet import write_results
 from flexlash.report.sections_sheet import write_sections
 from flexlash.report.selection import drawn_variants
 from flexlash.report.sensitivity_sheet import write_sensitivity
-from flexlash.report.spread_sheet import write_curves, write_spread
 from flexlash.report.strength_sheet import write_strength
 from flexlash.report.styles import Book
-from flexlash.report.submission_sheets import write_findings, write_submission
+from flexlash.report.submission_sheets import write_submission
 from flexlash.report.summary_sheet import write_summary
+from flexlash.report.trace_sheet import write_trace
 
 __all__ = ["report_bytes"]
 
@@ -34,9 +43,16 @@ def report_bytes(outcome: Outcome) -> bytes:
     workbook.set_custom_property("flexlash", "report")
     book = Book(workbook)
     drawn = drawn_variants(outcome)
-    write_summary(book, outcome, drawn)
-    write_results(book, outcome.results)
-    write_spread(book, drawn, len(outcome.computed))
+    curves = stored_curves(drawn)
+    write_summary(book, outcome, drawn, curves)
+    write_results(book, outcome)
+    write_explorer(book, curves, len(outcome.computed))
+    compared = compared_variants(drawn)
+    write_compare(book, outcome, drawn, compared)
+    write_ranking(book, outcome, drawn, compared)
+    write_contributions(book, outcome, drawn, compared)
+    inputs = stored_inputs([one.computed for one in drawn], outcome.settings.lost_motion_percent)
+    write_trace(book, inputs, len(outcome.computed))
     write_sensitivity(book, outcome, drawn)
     write_sections(book, drawn, len(outcome.computed))
     write_strength(book, drawn, len(outcome.computed))
@@ -45,7 +61,10 @@ def report_bytes(outcome: Outcome) -> bytes:
         write_stress(book, outcome, drawn)
     write_findings(book, outcome)
     write_submission(book, outcome)
-    write_about(book, outcome)
-    write_curves(book, drawn)
+    write_about(book, outcome, later=(curves.name, compared.name, inputs.name))
+    curves.write(book, CURVES_NOTE)
+    compared.write(book, COMPARED_NOTE)
+    inputs.write(book, INPUTS_NOTE)
+    write_carried(book, outcome)
     workbook.close()
     return buffer.getvalue()

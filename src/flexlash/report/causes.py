@@ -1,0 +1,114 @@
+"""What causes the spread of many variants: which tolerance hurts everywhere, which only here, in words."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from flexlash.columns import DIMENSIONS
+from flexlash.findings import shown
+from flexlash.outcome import Outcome
+from flexlash.summary import dimension_words, listed
+
+__all__ = ["MATTERS", "Cause", "cause_sentences", "causes_of", "left_out", "mean_share", "ranked_dimensions"]
+
+MATTERS = 0.005
+"""Least share of variance that a dimension needs somewhere to have a row: what prints as 1 %."""
+
+_HURTS = 0.1
+_NAMED, _LISTED = 3, 8
+_NAME = 30
+"""Most characters of a name in a sentence or a heading."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cause:
+    """What causes the spread of one variant: the share of variance of each dimension, and the main one."""
+
+    name: str
+    shares: dict[str, float]
+    main: str | None
+
+
+def causes_of(outcome: Outcome) -> list[Cause]:
+    """Return the causes of all computed variants that scatter, in submitted order."""
+    main = dict(zip(outcome.results["variant"], outcome.results["main_contributor"], strict=True))
+    return [
+        Cause(name=one.variant.name, shares=one.variation.shares, main=main[one.variant.name])
+        for one in outcome.computed.values()
+        if one.variation is not None and one.variation.shares
+    ]
+
+
+def ranked_dimensions(causes: Sequence[Cause]) -> list[str]:
+    """Return the dimensions that matter somewhere, the greatest mean share first."""
+    mattering = {name for one in causes for name, share in one.shares.items() if share >= MATTERS}
+    return sorted(filter(mattering.__contains__, DIMENSIONS), key=lambda name: -mean_share(causes, name))
+
+
+def mean_share(causes: Sequence[Cause], dimension: str) -> float:
+    """Return the mean share of a dimension; a variant that does not have it counts as none."""
+    return math.fsum(one.shares.get(dimension, 0.0) for one in causes) / len(causes)
+
+
+def left_out(causes: Sequence[Cause]) -> Iterator[str]:
+    """Yield which dimensions have a tolerance that matters nowhere."""
+    rest = {name for one in causes for name in one.shares} - set(ranked_dimensions(causes))
+    names = [dimension_words(name) for name in DIMENSIONS if name in rest]
+    if names:
+        yield f"Below {100 * MATTERS:g} % everywhere and left out: {listed(names, _LISTED)}."
+
+
+def cause_sentences(causes: Sequence[Cause]) -> Iterator[str]:
+    """Yield which tolerance hurts everywhere and which in one variant only."""
+    if not causes:
+        yield "No dimension has a tolerance that counts: nothing scatters."
+        return
+    yield _sentence("; ".join(_main_words(causes)))
+    if len(causes) > 1:
+        yield from _hurting(causes)
+
+
+def _main_words(causes: Sequence[Cause]) -> Iterator[str]:
+    """Yield of each main contributor in how many variants it is, the most frequent first."""
+    counts = Counter(one.main for one in causes if one.main)
+    ranked = sorted(counts, key=lambda name: (-counts[name], list(DIMENSIONS).index(name)))
+    for place, name in enumerate(ranked[: _NAMED + 1]):
+        verb = " is the main contributor" if not place else ""
+        if counts[name] == len(causes):
+            where = f"in all {len(causes)} variants" if len(causes) > 1 else f"of {_first(causes, name)}"
+        elif counts[name] == 1:
+            where = f"{'only ' if place else ''}in {_first(causes, name)}"
+        else:
+            where = f"in {counts[name]}" + ("" if place else f" of {len(causes)} variants")
+        yield f"{dimension_words(name)}{verb} {where}"
+    rest = sum(counts[name] for name in ranked[_NAMED + 1 :])
+    if rest:
+        yield f"other dimensions in {rest}"
+
+
+def _first(causes: Sequence[Cause], main: str) -> str:
+    """Return the name of the first variant with a main contributor, as a sentence shows it."""
+    return shown(next(one.name for one in causes if one.main == main), longest=_NAME)
+
+
+def _hurting(causes: Sequence[Cause]) -> Iterator[str]:
+    """Yield which dimensions take much of the variance of every variant, and which of one alone."""
+    hurt = {name: [one for one in causes if one.shares.get(name, 0.0) >= _HURTS] for name in ranked_dimensions(causes)}
+    everywhere = [dimension_words(name) for name, where in hurt.items() if len(where) == len(causes)]
+    only = [
+        f"{dimension_words(name)} only in {shown(where[0].name, longest=_NAME)} ({100 * where[0].shares[name]:.0f} %)"
+        for name, where in hurt.items()
+        if len(where) == 1
+    ]
+    hurts = "hurts" if len(everywhere) == 1 else "hurt"
+    start = f"{' and '.join(everywhere) or 'no dimension'} {hurts if everywhere else 'hurts'} everywhere"
+    more = f"; {len(only) - _NAMED} more in one variant each" if len(only) > _NAMED else ""
+    named = f"; {', '.join(only[:_NAMED])}" if only else ""
+    yield _sentence(f"{start} (10 % of the variance or more){named}{more}")
+
+
+def _sentence(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}."

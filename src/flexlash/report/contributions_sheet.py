@@ -1,0 +1,174 @@
+"""The Contributions sheet: which tolerance hurts which variant, as a heat map, and how much the disk winds up."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from flexlash.findings import shown
+from flexlash.outcome import Outcome
+from flexlash.report.axes import axis_over
+from flexlash.report.causes import Cause, cause_sentences, causes_of, left_out, mean_share, ranked_dimensions
+from flexlash.report.compared import CONNECTED, share_heading
+from flexlash.report.selection import Drawn
+from flexlash.report.stored import Stored
+from flexlash.report.styles import GRID, PALETTE, Book
+from flexlash.summary import dimension_words
+
+__all__ = ["MAPPED", "write_contributions"]
+
+MAPPED = 40
+"""Most variants that the heat map can hold and still be read."""
+
+_LABEL_WIDTH = 160
+_RIGHT_WIDTHS = (65, 70, 170, 90)
+"""Widths [px] of the dimensions' names and of the columns over all variants."""
+
+_NARROW, _WIDE = 31, 70
+"""Least and greatest width [px] of a variant's column."""
+
+_SPARE = 64
+"""Width [px] of the columns that fill up the page."""
+
+_PAGE = 1000
+"""Least width [px] of the page."""
+
+_ROW_HEIGHT = 20
+_NAME, _SHORT = 30, 22
+_MARKERS = {"cup": ("circle", "blue"), "hat": ("diamond", "orange")}
+_CROWDED = 60
+"""Points of a chart beyond which they are drawn small."""
+
+
+def write_contributions(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared: Stored) -> None:
+    """Write the Contributions sheet: sentences, heat map and, where there are disks, their chart."""
+    sheet = book.sheet("Contributions", pages_tall=1)
+    sheet.write_string(0, 0, "Which tolerance hurts everywhere, which only here", book.format("title"))
+    sheet.set_row(0, 28)
+    if not drawn:
+        return
+    widths = _widths(min(len(drawn), MAPPED))
+    for place, pixels in enumerate(widths):
+        sheet.set_column_pixels(place, place, pixels)
+    causes = causes_of(outcome)
+    row = 1
+    for said in cause_sentences(causes):
+        sheet.write_string(row, 0, f"•  {said}", book.format("text"))
+        row += 1
+    if causes:
+        row = _write_notes(book, sheet, causes, drawn, _write_heat(book, sheet, causes, drawn, row + 1))
+    if any(one.computed.variant.flexspline_type in CONNECTED for one in drawn):
+        width = max(_PAGE, sum(widths))
+        height = width // 3
+        chart = _disk_shares(book, compared, width / _PAGE)
+        text = "Disk share of the wind-up of each cup and hat against its cylinder length over its mean radius"
+        book.insert(sheet, row + 1, 0, chart, size=(6 * width // 10, height), text=text)
+        row += height // _ROW_HEIGHT + 2
+    sheet.print_area(0, 0, row, len(widths) - 1)
+
+
+def _widths(count: int) -> list[int]:
+    """Return the widths [px] of the page's columns for so many variants."""
+    fixed = _LABEL_WIDTH + sum(_RIGHT_WIDTHS)
+    each = min(_WIDE, max(_NARROW, (_PAGE - fixed) // count))
+    spare = max(0, -(-(_PAGE - fixed - count * each) // _SPARE))
+    return [_LABEL_WIDTH, *[each] * count, *_RIGHT_WIDTHS, *[_SPARE] * spare]
+
+
+def _write_heat(book: Book, sheet: Any, causes: Sequence[Cause], drawn: Sequence[Drawn], top: int) -> int:
+    """Write the heat map of the worst variants below its headings in row `top`; return the row after it."""
+    mapped = drawn[:MAPPED]
+    right = 1 + len(mapped)
+    sheet.write_string(top, 0, "Share of variance", book.format("header"))
+    labels = [shown(one.row["variant"], longest=_NAME) for one in mapped]
+    for place, label in enumerate(labels, start=1):
+        sheet.write_string(top, place, label, book.format("turned"))
+    every = f"of all {len(causes):,}"
+    headings = (f"Mean {every}", f"Greatest {every}", "Greatest in", "Main contributor in")
+    for place, heading in enumerate(headings, start=right):
+        sheet.write_string(top, place, heading, book.format("header"))
+    sheet.set_row(top, max(48, 10 + 5 * max(map(len, labels))))
+    dimensions = ranked_dimensions(causes)
+    for row, name in enumerate(dimensions, start=top + 1):
+        words = dimension_words(name)
+        sheet.write_string(row, 0, words[0].upper() + words[1:], book.format("text"))
+        for place, one in enumerate(mapped, start=1):
+            shares = one.computed.variation.shares if one.computed.variation else {}
+            if name in shares:
+                sheet.write_number(row, place, shares[name], book.format("small figure", "0%"))
+        _write_over_all(book, sheet, (row, right), causes, name)
+    last = top + len(dimensions)
+    _colour(sheet, (top + 1, 1, last, right + 1), max(max(one.shares.values()) for one in causes))
+    return last + 1
+
+
+def _write_over_all(book: Book, sheet: Any, cell: tuple[int, int], causes: Sequence[Cause], dimension: str) -> None:
+    """Write a dimension's mean and greatest share over all computed variants, and how often it is the main one."""
+    row, place = cell
+    worst = max(causes, key=lambda one: one.shares.get(dimension, 0.0))
+    style = book.format("small figure", "0%")
+    sheet.write_number(row, place, mean_share(causes, dimension), style)
+    sheet.write_number(row, place + 1, worst.shares[dimension], style)
+    sheet.write_string(row, place + 2, shown(worst.name, longest=_SHORT), book.format("indented"))
+    sheet.write_number(row, place + 3, sum(one.main == dimension for one in causes), book.format("small figure", "0"))
+
+
+def _colour(sheet: Any, cells: tuple[int, int, int, int], most: float) -> None:
+    """Colour shares from white to orange, which the greatest has."""
+    scale = {
+        "type": "2_color_scale",
+        "min_color": "#FFFFFF",
+        "max_color": PALETTE["orange"],
+        "min_type": "num",
+        "min_value": 0,
+        "max_type": "num",
+        "max_value": most,
+    }
+    sheet.conditional_format(*cells, scale)
+
+
+def _write_notes(book: Book, sheet: Any, causes: Sequence[Cause], drawn: Sequence[Drawn], row: int) -> int:
+    """Write below the heat map what it shows; return the row after that."""
+    which = "worst first"
+    if len(causes) > MAPPED:
+        which = f"the {MAPPED} worst of {len(causes):,}, worst first; the columns to the right are over all of them"
+    notes = [
+        f"Variants: {which}. Shares are first-order Sobol' indices; what a column lacks to 100 % is interaction.",
+        "A blank cell: the variant does not have the dimension, or no tolerance for it.",
+        *left_out(causes),
+    ]
+    if len(drawn) > MAPPED:
+        notes.append(f"The chart below has the {len(drawn)} variants of the sheet Ranking.")
+    for note in notes:
+        sheet.write_string(row, 0, note, book.format("quiet"))
+        row += 1
+    return row
+
+
+def _disk_shares(book: Book, compared: Stored, size: float) -> Any:
+    """Return the disk share of each drawn cup and hat as a point over its length, letters `size` times the usual."""
+    title = "Disk share of the wind-up against the length of the cylinder"
+    chart = book.chart("scatter", title)
+    chart.set_title({"name": title, "name_font": {"size": round(11 * size), "color": PALETTE["ink"]}})
+    points: list[tuple[float, float]] = []
+    for kind in CONNECTED:
+        shape, colour = _MARKERS[kind]
+        heading = share_heading(kind)
+        mine = [(float(row["l/r"] or 0), float(row[heading] or 0)) for row in compared.rows if row[heading] is not None]
+        if mine:
+            marker = {
+                "type": shape,
+                "size": 8 if len(compared.rows) <= _CROWDED else 5,
+                "fill": {"color": PALETTE[colour]},
+                "border": {"color": PALETTE["ink"]},
+            }
+            cells = {"categories": compared.series("l/r"), "values": compared.series(heading)}
+            chart.add_series({"name": f"{kind}s", "marker": marker, **cells})
+        points += mine
+    places, shares = axis_over([place for place, _ in points]), axis_over([0.0, *(share for _, share in points)])
+    small = {"size": round(9 * size), "bold": False}
+    look = {"num_font": small, "name_font": small, "major_gridlines": GRID}
+    chart.set_x_axis({**places.options(), **look, "name": "Cylinder length over mean radius l/r [-]"})
+    chart.set_y_axis({**shares.options(per_cent=True), **look, "name": "Disk share [%]"})
+    chart.set_legend({"position": "bottom", "font": small})
+    return chart

@@ -1,0 +1,209 @@
+"""The Ranking sheet: the drawn variants worst first, and how each differs from a base that the reader picks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
+
+from flexlash.findings import shown
+from flexlash.outcome import Outcome
+from flexlash.report.links import result_rows, write_link
+from flexlash.report.live import Live, fill, place_of_name, put, when
+from flexlash.report.selection import Drawn
+from flexlash.report.stored import Row, Stored
+from flexlash.report.styles import Book, decimals_of
+from flexlash.report.verdict import COLOURS, RULES, light
+from flexlash.summary import dimension_words, share_words
+
+__all__ = ["BASE_ROW", "DIFFERENCES", "FIRST_ROW", "HEADER", "column_of", "write_ranking"]
+
+BASE_ROW = 4
+HEADER = 6
+FIRST_ROW = 7
+"""Rows, from 0, of the base variant, of the headings and of the worst variant."""
+
+_WORDS = (("Rank", 8), ("Variant", 31), ("Verdict", 9), ("Units over the limit", 34))
+_FIGURES = {
+    "P2.5": "p2_5_standard_error_arcmin",
+    "P25": "p50_standard_error_arcmin",
+    "P50": "p50_standard_error_arcmin",
+    "P75": "p50_standard_error_arcmin",
+    "P97.5": "p97_5_standard_error_arcmin",
+    "P99.865": "p99_865_standard_error_arcmin",
+    "Limit": "",
+    "Margin": "p97_5_standard_error_arcmin",
+    "sd": "sd_standard_error_arcmin",
+}
+"""Headings of Compared in the order of this sheet, each with the standard error that limits its digits."""
+
+DIFFERENCES = ("P50", "P97.5", "sd")
+"""Figures of which the difference to the base variant is given."""
+
+_NAME = 30
+_CAUSE = len(_WORDS) + len(_FIGURES)
+_SHAPE = _CAUSE + 2
+_FIRST_DIFFERENCE = _SHAPE + 2
+_COLUMNS = _FIRST_DIFFERENCE + 2 * len(DIFFERENCES)
+_USUAL, _FINEST = "0.000", "0.0000"
+_LIMIT = "0.00##"
+_BASE_NUMBERS = {"Limit": _LIMIT, "Margin": "+0.0000;-0.0000;0.0000"}
+_SIGNED_PERCENT = "+0.0%;-0.0%;0.0%"
+
+
+def column_of(heading: str) -> int:
+    """Return the place of a figure's column, from 0."""
+    return len(_WORDS) + list(_FIGURES).index(heading)
+
+
+def write_ranking(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared: Stored) -> None:
+    """Write the Ranking sheet; the base is the first variant submitted, if it is drawn."""
+    sheet = book.sheet("Ranking")
+    sheet.write_string(0, 0, "Ranking, worst first, and difference to a base variant", book.format("title"))
+    sheet.set_row(0, 28)
+    count, total = len(drawn), len(outcome.computed)
+    which = f"the {count} worst of {total:,}; all are in Results" if count < total else f"all {total:,} computed"
+    rules = "; ".join(f"{verdict}, {rule}" for verdict, rule in RULES.items())
+    notes = (
+        f"Variants by share of units over the limit: {which}. Verdict: {rules}.",
+        "Margin: limit less P97.5, negative when over. Differences: variant less base; orange, more backlash or "
+        "scatter than the base; blue, less. Pick the base in the yellow cell.",
+    )
+    for row, note in enumerate(notes, start=1):
+        sheet.write_string(row, 0, note, book.format("quiet"))
+    _write_headings(book, sheet)
+    if drawn:
+        first = min(range(count), key=lambda place: drawn[place].computed.variant.row)
+        base = _write_base(book, sheet, compared, first)
+        places = result_rows(outcome)
+        for rank, one in enumerate(drawn):
+            _write_words(book, sheet, rank, one, places[one.computed.variant.row])
+            _write_figures(book, sheet, rank, one, compared)
+            _write_differences(book, sheet, rank, (one, compared), base)
+        _colour(book, sheet, FIRST_ROW + count - 1)
+    last = FIRST_ROW + max(count, 1) - 1
+    sheet.autofilter(HEADER, 0, last, _COLUMNS - 1)
+    sheet.freeze_panes(FIRST_ROW, 2)
+    sheet.repeat_rows(BASE_ROW, HEADER)
+    sheet.print_area(0, 0, last, _COLUMNS - 1)
+
+
+def _write_headings(book: Book, sheet: Any) -> None:
+    """Write the headings and, above them, what each group of columns is about."""
+    style = book.format("header")
+    units = [f"{name} [arcmin]" if name != "Margin" else "Margin of P97.5 [arcmin]" for name in _FIGURES]
+    changes = [f"{name} [{unit}]" for name in DIFFERENCES for unit in ("arcmin", "%")]
+    shape = ["Main contributor", "Its share of variance", "Disk share of wind-up", "l/r"]
+    headings = [*(name for name, _ in _WORDS), *units, *shape, *changes]
+    for place, heading in enumerate(headings):
+        sheet.write_string(HEADER, place, heading, style)
+    sheet.set_row(HEADER, 48)
+    for place, (_, width) in enumerate(_WORDS):
+        sheet.set_column(place, place, width)
+    sheet.set_column(len(_WORDS), _CAUSE - 1, 8.7)
+    sheet.set_column(_CAUSE, _CAUSE, 21)
+    sheet.set_column(_CAUSE + 1, _COLUMNS - 1, 8.7)
+    for first, last, text in (
+        (len(_WORDS), _CAUSE - 1, "Backlash over the tolerances"),
+        (_CAUSE, _CAUSE + 1, "Cause"),
+        (_SHAPE, _SHAPE + 1, "Shape (l/r: length over mean radius)"),
+        (_FIRST_DIFFERENCE, _COLUMNS - 1, "Difference to the base variant"),
+    ):
+        sheet.merge_range(HEADER - 1, first, HEADER - 1, last, text, style)
+    sheet.set_row(HEADER - 1, 32)
+
+
+def _write_base(book: Book, sheet: Any, compared: Stored, first: int) -> dict[str, Live]:
+    """Write the drop-down and what the picked base variant has; return its cells by heading."""
+    names = [str(row["Variant"]) for row in compared.rows]
+    sheet.write_string(BASE_ROW, 0, "Base ►", book.format("label"))
+    picked = fill(sheet, BASE_ROW, 1, names[first], book.format("input"))
+    sheet.data_validation(BASE_ROW, 1, BASE_ROW, 1, {
+        "validate": "list",
+        "source": f"={compared.cells('Variant')}",
+        "input_title": "Base variant",
+        "input_message": "All differences are to this variant.",
+        "error_title": "Base variant",
+        "error_message": "Pick a variant of the list.",
+    })  # fmt: skip
+    place = place_of_name(picked, compared.cells("Variant"), names)
+    place = put(sheet, BASE_ROW, 2, place, book.format("quiet"))
+    sheet.write_string(BASE_ROW, 3, "◄ its rank", book.format("quiet"))
+    cells = {
+        heading: put(sheet, BASE_ROW, column_of(heading), compared.pick(place, heading), book.format("base", number))
+        for heading, number in {**dict.fromkeys(_FIGURES, _FINEST), **_BASE_NUMBERS}.items()
+    }
+    put(sheet, BASE_ROW, _SHAPE, compared.pick(place, "Disk share"), book.format("base", "0%"))
+    put(sheet, BASE_ROW, _SHAPE + 1, compared.pick(place, "l/r"), book.format("base", "0.00"))
+    return cells
+
+
+def _write_words(book: Book, sheet: Any, rank: int, one: Drawn, result: int) -> None:
+    """Write what is said of a variant in words; its name leads to its row of Results."""
+    row, verdict = FIRST_ROW + rank, light(one.row)
+    sheet.write_number(row, 0, rank + 1, book.format("small figure", "0"))
+    name = shown(one.row["variant"], longest=_NAME)
+    write_link(sheet, row, 1, f"Results!A{result + 1}", name, style=book.format("link"))
+    sheet.write_string(row, 2, verdict, book.format(COLOURS[verdict]))
+    if one.row["probability_over_limit"] is not None:
+        sheet.write_string(row, 3, share_words(one.row), book.format("indented"))
+    if one.row["main_contributor"]:
+        sheet.write_string(row, _CAUSE, dimension_words(one.row["main_contributor"]), book.format("indented"))
+        sheet.write_number(row, _CAUSE + 1, one.row["main_contributor_share"], book.format("text", "0%"))
+
+
+def _decimals(one: Drawn, heading: str) -> str:
+    """Return the number format that shows a figure of a variant down to its standard error, four decimals at most."""
+    if not _FIGURES[heading]:
+        return _LIMIT
+    return min(decimals_of(one.row[_FIGURES[heading]], _USUAL), _FINEST, key=len)
+
+
+def _signed(decimals: str) -> str:
+    return f"+{decimals};-{decimals};{decimals}"
+
+
+def _write_figures(book: Book, sheet: Any, rank: int, one: Drawn, compared: Stored) -> None:
+    """Write the figures of a variant; its margin is worked out in the cell."""
+    row, figures = FIRST_ROW + rank, compared.rows[rank]
+    for heading in _FIGURES:
+        decimals = _decimals(one, heading)
+        if heading == "Margin" and figures["Limit"] is not None:
+            margin = _own(row, "Limit", figures) - _own(row, "P97.5", figures)
+            put(sheet, row, column_of(heading), margin, book.format("text", _signed(decimals)))
+        elif figures[heading] is not None:
+            sheet.write_number(row, column_of(heading), figures[heading], book.format("text", decimals))
+    sheet.write_number(row, _SHAPE, figures["Disk share"], book.format("text", "0%"))
+    sheet.write_number(row, _SHAPE + 1, figures["l/r"], book.format("text", "0.00"))
+
+
+def _own(row: int, heading: str, figures: Row) -> Live:
+    """Return a reference to a figure of the same row, one that moves with it when the reader sorts."""
+    return Live(xl_rowcol_to_cell(row, column_of(heading)), figures[heading] or 0.0)
+
+
+def _write_differences(book: Book, sheet: Any, rank: int, of: tuple[Drawn, Stored], base: dict[str, Live]) -> None:
+    """Write how a variant differs from the base, in arcmin and in per cent, as formulas."""
+    one, compared = of
+    row = FIRST_ROW + rank
+    for number, heading in enumerate(DIFFERENCES):
+        place = _FIRST_DIFFERENCE + 2 * number
+        difference = _own(row, heading, compared.rows[rank]) - base[heading]
+        put(sheet, row, place, difference, book.format("text", _signed(_decimals(one, heading))))
+        relative = Live(xl_rowcol_to_cell(row, place), difference.value) / base[heading]
+        share = when(base[heading] > 0.0, relative, "")
+        put(sheet, row, place + 1, share, book.format("text", _SIGNED_PERCENT))
+
+
+def _colour(book: Book, sheet: Any, last: int) -> None:
+    """Colour differences by their sign, which the number has too, and margins that are negative."""
+    for first, right, rules in (
+        (_FIRST_DIFFERENCE, _COLUMNS - 1, ((">", "more"), ("<", "less"))),
+        (column_of("Margin"), column_of("Margin"), (("<", "more"),)),
+    ):
+        cell = f"{xl_col_to_name(first)}{FIRST_ROW + 1}"
+        for sign, look in rules:
+            # A text is greater than any number to Excel.
+            rule = {"type": "formula", "criteria": f"=AND(ISNUMBER({cell}),{cell}{sign}0)", "format": book.format(look)}
+            sheet.conditional_format(FIRST_ROW, first, last, right, rule)
