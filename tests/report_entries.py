@@ -56,8 +56,9 @@ def values_of(path: Path, sheet: str) -> dict[str, object]:
     """Return the stored values of a sheet by address."""
     with path.open("rb") as file, warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        book = openpyxl.load_workbook(file, data_only=True, read_only=False)
-    return {cell.coordinate: cell.value for row in book[sheet].iter_rows() for cell in row if cell.value is not None}
+        book = openpyxl.load_workbook(file, data_only=True, read_only=True)
+        rows = book[sheet].iter_rows()
+        return {cell.coordinate: cell.value for row in rows for cell in row if cell.value is not None}
 
 
 def error_cells(values: Mapping[str, object]) -> list[str]:

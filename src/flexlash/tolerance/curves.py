@@ -19,8 +19,12 @@ from flexlash.workers import mapped
 
 __all__ = ["CURVE_SCORES", "HISTOGRAM_BINS", "Curve", "CurveTask", "curve_of", "curves_of"]
 
-CURVE_SCORES = tuple(step / 5 for step in range(-25, 26))
-"""Normal scores of the stored percentiles: a normal's mean ± 5 sd, so that 1 ppm lies well inside."""
+_TAIL = tuple(step / 10 for step in range(31, 51))
+CURVE_SCORES = (*(-score for score in reversed(_TAIL)), *(step / 5 for step in range(-15, 16)), *_TAIL)
+"""Normal scores of the stored percentiles: a normal's mean ± 5 sd, so that 1 ppm lies well inside.
+
+They are closer in the tails, where the curve of a bounded distribution bends.
+"""
 
 HISTOGRAM_BINS = 40
 
