@@ -37,7 +37,9 @@ ALLOWED = {
     "targets": CORE | {"submission"},
     "handback": CORE | {"outcome", "submission"},
     "summary": CORE | {"outcome", "submission"},
-    "report": CORE | {"assessment", "elasticity", "outcome", "summary", "submission", "tolerance"},
+    "report": CORE
+    | {"assessment", "elasticity", "outcome", "summary", "submission", "tolerance"}
+    | {"mechanics.fillets", "mechanics.strength", "mechanics.windup"},  # points and bounds that Trace shows
     "pipeline": CORE
     | {
         "assessment",

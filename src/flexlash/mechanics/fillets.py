@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from flexlash.arrays import Array
 
-__all__ = ["hub_fillet_integral", "junction_fillet_integral"]
+__all__ = ["ARC_RULE", "FINE_RULE", "JUNCTION_RULE", "WIDE", "hub_fillet_integral", "junction_fillet_integral"]
 
 Rule: TypeAlias = tuple[tuple[float, float, float], ...]
 """Sine, cosine and weight of angles from 0 to π/2."""
@@ -27,12 +27,12 @@ def _quarter(points: int) -> Rule:
     return _rule(zip(((nodes + 1) * np.pi / 4).tolist(), (weights * np.pi / 4).tolist(), strict=True))
 
 
-_ARC_RULE, _FINE_RULE = _quarter(12), _quarter(48)
+ARC_RULE, FINE_RULE = _quarter(12), _quarter(48)
 
-_WIDE = 20.0
+WIDE = 20.0
 """Fillet radius over thickness above which an arc takes the fine rule."""
 
-_JUNCTION_RULE = _rule(
+JUNCTION_RULE = _rule(
     (
         (0.0814393410996599, 0.16529866972037566),
         (0.25821157583711407, 0.19208838252972127),
@@ -70,8 +70,8 @@ def hub_fillet_integral(
             total = total + weight * sine / (radius * radius * radius * thickness)
         return np.asarray(total * fillet_radius)
 
-    wide = np.asarray(fillet_radius > _WIDE * thickness_at(np.asarray(inner_radius)))
-    return _either(by, wide, _ARC_RULE, _FINE_RULE)
+    wide = np.asarray(fillet_radius > WIDE * thickness_at(np.asarray(inner_radius)))
+    return _either(by, wide, ARC_RULE, FINE_RULE)
 
 
 def junction_fillet_integral(
@@ -97,7 +97,7 @@ def junction_fillet_integral(
             total = total + weight * cosine / (radius * radius * radius * (thickness + added))
         return np.asarray(total * fillet_radius)
 
-    return _either(by, np.asarray(fillet_radius > _WIDE * thickness), _JUNCTION_RULE, _FINE_RULE)
+    return _either(by, np.asarray(fillet_radius > WIDE * thickness), JUNCTION_RULE, FINE_RULE)
 
 
 def _either(by: Callable[[Rule], Array], wide: npt.NDArray[np.bool_], usual: Rule, fine: Rule) -> Array:

@@ -10,6 +10,11 @@ from scipy.special import cosdg, sindg
 from flexlash.arrays import Array
 
 __all__ = [
+    "GREATEST_SLENDERNESS",
+    "KNOCK_DOWN",
+    "LEAST_CURVATURE",
+    "PASSES",
+    "STATIONS",
     "buckling_range",
     "buckling_shear",
     "disk_shear",
@@ -19,16 +24,16 @@ __all__ = [
     "wall_buckling_shear",
 ]
 
-_STATIONS = 41
-_PASSES = 3
+STATIONS = 41
+PASSES = 3
 
-_KNOCK_DOWN = 0.67
+KNOCK_DOWN = 0.67
 """γ^¾ of NASA SP-8007 for cylinders in torsion."""
 
-_LEAST_CURVATURE = 50.0
+LEAST_CURVATURE = 50.0
 """γZ above which a cylinder counts as moderately long."""
 
-_GREATEST_SLENDERNESS = 6.5
+GREATEST_SLENDERNESS = 6.5
 """(l/r)/√(r/t) above which a long tube buckles in two waves around, whatever its length."""
 
 
@@ -91,12 +96,12 @@ def disk_shear(
 def _greatest(curve: Callable[[Array], tuple[Array, Array]], shape: tuple[int, ...]) -> tuple[Array, Array]:
     """Return the greatest stress of smooth curves over [0, 1] and its radius, narrowed down to the best stations."""
     low, high = np.zeros(shape), np.ones(shape)
-    stations = np.linspace(0, 1, _STATIONS).reshape(-1, *(1 for _ in shape))
-    for _ in range(_PASSES):
+    stations = np.linspace(0, 1, STATIONS).reshape(-1, *(1 for _ in shape))
+    for _ in range(PASSES):
         places = low + (high - low) * stations
         stresses, radii = curve(places)
         best = np.argmax(stresses, axis=0)[np.newaxis]
-        step = (high - low) / (_STATIONS - 1)
+        step = (high - low) / (STATIONS - 1)
         centre = np.take_along_axis(places, best, axis=0)[0]
         low, high = np.maximum(centre - step, 0.0), np.minimum(centre + step, 1.0)
     return np.take_along_axis(stresses, best, axis=0)[0], np.take_along_axis(radii, best, axis=0)[0]
@@ -146,7 +151,7 @@ def buckling_shear(
     slender = np.sqrt(np.asarray(radius) / thickness)
     return np.asarray(
         0.747
-        * _KNOCK_DOWN
+        * KNOCK_DOWN
         * youngs_modulus
         / (slender * slender * np.sqrt(slender))
         / np.sqrt(length / np.asarray(radius))
@@ -177,7 +182,7 @@ def wall_buckling_shear(
     plate = 5.35 * np.pi**2 * youngs_modulus / (12 * flexible) * np.square(np.asarray(thickness) / length)
     slender = np.asarray(thickness) / radius
     root = np.sqrt(flexible)
-    tube = _KNOCK_DOWN * 0.272 * youngs_modulus / (root * np.sqrt(root)) * slender * np.sqrt(slender)
+    tube = KNOCK_DOWN * 0.272 * youngs_modulus / (root * np.sqrt(root)) * slender * np.sqrt(slender)
     return np.asarray(np.where(within < 0, np.maximum(usual, plate), np.where(within > 0, tube, usual)))
 
 
@@ -200,6 +205,6 @@ def buckling_range(
         * np.sqrt(1 - np.asarray(poisson_ratio) * poisson_ratio)
         / (radius * np.asarray(thickness))
     )
-    short = curvature * _KNOCK_DOWN ** (4 / 3) <= _LEAST_CURVATURE
-    long = np.asarray(length) / radius >= _GREATEST_SLENDERNESS * np.sqrt(np.asarray(radius) / thickness)
+    short = curvature * KNOCK_DOWN ** (4 / 3) <= LEAST_CURVATURE
+    long = np.asarray(length) / radius >= GREATEST_SLENDERNESS * np.sqrt(np.asarray(radius) / thickness)
     return np.asarray(np.where(short, -1, np.where(long, 1, 0)))

@@ -12,6 +12,9 @@ from scipy.special import boxcox, sindg
 from flexlash.arrays import Array
 
 __all__ = [
+    "NEARLY",
+    "TAPER_PLACES",
+    "TAPER_WEIGHTS",
     "annulus_integral",
     "cone_integral",
     "mean_radius_from_bore",
@@ -23,11 +26,11 @@ __all__ = [
     "wall_integral",
 ]
 
-_NEARLY = 0.5
+NEARLY = 0.5
 """Relative change of t/r over a disk below which its thickness counts as nearly proportional to the radius."""
 
 _TAPER_NODES, _TAPER_SHARES = np.polynomial.legendre.leggauss(10)
-_TAPER_PLACES, _TAPER_WEIGHTS = (_TAPER_NODES + 1) / 2, _TAPER_SHARES / 2
+TAPER_PLACES, TAPER_WEIGHTS = (_TAPER_NODES + 1) / 2, _TAPER_SHARES / 2
 
 
 def shear_modulus(youngs_modulus: Array | float, poisson_ratio: Array | float) -> Array:
@@ -153,13 +156,13 @@ def tapered_disk_integral(
     reach = high - low
     start, end = low * outer_thickness, high * inner_thickness
     growth = end - start
-    proportional = np.abs(growth) < _NEARLY * start
+    proportional = np.abs(growth) < NEARLY * start
     axis_thickness = np.where(proportional, 1.0, growth / np.where(reach == 0, 1.0, reach))
     slope = (inner_thickness - axis_thickness) / (inner_radius * axis_thickness)
     # The logarithm of SciPy, since NumPy's may round otherwise at another place of an array.
     closed = (reach * ((high + low) / 2 - slope) + slope * slope * boxcox(end / start, 0.0)) / axis_thickness
     total: Array | float = 0.0
-    for place, weight in zip(_TAPER_PLACES, _TAPER_WEIGHTS, strict=True):
+    for place, weight in zip(TAPER_PLACES, TAPER_WEIGHTS, strict=True):
         curvature = low + reach * place
         total = total + weight * (curvature * curvature) / (start + growth * place)
     return np.asarray(np.where(proportional, total * reach, closed))

@@ -15,6 +15,9 @@ __all__ = ["FIRST_ROW", "Stored"]
 FIRST_ROW = 2
 """Row, from 0, of the first variant; above it stand a note and the headings."""
 
+_HEADING = 9
+"""Characters of a heading on one line."""
+
 Row = Mapping[str, "str | float | None"]
 
 
@@ -60,6 +63,7 @@ class Stored:
         sheet.write_string(0, 0, note, book.format("quiet"))
         for place, heading in enumerate(self.headings):
             sheet.write_string(1, place, heading, book.format("header"))
+        sheet.set_row(1, 15.5 * max((1 + len(heading) // _HEADING for heading in self.headings), default=1))
         sheet.set_column(0, 1, 24)
         text, number = book.format("text"), book.format("text", "general")
         for row, values in enumerate(self.rows, start=FIRST_ROW):

@@ -1,0 +1,108 @@
+"""The Inputs sheet: what was entered for each drawn variant, in printed units, and what the program made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from flexlash.assessment import Computed
+from flexlash.columns import DIMENSIONS, MATERIALS, SETTINGS, VARIANTS, Column
+from flexlash.report.stored import Stored
+from flexlash.units import ARCMIN
+from flexlash.variant import Variant
+
+__all__ = ["ENTERED", "INPUTS_NOTE", "PROGRAM", "stored_inputs"]
+
+INPUTS_NOTE = "What was entered, and the program's numbers for it; the sheet Trace looks both up."
+
+_BESIDE = {
+    "yield_strength": next(column for column in MATERIALS if column.key == "yield_MPa"),
+    "rated_torque": next(column for column in VARIANTS if column.key == "rated_torque_Nm"),
+    "backlash_limit": next(column for column in VARIANTS if column.key == "backlash_limit_arcmin"),
+    "lost_motion_percent": next(column for column in SETTINGS if column.key == "lost_motion_percent"),
+}
+ENTERED: dict[str, Column] = {**DIMENSIONS, **_BESIDE}
+"""Every number that a trace starts from, with the column it was entered in; its label is the heading of Inputs."""
+
+_MEGAPASCAL = 1e6
+PROGRAM: dict[str, tuple[str, float]] = {
+    **{
+        f"{name}_windup": (f"{words} wind-up, program [rad]", 1.0)
+        for name, words in (
+            ("rim", "Rim"),
+            ("wall", "Wall"),
+            ("junction_fillet", "Junction fillet"),
+            ("disk_body", "Disk body"),
+            ("hub_fillet", "Hub fillet"),
+            ("cylinder", "Cylinder"),
+            ("disk", "Disk"),
+        )
+    },
+    "windup": ("Wind-up, program [rad]", 1.0),
+    "backlash": ("Backlash, program [rad]", 1.0),
+    "disk_share": ("Disk share, program", 1.0),
+    "stiffness": ("Stiffness, program [N·m/rad]", 1.0),
+    "cylinder_only_backlash": ("Cylinder-only backlash, program [rad]", 1.0),
+    "two_term_backlash": ("Two-term backlash, program [rad]", 1.0),
+    "lost_motion": ("Lost motion, program [arcmin]", ARCMIN),
+    **{
+        f"{name}_shear": (f"{words} shear, program [MPa]", _MEGAPASCAL)
+        for name, words in (("wall", "Wall"), ("rim", "Rim"), ("hub", "Disk"))
+    },
+    **{
+        f"{name}von_mises": (f"{words} stress, program [MPa]", _MEGAPASCAL)
+        for name, words in (
+            ("wall_", "Wall von Mises"),
+            ("rim_", "Rim von Mises"),
+            ("hub_", "Disk von Mises"),
+            ("", "Greatest von Mises"),
+        )
+    },
+    "governing_section": ("Governing section, program", 1.0),
+    "elastic_limit_torque": ("Elastic limit torque, program [N·m]", 1.0),
+    "buckling_range": ("Buckling formula applies, program", 1.0),
+    "buckling_shear": ("Buckling shear, program [MPa]", _MEGAPASCAL),
+    "buckling_torque": ("Buckling torque, program [N·m]", 1.0),
+}
+"""Nominal number → its heading on Inputs and the size of its printed unit."""
+
+
+def stored_inputs(computed: Sequence[Computed], lost_motion_percent: float) -> Stored:
+    """Return the Inputs of variants in their order."""
+    return Stored("Inputs", [_row(one, lost_motion_percent) for one in computed])
+
+
+def _row(one: Computed, lost_motion_percent: float) -> dict[str, str | float | None]:
+    variant = one.variant
+    sizes = _sizes(variant, lost_motion_percent)
+    row: dict[str, str | float | None] = {
+        "Variant": variant.name,
+        "Flexspline type": variant.flexspline_type,
+        "Material": variant.material,
+    }
+    row |= {column.label: _printed(sizes.get(name), column) for name, column in ENTERED.items()}
+    for key, (heading, size) in PROGRAM.items():
+        number = one.nominal.get(key) or None
+        row[heading] = number / size if isinstance(number, float) else number
+    return row
+
+
+def _sizes(variant: Variant, lost_motion_percent: float) -> dict[str, float | None]:
+    """Return everything that was entered in SI, by name; None for a blank."""
+    return {
+        **variant.dimensions,
+        "youngs_modulus": variant.youngs_modulus,
+        "poisson_ratio": variant.poisson_ratio,
+        "yield_strength": variant.yield_strength,
+        "rated_torque": variant.rated_torque,
+        "backlash_limit": variant.backlash_limit,
+        "lost_motion_percent": lost_motion_percent / 100,
+    }
+
+
+def _printed(size: float | None, column: Column) -> float | None:
+    """Return a size as it was entered: with fifteen digits where these give the same size, else with all."""
+    if size is None:
+        return None
+    unit = column.si_unit.si
+    short = float(f"{size / unit:.15g}")
+    return short if short * unit == size else size / unit

@@ -1,0 +1,143 @@
+"""The inputs of Trace: what was submitted, what the reader puts in its place, and what counts."""
+
+from __future__ import annotations
+
+from xlsxwriter.utility import xl_rowcol_to_cell
+
+from flexlash.columns import VARIANTS, Column
+from flexlash.report.inputs import ENTERED
+from flexlash.report.live import Live, Operand, fill, put, when
+from flexlash.report.ranges import any_of, is_number
+from flexlash.report.trace_page import CHANGE, SUBMITTED, Page
+
+__all__ = ["LEFT_OUT", "write_inputs"]
+
+LEFT_OUT = "none"
+"""What a reader types to leave an optional input out, and what stands where there is none."""
+
+_TYPE = next(column for column in VARIANTS if column.key == "flexspline_type")
+_LINES = (
+    ("torque", "T", ""),
+    ("cylinder_length", "l", "inside depth, tooth rim included"),
+    ("wall_thickness", "Δ", ""),
+    ("bore_diameter", "d", ""),
+    ("mean_radius", "r_m", "as given, else (d + Δ)/2"),
+    ("disk_thickness", "t", "as given, else Δ"),
+    ("disk_inner_radius", "r_ci", "as given, else r_m"),
+    ("disk_outer_radius", "r_co", "as given, else r_m"),
+    ("disk_hub_thickness", "t_h", "straight taper from t_h at r_ci to t at r_co"),
+    ("disk_thickness_exponent", "n", "or power law: thickness t_h (r_ci/r)^n"),
+    ("disk_cone_angle", "α", "as given, else 90: a flat disk"),
+    ("hub_fillet_radius", "R_h", ""),
+    ("junction_fillet_radius", "R_j", ""),
+    ("rim_length", "b", ""),
+    ("rim_thickness", "t_b", ""),
+    ("youngs_modulus", "E", ""),
+    ("poisson_ratio", "ν", ""),
+    ("shear_modulus", "G", "as given, else E / (2 (1 + ν))"),
+    ("yield_strength", "σ_y", ""),
+    ("cylinder_calibration", "c_c", "factor on the wind-up of rim, wall and junction fillet"),
+    ("disk_calibration", "c_d", "factor on the wind-up of disk and hub fillet"),
+    ("rated_torque", "T_r", ""),
+    ("lost_motion_percent", "p", "share of the rated torque at which lost motion is stated"),
+    ("backlash_limit", "", ""),
+)
+_ALWAYS = frozenset({
+    "torque", "cylinder_length", "wall_thickness", "cylinder_calibration", "disk_calibration",
+    "lost_motion_percent",
+})  # fmt: skip
+_MAY_BE_ZERO = frozenset({"poisson_ratio", "disk_thickness_exponent"})
+_LOOKS = dict.fromkeys(_MAY_BE_ZERO, "plain") | {"shear_modulus": "figure"}
+_NAMES = {
+    "cylinder_calibration": "Calibration of the cylinder",
+    "disk_calibration": "Calibration of the disk",
+    "lost_motion_percent": "Lost motion at",
+}
+
+
+def write_inputs(page: Page) -> str:
+    """Write the inputs; return the range of the cells for changes."""
+    page.section("1  Inputs")
+    first = page.row + 1
+    _write_words(page)
+    bore: Live | None = None
+    for name, symbol, equation in _LINES:
+        column = ENTERED[name]
+        submitted, change = _cells(page, column.label, "general")
+        _restrict(page, column, name)
+        value = _used(page, name, submitted, change)
+        if name == "bore_diameter":
+            bore = change
+        elif name == "mean_radius" and bore is not None:
+            # A bore that the reader types takes the place of a submitted mean radius.
+            from_bore = _otherwise(page, name)
+            given = when(any_of(submitted.equals(""), is_number(bore)), from_bore, submitted)
+            value = when(change.equals(""), given, when(change.equals(LEFT_OUT), from_bore, change))
+        unit = column.unit if column.unit != "-" else ""
+        look = _LOOKS.get(name, "size")
+        page.line(name, value, (_NAMES.get(name, column.plain_name), symbol, unit, equation), look)
+    change_cells = [xl_rowcol_to_cell(row, CHANGE, row_abs=True, col_abs=True) for row in (first, page.row)]
+    return ":".join(change_cells)
+
+
+def _write_words(page: Page) -> None:
+    """Write type and material."""
+    submitted, change = _cells(page, "Flexspline type", "@")
+    page.sheet.data_validation(page.row + 1, CHANGE, page.row + 1, CHANGE, {
+        "validate": "list", "source": list(_TYPE.choices), "error_title": "Flexspline type",
+        "error_message": "Pick an entry of the list.",
+    })  # fmt: skip
+    words = ("Flexspline type", "", "", "cup or hat: with a disk or flange; cylinder: without")
+    page.line("flexspline_type", when(change.equals(""), submitted, change), words, "plain")
+    style = page.book.format("figure")
+    material = put(page.sheet, page.row + 1, SUBMITTED, page.stored.pick(page.place, "Material"), style)
+    page.line("material", material, ("Material", "", "", "its constants stand below"), "plain")
+
+
+def _cells(page: Page, heading: str, number: str) -> tuple[Live, Live]:
+    """Write what was submitted and the cell for a change into the next line; return references to both."""
+    submitted = page.stored.pick(page.place, heading)
+    first = put(page.sheet, page.row + 1, SUBMITTED, submitted, page.book.format("figure"))
+    return first, fill(page.sheet, page.row + 1, CHANGE, "", page.book.format("input", number))
+
+
+def _restrict(page: Page, column: Column, name: str) -> None:
+    """Let the cell for a change take what a submission may hold, or the word that leaves it out."""
+    cell = xl_rowcol_to_cell(page.row + 1, CHANGE)
+    bounds = [f"{cell}{'>' if column.exclusive_minimum else '>='}{column.minimum:.15g}"]
+    if column.maximum is not None:
+        bounds.append(f"{cell}<={column.maximum:.15g}")
+    rule = f'IF(ISNUMBER({cell}),AND({",".join(bounds)}),{cell}="{LEFT_OUT}")'
+    required = f"{column.requirement.capitalize()} is required here"
+    if name in _ALWAYS:
+        rule = f"AND(ISNUMBER({cell}),{','.join(bounds)})"
+    else:
+        required += f", or {LEFT_OUT} to leave it out"
+    page.sheet.data_validation(page.row + 1, CHANGE, page.row + 1, CHANGE, {
+        "validate": "custom", "value": f"={rule}", "error_title": column.plain_name, "error_message": f"{required}.",
+    })  # fmt: skip
+
+
+def _used(page: Page, name: str, submitted: Live, change: Live) -> Live:
+    """Return the input that counts: the change, else what was submitted, else what a blank stands for."""
+    if name in _ALWAYS:
+        return when(change.equals(""), submitted, change)
+    other = _otherwise(page, name)
+    entered = when(submitted.equals(""), other, submitted)
+    return when(change.equals(""), entered, when(change.equals(LEFT_OUT), other, change))
+
+
+def _otherwise(page: Page, name: str) -> Operand:
+    """Return what a blank input stands for."""
+    if name == "mean_radius":
+        return (page["bore_diameter"] + page["wall_thickness"]) / 2
+    if name == "shear_modulus":
+        return page["youngs_modulus"] / (2 * (1 + page["poisson_ratio"]))
+    same_as = {
+        "disk_thickness": "wall_thickness",
+        "disk_inner_radius": "mean_radius",
+        "disk_outer_radius": "mean_radius",
+    }
+    if name in same_as:
+        return page[same_as[name]]
+    return LEFT_OUT if name in _MAY_BE_ZERO else 90.0 if name == "disk_cone_angle" else 0.0

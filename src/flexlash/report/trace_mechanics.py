@@ -1,0 +1,145 @@
+"""The worked sections of Trace: shape, integrals, wind-ups and sums, in N, mm and rad."""
+
+from __future__ import annotations
+
+from flexlash.report.live import Live, logarithm, sine, when
+from flexlash.report.ranges import PI, all_of, is_number
+from flexlash.report.trace_page import Page
+from flexlash.report.trace_steps import Steps, thickness_at
+
+__all__ = ["in_disk", "only", "write_integrals", "write_shape", "write_sums", "write_windups"]
+
+_DEGREE = PI / 180
+_ARCMIN = PI / 10800
+
+
+def only(condition: Live, value: Live) -> Live:
+    """Return a number where it has a meaning, else 0, which a line shows as none."""
+    return when(condition, value, 0.0)
+
+
+def in_disk(page: Page, value: Live) -> Live:
+    """Return a number of the disk, else 0 where there is none."""
+    return when(page["profile"].equals("none"), 0.0, value)
+
+
+def write_shape(page: Page) -> None:
+    """Write what follows from the inputs alone."""
+    page.section("2  Material and shape")
+    inner, outer, hub = page["disk_inner_radius"], page["disk_outer_radius"], page["disk_hub_thickness"]
+    exponent, edge = page["disk_thickness_exponent"], page["disk_thickness"]
+    power = page["torque"] / (2 * PI * page["shear_modulus"])
+    page.line(
+        "torque_over_modulus", power, ("Torque over modulus", "T/(2πG)", "mm³", "T / (2π G); N·m over GPa is mm³")
+    )
+    has_power = all_of(is_number(exponent), hub > 0)
+    shaped = when(has_power, "power law", when(hub > 0, "straight taper", "even"))
+    profile = page.line(
+        "profile",
+        when(page["flexspline_type"].equals("cylinder"), "none", shaped),
+        ("Disk profile", "", "", "even, straight taper or power law, from t_h and n"),
+        "plain",
+    )
+    page.line(
+        "hub_thickness", when(hub > 0, hub, edge), ("Disk thickness at r_ci", "t_1", "mm", "t_h where given, else t")
+    )
+    straight = (edge - page["hub_thickness"]) / (outer - inner)
+    words = ("Change of thickness", "k", "mm/mm", "straight taper: (t − t_h) / (r_co − r_ci)")
+    page.line("thinning", only(profile.equals("straight taper"), straight), words, "fine")
+    words = ("Exponent that counts", "n", "", "power law: n, else 0")
+    page.line("thinning_exponent", only(profile.equals("power law"), exponent), words, "size")
+    page.line("disk_start", inner + page["hub_fillet_radius"], ("Plain disk starts at", "r_s", "mm", "r_ci + R_h"))
+    shape = (inner, page["hub_thickness"], page["thinning"], page["thinning_exponent"])
+    equation = "t(r) = (t_1 + k (r − r_ci)) (r_ci/r)^n at r_s"
+    words = ("Disk thickness there", "t_s", "mm", equation)
+    page.line("start_thickness", thickness_at(page["disk_start"], *shape), words)
+    page.line("outer_thickness", thickness_at(outer, *shape), ("Disk thickness at r_co", "t_o", "mm", "t(r) at r_co"))
+    plain = page["cylinder_length"] - page["rim_length"] - page["junction_fillet_radius"]
+    page.line("plain_length", plain, ("Plain wall", "l_w", "mm", "l − b − R_j"))
+    rim = page["mean_radius"] - page["wall_thickness"] / 2 + page["rim_thickness"] / 2
+    words = ("Mean radius of the rim", "r_b", "mm", "r_m − Δ/2 + t_b/2")
+    page.line("rim_radius", only(page["rim_length"] > 0, rim), words)
+
+
+def _even(start: Live, outer: Live, thickness: Live) -> Live:
+    """Return the integral of a flat disk of even thickness."""
+    return (1 / start**2 - 1 / outer**2) / (2 * thickness)
+
+
+def write_integrals(page: Page, steps: Steps) -> None:
+    """Write the integral of each segment."""
+    page.section("3  Wind-up of each segment: U = c T/(2πG) · I,  I = ∫ ds/(r³ t) along the meridian")
+    wall = page["wall_thickness"]
+    rim = page["rim_length"] / (page["rim_radius"] ** 3 * page["rim_thickness"])
+    _integral(page, "rim", only(page["rim_length"] > 0, rim), ("Tooth rim: integral", "I_b", "b / (r_b³ t_b)"))
+    plain = page["plain_length"] / (page["mean_radius"] ** 3 * wall)
+    _integral(page, "wall", plain, ("Wall: integral", "I_w", "l_w / (r_m³ Δ)"))
+    points = "sum over points, see Trace steps"
+    _integral(page, "junction_fillet", steps.junction_fillet(), ("Junction fillet: integral", "I_j", points))
+    profile, start, outer = page["profile"], page["disk_start"], page["disk_outer_radius"]
+    thickness = page["start_thickness"]
+    words = ("Even disk: integral", "I_e", "(1/r_s² − 1/r_co²) / (2 t)")
+    _integral(page, "even", only(profile.equals("even"), _even(start, outer, thickness)), words)
+    words = ("Straight taper: integral", "I_t", "∫ v dv/t with v = 1/r, see Trace steps")
+    _integral(page, "taper", only(profile.equals("straight taper"), steps.taper()), words)
+    ratio = logarithm(outer / start)
+    growth = ("Power law: exponent of growth", "z", "", "(n − 2) ln(r_co/r_s)")
+    is_power = profile.equals("power law")
+    page.line("power_law_growth", only(is_power, (page["thinning_exponent"] - 2) * ratio), growth)
+    words = ("Power law: integral", "I_p", "ln(r_co/r_s) (e^z − 1)/z / (t_s r_s²); (e^z − 1)/z: Trace steps")
+    _integral(page, "power_law", only(is_power, ratio * steps.growth() / (thickness * start**2)), words)
+    flat = page["even_integral"] + page["taper_integral"] + page["power_law_integral"]
+    words = ("Disk with its cone: integral", "I_d", "(I_e + I_t + I_p) / sin α")
+    _integral(page, "disk_body", flat / sine(page["disk_cone_angle"] * _DEGREE), words)
+    hub = in_disk(page, only(page["hub_fillet_radius"] > 0, steps.hub_fillet()))
+    _integral(page, "hub_fillet", hub, ("Hub fillet: integral", "I_h", points))
+
+
+def _integral(page: Page, segment: str, value: Live, words: tuple[str, str, str]) -> None:
+    name, symbol, equation = words
+    page.line(f"{segment}_integral", value, (name, symbol, "1/mm³", equation), "integral")
+
+
+_SEGMENTS = (
+    ("rim", "Tooth rim", "b", "cylinder_calibration", "c_c"),
+    ("wall", "Wall", "w", "cylinder_calibration", "c_c"),
+    ("junction_fillet", "Junction fillet", "j", "cylinder_calibration", "c_c"),
+    ("disk_body", "Disk", "d", "disk_calibration", "c_d"),
+    ("hub_fillet", "Hub fillet", "h", "disk_calibration", "c_d"),
+)
+
+
+def write_windups(page: Page) -> None:
+    """Write the wind-up of each segment, in rad and arcmin."""
+    for segment, name, index, calibration, factor in _SEGMENTS:
+        angle = page[calibration] * page["torque_over_modulus"] * page[f"{segment}_integral"]
+        words = (f"{name}: wind-up", f"U_{index}", "", f"{factor} T/(2πG) I_{index}")
+        page.line(f"{segment}_windup", angle, words, "angle")
+
+
+def write_sums(page: Page) -> None:
+    """Write wind-up, backlash, stiffness and the formulas that leave something out."""
+    page.section("4  Sum")
+    cylinder = page["rim_windup"] + page["wall_windup"] + page["junction_fillet_windup"]
+    page.line("cylinder_windup", cylinder, ("Cylinder wind-up", "U_cyl", "", "U_b + U_w + U_j"), "angle")
+    disk = page["disk_body_windup"] + page["hub_fillet_windup"]
+    page.line("disk_windup", disk, ("Disk wind-up", "U_disk", "", "U_d + U_h"), "angle")
+    windup = page["cylinder_windup"] + page["disk_windup"]
+    page.line("windup", windup, ("Wind-up", "U", "", "U_cyl + U_disk"), "angle")
+    page.line("backlash", 2 * page["windup"], ("Backlash", "2U", "", "lag when the torque reverses"), "angle")
+    share = page["disk_windup"] / page["windup"]
+    page.line("disk_share", share, ("Disk share", "", "", "U_disk / U"), "share")
+    stiffness = page.line("stiffness", page["torque"] / page["windup"], ("Stiffness", "K", "N·m/rad", "T / U"))
+    page.line("stiffness_arcmin", stiffness * _ARCMIN, ("Stiffness", "K", "N·m/arcmin", "K π/10800"))
+    plain = page["cylinder_length"] / (page["mean_radius"] ** 3 * page["wall_thickness"])
+    words = ("Cylinder-only formula", "2U_0", "", "2 T/(2πG) · l / (r_m³ Δ)")
+    page.line("cylinder_only_backlash", 2 * page["torque_over_modulus"] * plain, words, "angle")
+    even = _even(page["disk_inner_radius"], page["disk_outer_radius"], page["outer_thickness"])
+    added = in_disk(page, 2 * page["torque_over_modulus"] * even)
+    words = ("Two-term formula", "2U_1", "", "2U_0 + 2 T/(2πG) · (1/r_ci² − 1/r_co²) / (2 t_o)")
+    page.line("two_term_backlash", page["cylinder_only_backlash"] + added, words, "angle")
+    lost = 2 * (page["lost_motion_percent"] / 100) * page["rated_torque"] / stiffness / _ARCMIN
+    page.line("lost_motion", lost, ("Lost motion", "", "arcmin", "2 p T_r / K"))
+    limit = page["backlash_limit"]
+    reserve = only(limit > 0, page["backlash"] / _ARCMIN / limit)
+    page.line("limit_share", reserve, ("Backlash over its limit", "", "", "2U / limit; without tolerances"), "share")

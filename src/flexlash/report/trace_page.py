@@ -1,0 +1,115 @@
+"""The page that Trace is written on: lines of one quantity each, with its value, unit and equation in words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from xlsxwriter.utility import xl_rowcol_to_cell
+
+from flexlash.report.inputs import PROGRAM
+from flexlash.report.live import Live, Value, put, when
+from flexlash.report.ranges import PI
+from flexlash.report.stored import Stored
+from flexlash.report.styles import Book
+
+__all__ = ["CHANGE", "HEADER", "SHEET", "SUBMITTED", "VALUE", "Page", "Words"]
+
+SHEET = "Trace"
+HEADER = 4
+"""Row of the headings, from 0; they stay in sight."""
+
+_NAME, _SYMBOL, VALUE, _UNIT, _EQUATION, SUBMITTED, CHANGE = range(7)
+_COLUMNS = (
+    ("Quantity", 31),
+    ("Symbol", 8),
+    ("Value used", 15),
+    ("Unit", 16),
+    ("Equation", 56),
+    ("As submitted, or the program's value", 15),
+    ("Your change, or the difference", 15),
+)
+_LOOKS = {
+    "size": 'General;-General;"none"',
+    "plain": "General",
+    "integral": '0.00000E+00;-0.00000E+00;"none"',
+    "angle": '0.000000E+00;-0.000000E+00;"none"',
+    "fine": '0.000000;-0.000000;"none"',
+    "figure": '#,##0.000;-#,##0.000;"none"',
+    "difference": "0.0E+00",
+    "share": '0.00%;-0.00%;"none"',
+}
+_SHAPES = {_UNIT: "indented"}
+_ARCMIN_LOOK = '"rad = "0.0000"′";"rad = "-0.0000"′";"rad"'
+
+Words = tuple[str, str, str, str]
+"""Quantity, symbol, unit and equation of a line."""
+
+
+class Page:
+    """The lines of Trace; what a line comes to is found by its key."""
+
+    def __init__(self, book: Book, sheet: Any, place: Live, stored: Stored) -> None:
+        self.book = book
+        self.sheet = sheet
+        self.place = place
+        self.stored = stored
+        self.row = HEADER
+        self.lines: dict[str, Live] = {}
+        self.rows: dict[str, int] = {}
+        self.differences: list[Value] = []
+        self._none = book.workbook.add_format({"font_color": "#8C8C8C"})
+        for column, (heading, width) in enumerate(_COLUMNS):
+            sheet.set_column(column, column, width)
+            sheet.write_string(HEADER, column, heading, book.format("header"))
+        sheet.set_row(HEADER, 48)
+
+    def __getitem__(self, key: str) -> Live:
+        """Return the reference to a line's value."""
+        return self.lines[key]
+
+    def section(self, title: str) -> None:
+        """Begin a section."""
+        self.row += 2
+        for column in range(len(_COLUMNS)):
+            self.sheet.write_blank(self.row, column, None, self.book.format("section"))
+        self.sheet.write_string(self.row, _NAME, title, self.book.format("section"))
+
+    def line(self, key: str, value: Live, words: Words, look: str = "figure") -> Live:
+        """Write the next line and return the reference to its value; the program's value stands beside it."""
+        self.row += 1
+        self._write_words(words)
+        style = self.book.format("figure", _LOOKS[look])
+        self.lines[key] = put(self.sheet, self.row, VALUE, value, style)
+        self.rows[key] = self.row
+        if look == "angle":
+            unit = self.book.format("indented", _ARCMIN_LOOK)
+            put(self.sheet, self.row, _UNIT, self.lines[key] / (PI / 10800), unit)
+        self._grey()
+        if key in PROGRAM:
+            self._write_program(self.lines[key], PROGRAM[key][0], style, is_word=look == "plain")
+        return self.lines[key]
+
+    def _write_words(self, words: Words) -> None:
+        places = (_NAME, _SYMBOL, _UNIT, _EQUATION)
+        for column, text in zip(places, words, strict=True):
+            if text:
+                self.sheet.write_string(self.row, column, text, self.book.format(_SHAPES.get(column, "text")))
+
+    def _grey(self) -> None:
+        """Let a line without a value stand back."""
+        cell = xl_rowcol_to_cell(self.row, VALUE, col_abs=True)
+        rule = {"type": "formula", "criteria": f'=OR({cell}=0,{cell}="none")', "format": self._none}
+        self.sheet.conditional_format(self.row, _NAME, self.row, _EQUATION, rule)
+
+    def _write_program(self, traced: Live, heading: str, style: Any, *, is_word: bool) -> None:
+        """Write what the program found and how far the traced value is from it."""
+        found = put(self.sheet, self.row, SUBMITTED, self.stored.pick(self.place, heading), style)
+        off = when(traced.equals(found), 0.0, 1.0) if is_word else traced / found - 1
+        nothing = "none" if is_word else 0.0
+        difference = when(found.equals(""), when(traced.equals(nothing), "", 1.0), off)
+        shown = put(self.sheet, self.row, CHANGE, difference, self.book.format("figure", _LOOKS["difference"]))
+        self.differences.append(shown.value)
+        cell = xl_rowcol_to_cell(self.row, CHANGE)
+        changed = self.book.workbook.add_format({"num_format": "+0.000%;-0.000%"})
+        rule = {"type": "formula", "criteria": f"=ABS(N({cell}))>0.000001", "format": changed}
+        self.sheet.conditional_format(self.row, CHANGE, self.row, CHANGE, rule)

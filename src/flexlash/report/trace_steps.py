@@ -1,0 +1,242 @@
+"""The sheet Trace steps: the sums over points, and the search, that stand behind single lines of Trace."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from xlsxwriter.utility import xl_rowcol_to_cell
+
+from flexlash.mechanics.fillets import ARC_RULE, FINE_RULE, JUNCTION_RULE, WIDE
+from flexlash.mechanics.strength import PASSES, STATIONS
+from flexlash.mechanics.windup import NEARLY, TAPER_PLACES, TAPER_WEIGHTS
+from flexlash.report.live import (
+    Live,
+    Operand,
+    cosine,
+    entry_of,
+    exponential,
+    fill,
+    greatest,
+    least,
+    live,
+    logarithm,
+    put,
+    sine,
+    when,
+)
+from flexlash.report.ranges import PI, elsewhere, greatest_in, magnitude, place_of_greatest, total
+from flexlash.report.styles import Book
+from flexlash.report.trace_page import SHEET, Page
+
+__all__ = ["STEPS", "Steps", "shear", "thickness_at"]
+
+STEPS = "Trace steps"
+_TITLE_ROW = 3
+_ENTRY = 2
+"""Column of a block that holds its single numbers; their names reach over the columns before."""
+
+_WIDTH = 15.5
+_JUNCTION, _HUB, _DISK, _SEARCH, _END = 0, 6, 13, 18, 22
+_PROFILE_WORDS = "(t_1 + k (r − r_ci)) (r_ci/r)^n"
+_STEEP = 1.0
+"""Size of an exponent from which e^z − 1 keeps its digits."""
+
+
+class _Block:
+    """A piece of the sheet: named cells and tables one below the other."""
+
+    def __init__(self, book: Book, sheet: Any, *, left: int, row: int, heads: tuple[str, str]) -> None:
+        self.book, self.sheet, self.left, self.row = book, sheet, left, row + 1
+        sheet.write_string(row, left, heads[0], book.format("label"))
+        sheet.write_string(row + 1, left, heads[1], book.format("quiet"))
+
+    def entry(self, name: str, value: Live) -> Live:
+        """Write a named number and return the reference to it."""
+        self.row += 1
+        self.sheet.write_string(self.row, self.left, name, self.book.format("text"))
+        return put(self.sheet, self.row, self.left + _ENTRY, value, self.book.format("text", "general"))
+
+    def heads(self, *headings: str) -> None:
+        """Begin a table."""
+        self.row += 1
+        for place, heading in enumerate(headings):
+            self.sheet.write_string(self.row, self.left + place, heading, self.book.format("header"))
+
+    def cell(self, place: int, value: Live | float) -> Live:
+        """Write a cell of the current row of a table and return the reference to it."""
+        style = self.book.format("text", "general")
+        if isinstance(value, Live):
+            return put(self.sheet, self.row, self.left + place, value, style)
+        return fill(self.sheet, self.row, self.left + place, value, style)
+
+    def column(self, place: int, count: int) -> str:
+        """Return the range of the last rows of a table."""
+        ends = (self.row - count + 1, self.row)
+        return ":".join(xl_rowcol_to_cell(row, self.left + place, row_abs=True, col_abs=True) for row in ends)
+
+
+class Steps:
+    """The sheet Trace steps, written as Trace asks for its results."""
+
+    def __init__(self, book: Book, page: Page) -> None:
+        self.book, self.page = book, page
+        self.sheet = book.sheet(STEPS)
+        self.sheet.write_string(0, 0, "Steps behind Trace", book.format("title"))
+        self.sheet.set_row(0, 28)
+        note = (
+            "Nothing to enter here: the inputs come from Trace, the results go back there. Lengths in mm, stresses in "
+            "MPa. Points and weights are those of the program."
+        )
+        self.sheet.write_string(1, 0, note, book.format("quiet"))
+        self.sheet.set_column(0, _END - 1, _WIDTH)
+        for gap in (_HUB, _DISK, _SEARCH):
+            self.sheet.set_column(gap - 1, gap - 1, 3)
+        self.sheet.freeze_panes(_TITLE_ROW + 1, 0)
+        self.sheet.repeat_rows(_TITLE_ROW)
+        self.sheet.print_area(0, 0, _TITLE_ROW + 16 + PASSES * (STATIONS + 6), _END - 1)
+
+    def _block(self, left: int, title: str, formula: str, row: int = _TITLE_ROW) -> _Block:
+        return _Block(self.book, self.sheet, left=left, row=row, heads=(title, formula))
+
+    def _links(self, block: _Block, **keys: str) -> list[Live]:
+        """Write the inputs of a block, each linked to its line of Trace."""
+        return [block.entry(name, elsewhere(SHEET, self.page[key])) for name, key in keys.items()]
+
+    def junction_fillet(self) -> Live:
+        """Return the integral of the junction fillet [1/mm³]."""
+        block = self._block(
+            _JUNCTION,
+            "Junction fillet: ∫ dz/(r³ t), angle p from the wall",
+            "a = R (1 − cos p), r = r_m − a/2, t = Δ + a",
+        )
+        radius, wall, fillet = self._links(block, r_m="mean_radius", Δ="wall_thickness", R_j="junction_fillet_radius")
+        found = []
+        for rule in (JUNCTION_RULE, FINE_RULE):
+            block.heads("cos p", "weight w", "a", "r", "w cos p/(r³ t)")
+            summands = []
+            for _, cosine_, weight_ in rule:
+                block.row += 1
+                turn, weight = block.cell(0, cosine_), block.cell(1, weight_)
+                added = block.cell(2, fillet * (1 - turn))
+                middle = block.cell(3, radius - added / 2)
+                summands.append(block.cell(4, weight * turn / (middle**3 * (wall + added))).number)
+            cells = block.column(4, len(rule))
+            found.append(block.entry(f"{len(rule)} points: R × sum", fillet * total(cells, summands)))
+        taken = block.entry(
+            f"Taken ({len(FINE_RULE)} if R > {WIDE:g} Δ)", when(fillet > WIDE * wall, found[1], found[0])
+        )
+        return elsewhere(STEPS, taken)
+
+    def hub_fillet(self) -> Live:
+        """Return the integral of the hub fillet [1/mm³]."""
+        block = self._block(
+            _HUB,
+            "Hub fillet: ∫ dr/(r³ t), angle q from the hub",
+            f"r = r_ci + R (1 − cos q), t = {_PROFILE_WORDS} + R (1 − sin q)",
+        )
+        fillet, inner, *profile = self._links(block, R_h="hub_fillet_radius", **_PROFILE)
+        found = []
+        for rule in (ARC_RULE, FINE_RULE):
+            block.heads("sin q", "cos q", "weight w", "r", "t", "w sin q/(r³ t)")
+            summands = []
+            for sine_, cosine_, weight_ in rule:
+                block.row += 1
+                rise, turn, weight = (block.cell(place, one) for place, one in enumerate((sine_, cosine_, weight_)))
+                radius = block.cell(3, inner + fillet * (1 - turn))
+                thickness = block.cell(4, thickness_at(radius, inner, *profile) + fillet * (1 - rise))
+                summands.append(block.cell(5, weight * rise / (radius**3 * thickness)).number)
+            cells = block.column(5, len(rule))
+            found.append(block.entry(f"{len(rule)} points: R × sum", fillet * total(cells, summands)))
+        wide = fillet > WIDE * profile[0]
+        return elsewhere(
+            STEPS, block.entry(f"Taken ({len(FINE_RULE)} if R > {WIDE:g} t_1)", when(wide, found[1], found[0]))
+        )
+
+    def taper(self) -> Live:
+        """Return the integral of a disk that thins in a straight line [1/mm³]."""
+        block = self._block(_DISK, "Straight taper: ∫ v dv/t between r_s and r_co", "v = 1/r, t = a + b r")
+        start, outer, inner_thickness, outer_thickness = self._links(
+            block, r_s="disk_start", r_co="disk_outer_radius", t_s="start_thickness", t_o="outer_thickness"
+        )
+        low, high = block.entry("v_o = 1/r_co", 1 / outer), block.entry("v_s = 1/r_s", 1 / start)
+        reach = block.entry("v_s − v_o", high - low)
+        first, last = block.entry("t_o v_o", low * outer_thickness), block.entry("t_s v_s", high * inner_thickness)
+        growth = block.entry("t_s v_s − t_o v_o", last - first)
+        nearly = magnitude(growth) < NEARLY * first
+        intercept = block.entry("a (1: not used)", when(nearly, 1.0, growth / reach))
+        slope = block.entry("b/a", (inner_thickness - intercept) / (start * intercept))
+        bracket = reach * ((high + low) / 2 - slope) + slope**2 * logarithm(last / first)
+        closed = block.entry("Closed form", bracket / intercept)
+        summands = []
+        block.heads("place u", "weight w", "v", "w v²/(v t)")
+        for place_, weight_ in zip(TAPER_PLACES.tolist(), TAPER_WEIGHTS.tolist(), strict=True):
+            block.row += 1
+            place, weight = block.cell(0, place_), block.cell(1, weight_)
+            curvature = block.cell(2, low + reach * place)
+            summands.append(block.cell(3, weight * curvature**2 / (first + growth * place)).number)
+        points = block.entry("By points", reach * total(block.column(3, len(summands)), summands))
+        self._below = block.row + 3
+        return elsewhere(STEPS, block.entry("Taken (points: t ~ r)", when(nearly, points, closed)))
+
+    def growth(self) -> Live:
+        """Return (e^z − 1)/z, by which a disk that thins with a power of the radius differs from n = 2 [-]."""
+        block = self._block(_DISK, "Power law: (e^z − 1)/z", "∫ e^(z u) du, u from 0 to 1", self._below)
+        (exponent,) = self._links(block, z="power_law_growth")
+        summands = []
+        block.heads("place u", "weight w", "w e^(z u)")
+        for place_, weight_ in zip(TAPER_PLACES.tolist(), TAPER_WEIGHTS.tolist(), strict=True):
+            block.row += 1
+            place, weight = block.cell(0, place_), block.cell(1, weight_)
+            summands.append(block.cell(2, weight * exponential(exponent * place)).number)
+        points = block.entry("By points", total(block.column(2, len(summands)), summands))
+        closed = (exponential(exponent) - 1) / exponent
+        taken = when(magnitude(exponent) < _STEEP, points, closed)
+        return elsewhere(STEPS, block.entry("Taken (points: |z| < 1)", taken))
+
+    def hub_fillet_shear(self) -> tuple[Live, Live]:
+        """Return the greatest shear stress in the hub fillet [MPa] and the radius where it acts [mm]."""
+        block = self._block(
+            _SEARCH,
+            f"Greatest shear in the hub fillet: {PASSES} passes of {STATIONS} stations",
+            "Thickness t as for the hub fillet; each pass around the best station before",
+        )
+        torque, fillet_radius, outer, inner, *profile = self._links(
+            block, T="torque", R_h="hub_fillet_radius", r_co="disk_outer_radius", **_PROFILE
+        )
+        fillet = block.entry("R = R_h, at most r_co − r_ci", least(fillet_radius, outer - inner))
+        low, high = block.entry("from place", live(0.0)), block.entry("to place", live(1.0))
+        for number in range(1, PASSES + 1):
+            places, radii, stresses = [], [], []
+            block.heads("place 2q/π", "r", "t", "T/(2π r² t)")
+            for station in range(STATIONS):
+                block.row += 1
+                places.append(block.cell(0, low + (high - low) * (station / live(STATIONS - 1.0))))
+                angle = places[-1] * PI / 2
+                radii.append(block.cell(1, inner + fillet * (1 - cosine(angle))))
+                thickness = block.cell(2, thickness_at(radii[-1], inner, *profile) + fillet * (1 - sine(angle)))
+                stresses.append(block.cell(3, shear(torque, radii[-1], thickness)))
+            cells = [block.column(place, STATIONS) for place in range(4)]
+            values = [one.number for one in stresses]
+            best = block.entry(f"best of pass {number}", place_of_greatest(cells[3], values))
+            if number < PASSES:
+                centre, step = entry_of(cells[0], best, [one.value for one in places]), (high - low) / (STATIONS - 1)
+                low, high = (
+                    block.entry("from place", greatest(centre - step, 0.0)),
+                    block.entry("to place", least(centre + step, 1.0)),
+                )
+        found = block.entry("Greatest shear", greatest_in(cells[3], values))
+        radius = block.entry("at radius", entry_of(cells[1], best, [one.value for one in radii]))
+        return elsewhere(STEPS, found), elsewhere(STEPS, radius)
+
+
+_PROFILE = {"r_ci": "disk_inner_radius", "t_1": "hub_thickness", "k": "thinning", "n": "thinning_exponent"}
+
+
+def thickness_at(radius: Operand, inner: Live, thickness: Live, thinning: Live, exponent: Live) -> Live:
+    """Return the disk's own thickness at a radius, for every profile [mm]."""
+    return (thickness + thinning * (radius - inner)) * (inner / radius) ** exponent
+
+
+def shear(torque: Live, radius: Live, thickness: Live) -> Live:
+    """Return the shear stress of a ring [MPa]."""
+    return 1000 * torque / (2 * PI * radius**2 * thickness)

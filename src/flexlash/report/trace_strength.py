@@ -1,0 +1,94 @@
+"""The stresses of Trace: shear and von Mises of each section, the torque at which one yields or the wall buckles."""
+
+from __future__ import annotations
+
+from flexlash.mechanics.strength import GREATEST_SLENDERNESS, KNOCK_DOWN, LEAST_CURVATURE
+from flexlash.report.live import Live, greatest, live, root, when
+from flexlash.report.ranges import PI, all_of, is_number
+from flexlash.report.trace_mechanics import in_disk, only
+from flexlash.report.trace_page import Page
+from flexlash.report.trace_steps import Steps, shear
+
+__all__ = ["write_buckling", "write_stresses"]
+
+_NAMES = (("wall", "Wall"), ("rim", "Tooth rim"), ("hub", "Disk"))
+
+
+def write_stresses(page: Page, steps: Steps) -> None:
+    """Write shear and von Mises stress of each section, and what governs."""
+    page.section("5  Stresses")
+    _write_shears(page, steps)
+    for key, name in _NAMES:
+        words = (f"{name}: von Mises", f"σ_{name[0].lower()}", "MPa", "√3 τ")
+        page.line(f"{key}_von_mises", root(3.0) * page[f"{key}_shear"], words)
+    wall, rim, hub = (page[f"{key}_von_mises"] for key, _ in _NAMES)
+    section = when(all_of(wall >= rim, wall >= hub), "wall", when(rim >= hub, "tooth rim", "disk"))
+    words = ("Governing section", "", "", "the one with the greatest von Mises stress")
+    page.line("governing_section", section, words, "plain")
+    stress = page.line("von_mises", greatest(wall, rim, hub), ("Greatest von Mises", "σ", "MPa", "of the three"))
+    limit = only(page["yield_strength"] > 0, page["torque"] * page["yield_strength"] / stress)
+    page.line("elastic_limit_torque", limit, ("Elastic limit torque", "T_el", "N·m", "T σ_y / σ"))
+
+
+def _write_shears(page: Page, steps: Steps) -> None:
+    """Write the shear stress of wall, rim and disk: in a disk without fillet it is greatest at an end."""
+    torque, radius = page["torque"], page["mean_radius"]
+    in_wall = shear(torque, radius, page["wall_thickness"])
+    page.line("wall_shear", in_wall, ("Wall: shear", "τ_w", "MPa", "T / (2π r_m² Δ)"))
+    in_rim = only(page["rim_length"] > 0, shear(torque, page["rim_radius"], page["rim_thickness"]))
+    page.line("rim_shear", in_rim, ("Tooth rim: shear", "τ_t", "MPa", "T / (2π r_b² t_b)"))
+    start, outer = page["disk_start"], page["disk_outer_radius"]
+    at_start = in_disk(page, shear(torque, start, page["start_thickness"]))
+    page.line("start_shear", at_start, ("Disk at r_s: shear", "", "MPa", "T / (2π r_s² t_s)"))
+    at_outer = in_disk(page, shear(torque, outer, page["outer_thickness"]))
+    page.line("outer_shear", at_outer, ("Disk at r_co: shear", "", "MPa", "T / (2π r_co² t_o)"))
+    in_fillet, place = steps.hub_fillet_shear()
+    in_fillet = in_disk(page, only(page["hub_fillet_radius"] > 0, in_fillet))
+    words = ("Hub fillet: greatest shear", "", "MPa", "searched along the fillet, see Trace steps")
+    page.line("fillet_shear", in_fillet, words)
+    found = greatest(page["start_shear"], page["outer_shear"], page["fillet_shear"])
+    words = ("Disk: greatest shear", "τ_d", "MPa", "of fillet and both ends: between the ends it is never greater")
+    page.line("hub_shear", found, words)
+    at_end = when(page["start_shear"] >= page["outer_shear"], start, outer)
+    is_end = page["fillet_shear"] < greatest(page["start_shear"], page["outer_shear"])
+    acts = only(page["hub_shear"] > 0, when(is_end, at_end, place))
+    page.line("shear_radius", acts, ("Radius where it acts", "", "mm", "its place in the disk"))
+
+
+def write_buckling(page: Page) -> None:
+    """Write at which shear stress and torque the wall buckles."""
+    page.section("6  Buckling of the wall (NASA SP-8007)")
+    modulus, ratio = page["youngs_modulus"] * 1000, page["poisson_ratio"]
+    radius, wall, length = page["mean_radius"], page["wall_thickness"], page["cylinder_length"]
+    is_known = all_of(page["youngs_modulus"] > 0, is_number(ratio))
+    flexible = 1 - ratio**2
+    curvature = live(KNOCK_DOWN) ** (live(4.0) / 3) * length**2 * root(flexible) / (radius * wall)
+    words = ("Curvature", "γZ", "", f"{KNOCK_DOWN:g}^(4/3) l² √(1 − ν²) / (r_m Δ)")
+    page.line("curvature", only(is_known, curvature), words)
+    slender = length / radius / root(radius / wall)
+    page.line("slenderness", slender, ("Slenderness", "", "", "(l/r_m) / √(r_m/Δ)"))
+    longer = when(page["slenderness"] >= GREATEST_SLENDERNESS, "longer", "yes")
+    span = when(page["curvature"] <= LEAST_CURVATURE, "shorter", longer)
+    equation = f"shorter: γZ ≤ {LEAST_CURVATURE:g}; longer: slenderness ≥ {GREATEST_SLENDERNESS:g}; else yes"
+    span_words = ("Formula applies", "", "", equation)
+    applies = page.line("buckling_range", when(is_known, span, "none"), span_words, "plain")
+    usual = 0.747 * KNOCK_DOWN * modulus / ((radius / wall) ** 1.25 * root(length / radius))
+    words = ("Usual cylinder", "τ_1", "MPa", f"0.747 · {KNOCK_DOWN:g} E (r_m/Δ)^(−5/4) (l/r_m)^(−1/2)")
+    page.line("usual_buckling", only(is_known, usual), words)
+    plate = 5.35 * PI**2 * modulus / (12 * flexible) * (wall / length) ** 2
+    words = ("Long plate", "τ_2", "MPa", "5.35 π² E / (12 (1 − ν²)) (Δ/l)²")
+    page.line("plate_buckling", only(is_known, plate), words)
+    tube = 0.272 * KNOCK_DOWN * modulus / flexible**0.75 * (wall / radius) ** 1.5
+    words = ("Long tube", "τ_3", "MPa", f"0.272 · {KNOCK_DOWN:g} E (1 − ν²)^(−3/4) (Δ/r_m)^(3/2)")
+    page.line("tube_buckling", only(is_known, tube), words)
+    _write_governing_buckling(page, applies)
+
+
+def _write_governing_buckling(page: Page, applies: Live) -> None:
+    usual = page["usual_buckling"]
+    short = when(applies.equals("shorter"), greatest(usual, page["plate_buckling"]), usual)
+    stress = when(applies.equals("longer"), page["tube_buckling"], short)
+    words = ("Wall buckles at shear", "τ_cr", "MPa", "τ_1; shorter: the greater of τ_1 and τ_2; longer: τ_3")
+    page.line("buckling_shear", stress, words)
+    torque = page["torque"] * page["buckling_shear"] / page["wall_shear"]
+    page.line("buckling_torque", torque, ("Wall buckles at torque", "", "N·m", "T τ_cr / τ_w"))
