@@ -14,8 +14,11 @@ from flexlash.outcome import Outcome
 from flexlash.submission.mending.repair import Repair
 
 __all__ = [
+    "angle_words",
+    "counted",
     "dimension_words",
     "finding_lines",
+    "listed",
     "points_words",
     "repair_lines",
     "rounded",
@@ -54,7 +57,7 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[tuple[str, str]]:
     for (_, code, sheet), group in sorted(groups.items()):
         level = group[0].level
         cells = {found.cell: None for found in group if found.cell}
-        where = f", {_counted(len(cells), 'cell')}: {shown(sheet)}!{cell_ranges(list(cells))}" if cells else ""
+        where = f", {counted(len(cells), 'cell')}: {shown(sheet)}!{cell_ranges(list(cells))}" if cells else ""
         yield level, f"{level} {code} {CATALOGUE[code].title}{where}"
         for found in group[:_SHOWN_MESSAGES]:
             yield "", f"    {found.message}"
@@ -74,7 +77,7 @@ def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
     rows, computed = counts["rows"], counts["computed"]
     ready = f"{computed} of {rows} rows {'computed' if ran else 'ready'}" if rows else "nothing to compute"
     fixes = to_fix_words(outcome.findings)
-    warned = _counted(counts["warnings"], "warning") if counts["warnings"] else ""
+    warned = counted(counts["warnings"], "warning") if counts["warnings"] else ""
     yield f"{name}: {'; '.join(filter(None, [ready, fixes, warned]))}."
     if ran and rows:
         yield from over_limit_lines(outcome)
@@ -100,7 +103,7 @@ def _written(outcome: Outcome, path: Path) -> str:
 def repair_lines(repairs: Sequence[Repair]) -> Iterator[str]:
     """Yield what was changed in a mended submission, every cell of it."""
     yield (
-        f"{_counted(len(repairs), 'cell')} mended:"
+        f"{counted(len(repairs), 'cell')} mended:"
         if repairs
         else "There is nothing that could be mended with certainty."
     )
@@ -115,7 +118,7 @@ def _next_step(computed: int, rows: int, name: str) -> str:
     if not computed:
         return f"mend that, then: flexlash check {name}"
     if computed < rows:
-        return f"mend that and check again, or compute the {_counted(computed, 'row')}: flexlash run {name}"
+        return f"mend that and check again, or compute the {counted(computed, 'row')}: flexlash run {name}"
     return f"flexlash run {name}"
 
 
@@ -124,13 +127,25 @@ def to_fix_words(findings: Sequence[Finding]) -> str:
     errors = [found for found in findings if found.level == "error"]
     cells = len({(found.sheet, found.cell) for found in errors if found.cell})
     others = sum(not found.cell for found in errors)
-    words = [_counted(cells, "cell") if cells else "", f"{_counted(others, 'problem')} of the file" if others else ""]
+    words = [counted(cells, "cell") if cells else "", f"{counted(others, 'problem')} of the file" if others else ""]
     return f"{' and '.join(filter(None, words))} to fix" if errors else ""
 
 
-def _counted(count: int, what: str) -> str:
+def counted(count: int, what: str) -> str:
     """Return a number with its noun: `1 cell`, `5 cells`."""
     return f"{count} {what}{'' if count == 1 else 's'}"
+
+
+def listed(words: Sequence[str], most: int) -> str:
+    """Return the first few of a list as a sentence names them, and how many more there are.
+
+    >>> listed(["a", "b"], 3), listed(["a", "b", "c", "d"], 2)
+    ('a and b', 'a, b and 2 more')
+    """
+    named = list(words[:most])
+    if len(words) > most:
+        named.append(f"{len(words) - most} more")
+    return " and ".join(filter(None, [", ".join(named[:-1]), *named[-1:]]))
 
 
 def over_limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
@@ -202,9 +217,9 @@ def share_words(row: dict[str, Any]) -> str:
     if value == 0:
         return _at_most(high)
     if value == 1:
-        return f"all but {_at_most(1 - low)}"
+        return _ALL if 1 - low < _LEAST else f"all but {_at_most(1 - low)}"
     if 1 - value < _RARE:
-        return f"all but {_interval(1 - value, 1 - high, 1 - low)}"
+        return _ALL if 1 - low < _LEAST else f"all but {_interval(1 - value, 1 - high, 1 - low)}"
     return _interval(value, low, high)
 
 
@@ -216,6 +231,8 @@ _FINEST = 1e-4
 """Part of a share that is not told in words, however well it is known."""
 
 _LEAST = 1e-12
+_NONE, _ALL = "practically none", "practically all"
+"""What is said of shares below the least that is told, 0.001 ppb."""
 
 
 def _unit(share: float) -> tuple[float, str]:
@@ -239,7 +256,7 @@ def _interval(value: float, low: float, high: float) -> str:
 
 def _at_most(share: float) -> str:
     """Return the bound of a share of which none was seen."""
-    return "fewer than 0.001 ppb" if share < _LEAST else f"at most {_share(share)}"
+    return _NONE if share < _LEAST else f"at most {_share(share)}"
 
 
 def _share(share: float) -> str:
@@ -258,3 +275,13 @@ def rounded(value: float, error: float) -> str:
         return f"{value:.5g}"
     digits = max(0, min(8, -math.floor(math.log10(error))))
     return f"{value:.{digits}f}"
+
+
+def angle_words(value: float, error: float | None = None) -> str:
+    """Return an angle [arcmin] in four digits, or fewer where its standard error is greater.
+
+    >>> angle_words(6.261963, 1e-6), angle_words(6.261963, 0.02), angle_words(0.0123456)
+    ('6.262′', '6.26′', '0.01235′')
+    """
+    glance = 10.0 ** (math.floor(math.log10(value)) - 3) if value > 0 else 0.0
+    return f"{rounded(value, max(error or 0.0, glance))}′"

@@ -3,276 +3,220 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-from flexlash.findings import CATALOGUE, shown
+from flexlash.findings import shown
 from flexlash.outcome import Outcome
+from flexlash.report.links import result_rows, write_link
 from flexlash.report.selection import Drawn
-from flexlash.report.spread_sheet import curve_place
-from flexlash.report.styles import GRID, PALETTE, Book
-from flexlash.summary import dimension_words, points_words, rounded, share_words, spread_notes
+from flexlash.report.sentences import FINDINGS, sentences
+from flexlash.report.stored import Stored
+from flexlash.report.styles import Book, decimals_of
+from flexlash.report.summary_chart import chart_words, variants_chart
+from flexlash.report.verdict import COLOURS, NO_VERDICT, RULES, light, verdict_counts
+from flexlash.report.wrapping import LINE_HEIGHT, fitted, lines_of, merged_width
+from flexlash.summary import counted, dimension_words, points_words, share_words
 
 __all__ = ["light", "sentences", "write_summary"]
 
 _LISTED = 12
+"""Most variants in the table."""
+
 _NAME = 30
-"""Most characters of a name in a sentence or a table."""
+"""Most characters of a name in the table."""
 
-_NAMED = 4
-_CHARTED = 60
 _COLUMNS = (
-    ("Variant", 24),
-    ("Verdict", 9),
-    ("Nominal [arcmin]", 11),
-    ("P2.5 [arcmin]", 11),
-    ("P50 [arcmin]", 11),
-    ("P97.5 [arcmin]", 11),
-    ("Limit [arcmin]", 11),
-    ("Units over the limit", 32),
-    ("Main contributor", 22),
+    ("Variant", 26),
+    ("Verdict", 8),
+    ("Nominal [arcmin]", 9),
+    ("P50 [arcmin]", 9),
+    ("P97.5 [arcmin]", 9),
+    ("Limit [arcmin]", 9),
+    ("P97.5 over limit by", 9),
+    ("Units over the limit", 29),
+    ("Main contributor", 23),
 )
-LIGHT_RULE = (
-    "Verdict: green, at least 99.865 % of units within the limit; amber, at least 97.5 %; red, fewer; –, no limit. "
-    "Order: share over the limit. It judges the backlash alone."
-)
+_WIDTHS = [width for _, width in _COLUMNS]
+_FIGURES = ((0, 0), (1, 3), (4, 6), (7, 7), (8, 8))
+"""First and last column of each key figure."""
+
+_PAGE = 940.0
+"""Height [pt] of what fits on a Letter page when it is as wide as the table; A4 is higher."""
+
+_CHART = (230.0, 340.0)
+"""Least and greatest height [pt] of the chart."""
+
+_CHART_WIDTH = sum(7 * width + 5 for width in _WIDTHS)
+_DIGITS = 4
+"""Digits in which an angle is shown at a glance."""
+
+_FINE = 1e-3
+"""Difference from the limit below which it is told in finer steps."""
+
+_LINES = 3
+"""Lines of provenance below the chart."""
 
 
-def light(row: dict[str, Any]) -> str:
-    """Return a Results row's verdict: green, amber, red, or a dash without a limit."""
-    limit = row["backlash_limit_arcmin"]
-    if limit is None:
-        return "–"
-    if row["p99_865_arcmin"] <= limit:
-        return "green"
-    return "amber" if row["p97_5_arcmin"] <= limit else "red"
-
-
-def sentences(outcome: Outcome, drawn: Sequence[Drawn]) -> Iterator[str]:
-    """Yield what a design review wants to know, worst first, rounded by the standard error."""
-    counts = outcome.counts
-    yield f"{counts['computed']} of {counts['rows']} variants were computed.{_lost(outcome)}"
-    if not drawn:
-        return
-    judged = [one for one in drawn if one.row["backlash_limit_arcmin"] is not None]
-    if judged:
-        reds = sum(light(one.row) == "red" for one in judged)
-        yield f"{reds} of {len(judged)} variants with a limit have more than 2.5 % of their units over it."
-    worst, name = drawn[0].row, shown(drawn[0].row["variant"], longest=_NAME)
-    tail = rounded(worst["p97_5_arcmin"], worst["p97_5_standard_error_arcmin"])
-    head = f"97.5 % of the units of {name} stay below {tail}′"
-    if worst["backlash_limit_arcmin"] is None:
-        yield f"{head}; no limit was given for it."
-    else:
-        yield f"{head}; the limit of {worst['backlash_limit_arcmin']:g}′ is exceeded by {share_words(worst)} of them."
-    if worst["main_contributor"]:
-        cause = dimension_words(worst["main_contributor"])
-        share = 100 * worst["main_contributor_share"]
-        yield f"The spread of {name} comes first from {cause}: {share:.0f} % of the variance."
-    low, high = worst["worst_case_low_arcmin"], worst["worst_case_high_arcmin"]
-    yield f"With every dimension at a limit the backlash of {name} lies between {low:.3f}′ and {high:.3f}′."
-    missed = [
-        1 - one.row["cylinder_only_backlash_arcmin"] / one.row["backlash_arcmin"]
-        for one in drawn
-        if one.computed.variant.flexspline_type != "cylinder"
-    ]
-    if missed:
-        yield (
-            "The classical cylinder-only formula would miss "
-            f"{_missed(100 * min(missed), 100 * max(missed))} of the backlash of cups and hats."
-        )
-    yield from _strength(drawn)
-    yield from _flagged(outcome)
-    yield from _elasticity(outcome)
-    yield from spread_notes(outcome)
-    exact = sum(
-        "shear_modulus" in one.variant.dimensions and "shear_modulus" not in one.limits
-        for one in outcome.computed.values()
-    )
-    if exact:
-        yield f"The shear modulus of {exact} variants is given and has no tolerance: it does not scatter."
-
-
-def _strength(drawn: Sequence[Drawn]) -> Iterator[str]:
-    """Yield how far the variant nearest to yield is from it."""
-    reserves = {
-        one.row["variant"]: one.row["elastic_limit_torque_Nm"] / one.computed.variant.dimensions["torque"]
-        for one in drawn
-        if one.row["elastic_limit_torque_Nm"] is not None
-    }
-    if reserves:
-        name = min(reserves, key=lambda variant: reserves[variant])
-        section = next(one.row["governing_section"] for one in drawn if one.row["variant"] == name)
-        yield (
-            f"Nearest to yield is {shown(name, longest=_NAME)}: its {section} yields at {reserves[name]:.3g} times the "
-            "torque, corners not counted."
-        )
-
-
-_FLAGS = ("W402", "W411", "W412", "W415", "W417")
-
-
-def _flagged(outcome: Outcome) -> Iterator[str]:
-    """Yield which variants have an engineering warning that the verdict on backlash does not show."""
-    for code in _FLAGS:
-        names = list(dict.fromkeys(found.variant for found in outcome.findings if found.code == code))
-        if names:
-            listed = ", ".join(shown(name, longest=_NAME) for name in names[:_NAMED])
-            more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-            yield f"{CATALOGUE[code].title.capitalize()}: {listed}{more} ({code}, see Findings)."
-
-
-def _elasticity(outcome: Outcome) -> Iterator[str]:
-    """Yield how far the formula is from two-dimensional elasticity, where that was checked."""
-    if "elasticity_difference_percent" not in outcome.results.columns:
-        return
-    checked = outcome.results.filter(outcome.results["elasticity_difference_percent"].is_not_null())
-    if checked.height:
-        differences = checked["elasticity_difference_percent"].to_list()
-        error = max(checked["elasticity_error_percent"].to_list())
-        least, most = (f"{one:+.2f}" for one in (min(differences), max(differences)))
-        span = most if least == most else f"{least} to {most}"
-        yield (
-            f"Against two-dimensional elasticity the nominal backlash is {span} % off ({checked.height} checked, "
-            f"converged to {error:.1g} %)."
-        )
-
-
-def _lost(outcome: Outcome) -> str:
-    """Return which rows were not computed, the first few by name."""
-    names = outcome.results.filter(outcome.results["status"] == "error")["variant"].to_list()
-    if not names:
-        return ""
-    listed = ", ".join(shown(name or "(no name)", longest=_NAME) for name in names[:_NAMED])
-    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-    return f" Not computed, see Findings: {listed}{more}."
-
-
-def _missed(least: float, most: float) -> str:
-    """Return the range that the classical formula misses; below 0 it overstates."""
-    if round(least) == round(most):
-        return f"{most:.0f} %"
-    return f"{least:.0f} to {most:.0f} %"
-
-
-def write_summary(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
-    """Write the Summary sheet."""
-    sheet = book.sheet("Summary", landscape=False, pages_tall=1)
-    for place, (_, width) in enumerate(_COLUMNS):
-        sheet.set_column(place, place, width)
-    sheet.write_string(0, 0, "Backlash from torsional wind-up: tolerance spread", book.format("title"))
-    sheet.set_row(0, 28)
-    sheet.write_string(1, 0, f"Submission {outcome.submission.name}", book.format("quiet"))
-    _write_counts(book, sheet, outcome, drawn)
-    row = 6
-    for sentence in sentences(outcome, drawn):
-        sheet.write_string(row, 0, f"•  {sentence}", book.format("text"))
-        row += 1
-    row += 1
-    first = _write_table(book, sheet, drawn, row)
-    last = _write_provenance(book, sheet, outcome, first + 1)
+def write_summary(book: Book, outcome: Outcome, drawn: Sequence[Drawn], curves: Stored) -> None:
+    """Write the Summary sheet; its chart draws on the data sheet of the curves."""
+    page = _Page(book, outcome)
+    page.heading()
+    page.key_figures()
+    for topic, text in sentences(outcome):
+        page.sentence(topic, text)
     if drawn:
-        _chart(book, sheet, drawn, last + 2)
-        last += 29
-    sheet.print_area(0, 0, last + 1, len(_COLUMNS) - 1)
-    sheet.activate()
+        page.table(drawn)
+        page.chart(drawn, curves)
+    page.provenance()
+    page.sheet.print_area(0, 0, page.row - 1, len(_COLUMNS) - 1)
+    page.sheet.activate()
 
 
-def _write_counts(book: Book, sheet: Any, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
-    """Write the four key figures."""
-    counts = outcome.counts
-    reds = sum(light(one.row) == "red" for one in drawn)
-    figures = (
-        (f"{counts['computed']} of {counts['rows']}", "variants computed"),
-        (str(reds) if any(light(one.row) != "–" for one in drawn) else "–", "red: over 2.5 % of units over limit"),
-        (str(counts["errors"]), "errors"),
-        (str(counts["warnings"]), "warnings"),
-    )
-    for (value, caption), (left, right) in zip(figures, ((0, 1), (2, 4), (5, 6), (7, 8)), strict=True):
-        sheet.merge_range(3, left, 3, right, value, book.format("big"))
-        sheet.merge_range(4, left, 4, right, caption, book.format("caption"))
-    sheet.set_row(3, 30)
+class _Page:
+    """The sheet as it grows: the next row, and how high what stands above it is [pt]."""
 
+    def __init__(self, book: Book, outcome: Outcome) -> None:
+        self.book = book
+        self.outcome = outcome
+        self.sheet = book.sheet("Summary", landscape=False, pages_tall=1)
+        for place, width in enumerate(_WIDTHS):
+            self.sheet.set_column(place, place, width)
+        self.row = 0
+        self.height = 0.0
 
-def _write_table(book: Book, sheet: Any, drawn: Sequence[Drawn], row: int) -> int:
-    """Write the worst variants and the rule of their verdict; return the row after them."""
-    for place, (heading, _) in enumerate(_COLUMNS):
-        sheet.write_string(row, place, heading, book.format("header"))
-    sheet.set_row(row, 32)
-    colours = {"red": "error", "amber": "warning", "green": "ok", "–": "text"}
-    for one in drawn[:_LISTED]:
-        row += 1
-        result = one.row
-        verdict = light(result)
-        sheet.write_string(row, 0, shown(result["variant"], longest=_NAME), book.format("text"))
-        sheet.write_string(row, 1, verdict, book.format(colours[verdict]))
-        for place, key in enumerate(("backlash", "p2_5", "p50", "p97_5", "backlash_limit"), start=2):
-            value = result[f"{key}_arcmin"]
+    def _end_row(self, height: float = LINE_HEIGHT) -> None:
+        """Set the height of the present row and go to the next one."""
+        self.sheet.set_row(self.row, height)
+        self.height += height
+        self.row += 1
+
+    def _across(self, first: int, last: int, text: str, style: Any) -> None:
+        """Write a text across columns of the present row; a text is never taken for a formula."""
+        if last > first:
+            self.sheet.merge_range(self.row, first, self.row, last, "", style)
+        self.sheet.write_string(self.row, first, text, style)
+
+    def heading(self) -> None:
+        """Write title and submission."""
+        self.sheet.write_string(
+            self.row, 0, "Backlash from torsional wind-up: tolerance spread", self.book.format("title")
+        )
+        self._end_row(28)
+        name = shown(self.outcome.submission.name, longest=100)
+        self.sheet.write_string(self.row, 0, f"Submission {name}", self.book.format("quiet"))
+        self._end_row()
+        self._end_row(6)
+
+    def key_figures(self) -> None:
+        """Write how many were computed, have which verdict by which rule, and how much was found."""
+        counts, verdicts = self.outcome.counts, verdict_counts(self.outcome)
+        judged = sum(verdicts[verdict] for verdict in RULES)
+        found = "error" if counts["errors"] else "warning"
+        without = f", {verdicts[NO_VERDICT]} without a limit" if verdicts[NO_VERDICT] else ""
+        others = f"and {counted(counts['warnings'], 'warning')}; " if counts["errors"] and counts["warnings"] else ""
+        figures = [
+            (f"{counts['computed']} of {counts['rows']}", f"variants computed{without}", ""),
+            *((f"{verdicts[one] if judged else NO_VERDICT} {one}", rule, one) for one, rule in RULES.items()),
+            (
+                counted(counts[f"{found}s"], found),
+                f"{others}see Findings" if counts["errors"] or counts["warnings"] else "and no errors",
+                "",
+            ),
+        ]
+        for (value, _, verdict), (first, last) in zip(figures, _FIGURES, strict=True):
+            style = f"big {COLOURS[verdict]}" if verdict and verdicts[verdict] else "big"
+            self._across(first, last, value, self.book.format(style))
+        self._end_row(30)
+        for (_, caption, _), (first, last) in zip(figures, _FIGURES, strict=True):
+            self._across(first, last, caption, self.book.format("caption"))
+        self._end_row(2 * LINE_HEIGHT)
+        self._end_row(8)
+
+    def sentence(self, topic: str, text: str) -> None:
+        """Write the answer to a question beside it, wrapped; the topic of the findings leads to them."""
+        if topic == FINDINGS:
+            write_link(self.sheet, self.row, 0, f"{FINDINGS}!A1", topic, style=self.book.format("topic link"))
+        else:
+            self.sheet.write_string(self.row, 0, topic, self.book.format("topic"))
+        self._across(1, len(_COLUMNS) - 1, text, self.book.format("said"))
+        self._end_row(LINE_HEIGHT * lines_of(text, merged_width(_WIDTHS[1:])) + 2)
+
+    def table(self, drawn: Sequence[Drawn]) -> None:
+        """Write the worst variants, each leading to its row of Results."""
+        self._end_row(8)
+        for place, (heading, _) in enumerate(_COLUMNS):
+            self.sheet.write_string(self.row, place, heading, self.book.format("header"))
+        self._end_row(2 * LINE_HEIGHT + 2)
+        targets = result_rows(self.outcome)
+        for one in drawn[:_LISTED]:
+            self._variant(one.row, targets[one.computed.variant.row])
+        more = f"The {_LISTED} worst of {len(self.outcome.computed)} are listed; all are in Results. "
+        note = "Worst first: by share over the limit. The verdict judges the backlash alone."
+        if len(drawn) > _LISTED:
+            note = more + note
+        self.sheet.write_string(self.row, 0, note, self.book.format("quiet"))
+        self._end_row()
+
+    def _variant(self, row: dict[str, Any], target: int) -> None:
+        """Write a variant's row of the table."""
+        name, verdict = fitted(shown(row["variant"], longest=_NAME), merged_width(_WIDTHS[:1])), light(row)
+        link = self.book.format("link")
+        write_link(self.sheet, self.row, 0, f"Results!A{target + 1}", name, style=link)
+        self.sheet.write_string(self.row, 1, verdict, self.book.format(COLOURS[verdict]))
+        for place, key in enumerate(("backlash", "p50", "p97_5", "backlash_limit"), start=2):
+            value, error = row[f"{key}_arcmin"], row.get(f"{key}_standard_error_arcmin")
             if value is not None:
-                sheet.write_number(row, place, value, book.format("text", "plain"))
-        if result["probability_over_limit"] is not None:
-            sheet.write_string(row, 7, share_words(result), book.format("indented"))
-        if result["main_contributor"]:
-            share = f" ({100 * result['main_contributor_share']:.0f} %)"
-            sheet.write_string(row, 8, dimension_words(result["main_contributor"]) + share, book.format("text"))
-    row += 1
-    more = f"The {_LISTED} worst of {len(drawn)} are listed; all are in Results. " if len(drawn) > _LISTED else ""
-    sheet.write_string(row, 0, more + LIGHT_RULE, book.format("quiet"))
-    return row + 1
+                self.sheet.write_number(self.row, place, value, self.book.format("text", _glance(value, error)))
+        lines = 1
+        if row["backlash_limit_arcmin"] is not None:
+            excess = row["p97_5_arcmin"] / row["backlash_limit_arcmin"] - 1
+            self.sheet.write_number(self.row, 6, excess, self.book.format("text", _signed_percent(excess)))
+            share = share_words(row)
+            lines = lines_of(share, merged_width(_WIDTHS[7:8]) - 1)
+            self.sheet.write_string(self.row, 7, share, self.book.format("indented wrap"))
+        if row["main_contributor"]:
+            cause = f"{dimension_words(row['main_contributor'])} ({100 * row['main_contributor_share']:.0f} %)"
+            lines = max(lines, lines_of(cause, merged_width(_WIDTHS[8:])))
+            self.sheet.write_string(self.row, 8, cause, self.book.format("wrap"))
+        self._end_row(LINE_HEIGHT * lines)
+
+    def chart(self, drawn: Sequence[Drawn], curves: Stored) -> None:
+        """Draw the chart as high as the page has room."""
+        self._end_row(8)
+        least, greatest = _CHART
+        height = min(greatest, max(least, _PAGE - self.height - (_LINES + 1) * LINE_HEIGHT))
+        rows = math.ceil(height / LINE_HEIGHT)
+        size = (_CHART_WIDTH, round(rows * LINE_HEIGHT / 0.75) - 4)
+        chart = variants_chart(self.book, drawn, curves, len(self.outcome.computed))
+        self.book.insert(self.sheet, self.row, 0, chart, size=size, text=chart_words(drawn))
+        for _ in range(rows):
+            self._end_row()
+
+    def provenance(self) -> None:
+        """Write where the numbers come from."""
+        from flexlash import __version__
+
+        submission, settings = self.outcome.submission, self.outcome.settings
+        changed = f"; last changed {submission.modified:%Y-%m-%d}" if submission.modified else ""
+        facts = (
+            f"Submission {shown(submission.name, longest=100)}{changed}",
+            f"sha256 {submission.sha256}",
+            f"flexlash {__version__}, method {settings.method}, seed {settings.seed}, "
+            f"{points_words(self.outcome)} per variant. Method and limits of the model: sheet About.",
+        )
+        for fact in facts:
+            self.sheet.write_string(self.row, 0, fact, self.book.format("quiet"))
+            self._end_row()
 
 
-def _write_provenance(book: Book, sheet: Any, outcome: Outcome, row: int) -> int:
-    """Write where the numbers come from; return the last row."""
-    from flexlash import __version__
-
-    facts = (
-        f"sha256 of the submission: {outcome.submission.sha256}",
-        f"flexlash {__version__}, method {outcome.settings.method}, seed {outcome.settings.seed}, "
-        f"{points_words(outcome)} per variant. Method and limits of the model: sheet About.",
-    )
-    for fact in facts:
-        sheet.write_string(row, 0, fact, book.format("quiet"))
-        row += 1
-    return row - 1
+def _glance(value: float, error: float | None) -> str:
+    """Return the number format of an angle in four digits, or fewer where its standard error is greater."""
+    least = 10.0 ** (math.floor(math.log10(value)) + 1 - _DIGITS) if value > 0 else None
+    return decimals_of(max(error or 0.0, least or 0.0), "plain")
 
 
-def _chart(book: Book, sheet: Any, drawn: Sequence[Drawn], row: int) -> None:
-    """Draw P2.5 to P97.5, median and limit of the variants; the data stand in Curves."""
-    count = min(len(drawn), _CHARTED)
-    title = "Backlash P2.5 to P97.5, median and limit [arcmin]"
-    if count < len(drawn):
-        title += f": the {count} worst of {len(drawn)}"
-    bars = book.chart("column", title, subtype="stacked")
-    marks = book.workbook.add_chart({"type": "line"})
-    hidden = {"fill": {"none": True}, "border": {"none": True}, "gap": 60}
-    band = {"fill": {"color": PALETTE["sky"]}, "border": {"color": PALETTE["blue"]}}
-    labels = curve_place("Label")
-    for chart, heading, name, look in (
-        (bars, "P2.5", "P2.5", hidden),
-        (bars, "P2.5 to P97.5", "P2.5 to P97.5", band),
-        (marks, "P50", "Median", _marker("diamond", PALETTE["ink"])),
-        (marks, "Limit", "Limit", _marker("long_dash", PALETTE["red"])),
-    ):
-        place = curve_place(heading)
-        names = ["Curves", 2, labels, count + 1, labels]
-        chart.add_series({"name": name, "categories": names, "values": ["Curves", 2, place, count + 1, place], **look})
-    bars.combine(marks)
-    bars.set_y_axis({"min": _axis_start(drawn[:count]), "num_format": "0.00", "major_gridlines": GRID})
-    bars.set_x_axis({"num_font": {"rotation": -45, "size": 9}})
-    bars.set_legend({"position": "bottom", "delete_series": [0]})
-    text = "Backlash interval, median and limit of each variant"
-    book.insert(sheet, row, 0, bars, size=(975, 520), text=text)
-
-
-def _marker(shape: str, colour: str) -> dict[str, Any]:
-    """Return the look of a series that is marks without a line."""
-    fill = {"color": colour}
-    return {"line": {"none": True}, "marker": {"type": shape, "size": 7, "fill": fill, "border": fill}}
-
-
-def _axis_start(drawn: Sequence[Drawn]) -> float:
-    """Return a round number below everything that the chart shows."""
-    rows = [one.row for one in drawn]
-    low = min(min(row["p2_5_arcmin"], row["backlash_limit_arcmin"] or row["p2_5_arcmin"]) for row in rows)
-    step = 10.0 ** math.floor(math.log10(max(row["p97_5_arcmin"] for row in rows))) / 2
-    return float(max(0.0, math.floor(0.97 * low / step) * step))
+def _signed_percent(part: float) -> str:
+    """Return the number format of a difference with its sign, fine enough that it is not a zero."""
+    places = "0.0" if abs(part) >= _FINE else "0.000"
+    return f"+{places}%;-{places}%;0.0%"

@@ -1,0 +1,132 @@
+"""What to change, in words: which tolerance to halve and what that brings, or how much stiffer a variant must be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any, TypeAlias
+
+from flexlash.columns import DIMENSIONS
+from flexlash.findings import shown, spelled_out
+from flexlash.outcome import Outcome
+from flexlash.remedies import Halving, Remedy
+from flexlash.report.verdict import verdict_counts
+from flexlash.summary import angle_words, dimension_words, listed, share_words
+
+__all__ = ["stiffening", "tightening"]
+
+Row: TypeAlias = dict[str, Any]
+
+_NAME = 30
+"""Most characters of a name in a sentence."""
+
+_NAMED = 3
+"""Most variants that a sentence names."""
+
+_LEVERS = 2
+"""Most dimensions named by which a variant gets stiffer."""
+
+_RARE = 1e-3
+"""Shares nearer to none or all than this are told in ppm."""
+
+_LEAST_SLOPE = 0.1
+"""Per cent of backlash for one per cent of a dimension below which that dimension is no lever."""
+
+
+def tightening(outcome: Outcome, failing: Sequence[Row]) -> Iterator[str]:
+    """Yield which tolerance to halve and what that brings, or why no tolerance helps, or that none needs to."""
+    if not failing:
+        if verdict_counts(outcome)["green"]:
+            yield "Nothing: no variant with a limit needs a tighter tolerance or a stiffer part."
+        return
+    hopeless = [row for row in failing if row["p50_arcmin"] > row["backlash_limit_arcmin"]]
+    if hopeless:
+        names = listed([shown(row["variant"], longest=_NAME) for row in hopeless], _NAMED)
+        whose = "its backlash is" if len(hopeless) == 1 else "their backlash is"
+        yield f"Tighter tolerances cannot help {names}: {whose} over the limit for half of the units or more."
+    for remedy in outcome.remedies:
+        if remedy.halvings:
+            yield from _halvings(remedy, _row(remedy, failing))
+
+
+def stiffening(outcome: Outcome, failing: Sequence[Row]) -> Iterator[str]:
+    """Yield how the worst red variants become stiffer, and by which wall they would keep their limit."""
+    for remedy in outcome.remedies:
+        if remedy.thickening is not None or not remedy.halvings:
+            yield from _levers(remedy, _row(remedy, failing))
+            yield from _thickening(remedy)
+    if any(remedy.thickening and remedy.thickening.wanted for remedy in outcome.remedies):
+        yield "How the wave generator bends a thicker wall is not judged here."
+
+
+def _row(remedy: Remedy, failing: Sequence[Row]) -> Row:
+    """Return the Results row that a remedy is for."""
+    return next(row for row in failing if row["variant"] == remedy.variant)
+
+
+def _halvings(remedy: Remedy, row: Row) -> Iterator[str]:
+    """Yield what half the tolerance of one dimension, or of all, would leave over the limit."""
+    first, *others = remedy.halvings
+    name = shown(remedy.variant, longest=_NAME)
+    yield (
+        f"Halving the tolerance of {_halved(first)} would bring the units of {name} over the limit from "
+        f"{_share(row)} to {_share(first.over)}"
+        + "".join(f"; of {_halved(other)}, to {_share(other.over)}" for other in others)
+        + "."
+    )
+
+
+def _share(over: dict[str, Any]) -> str:
+    """Return a share over the limit in three digits, without its interval."""
+    value = over["probability_over_limit"]
+    return f"{100 * value:.3g} %" if _RARE <= value <= 1 - _RARE else share_words(over).split(" (")[0]
+
+
+def _halved(halving: Halving) -> str:
+    """Return what is halved: one dimension with the limits that this leaves, or how many."""
+    if len(halving.limits) > 1:
+        return f"all {len(halving.limits)} dimensions"
+    ((name, limits),) = halving.limits.items()
+    column = DIMENSIONS[name]
+    size = column.si_unit.si
+    unit = "" if column.unit == "-" else f" {column.unit}"
+    half = spelled_out((limits.high - limits.low) / 2 / size, 3)
+    return f"{dimension_words(name)} (to {limits.middle / size:.6g} ± {half}{unit})"
+
+
+def _levers(remedy: Remedy, row: Row) -> Iterator[str]:
+    """Yield what makes a variant stiffer, most first."""
+    name = shown(remedy.variant, longest=_NAME)
+    median = angle_words(row["p50_arcmin"], row["p50_standard_error_arcmin"])
+    levers = [lever for lever in remedy.levers if abs(lever.slope) >= _LEAST_SLOPE][:_LEVERS]
+    if levers:
+        parts = [
+            f"1 % {'less' if lever.slope > 0 else 'more'} {dimension_words(lever.dimension)} "
+            f"{'lowers the backlash by' if place == 0 else 'by'} {spelled_out(abs(lever.slope), 2)} %"
+            for place, lever in enumerate(levers)
+        ]
+        limit = f"{row['backlash_limit_arcmin']:g}′"
+        yield f"To stiffen {name} (median {median}, limit {limit}): {', '.join(parts)}."
+
+
+def _thickening(remedy: Remedy) -> Iterator[str]:
+    """Yield which wall would bring P97.5 to the limit."""
+    found = remedy.thickening
+    if found is None:
+        return
+    present = f"{1000 * found.present:.6g} mm"
+    if found.wanted is None:
+        yield f"A thicker wall alone is not enough for it, even {1000 * found.thickest:.4g} mm instead of {present}."
+    else:
+        wanted = f"{_rounded_up(1000 * found.wanted):.6g} mm"
+        yield f"A wall of about {wanted} instead of {present} would keep 97.5 % of its units within the limit."
+
+
+def _rounded_up(value: float) -> float:
+    """Return a number in three digits that is not less.
+
+    >>> _rounded_up(2.63662), _rounded_up(0.65), _rounded_up(12.31)
+    (2.64, 0.65, 12.4)
+    """
+    unit = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return round(math.ceil(round(value / unit, 6)) * unit, 12)

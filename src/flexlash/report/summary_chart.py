@@ -1,0 +1,89 @@
+"""The chart of the Summary: where 95 % of each variant's units lie, its median and its limit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from flexlash.report.selection import Drawn
+from flexlash.report.stored import Stored
+from flexlash.report.styles import GRID, PALETTE, Book
+from flexlash.report.verdict import light
+
+__all__ = ["chart_words", "variants_chart"]
+
+_CHARTED = 60
+"""Most variants whose names can be read below a chart."""
+
+_COLOURS = {"red": "red", "amber": "orange"}
+_LOOKS: tuple[tuple[int, dict[str, int]], ...] = (
+    (3, {"gap": 500, "turned": 0, "font": 9, "median": 6, "limit": 14}),
+    (12, {"gap": 150, "turned": -45, "font": 9, "median": 5, "limit": 12}),
+    (30, {"gap": 60, "turned": -90, "font": 9, "median": 4, "limit": 9}),
+    (_CHARTED, {"gap": 30, "turned": -90, "font": 8, "median": 3, "limit": 6}),
+)
+"""Up to how many variants: space between bars in per cent of their width, turn and size of labels, size of marks."""
+
+
+def variants_chart(book: Book, drawn: Sequence[Drawn], curves: Stored, total: int) -> Any:
+    """Return the chart of the worst variants; its data stand on the sheet of the curves."""
+    shown = drawn[:_CHARTED]
+    look = next(look for most, look in _LOOKS if len(shown) <= most)
+    title = "Backlash of 95 % of units (P2.5 to P97.5), median and limit [arcmin]"
+    if len(shown) < total:
+        title += f": the {len(shown)} worst of {total}"
+    bars = book.chart("column", title, subtype="stacked")
+    marks = book.workbook.add_chart({"type": "line"})
+    names = curves.series("Label", len(shown))
+    hidden = {"fill": {"none": True}, "border": {"none": True}, "gap": look["gap"]}
+    for chart, heading, name, how in (
+        (bars, "P2.5", "P2.5", hidden),
+        (bars, "P2.5 to P97.5", "P2.5 to P97.5 (orange: amber, dark orange: red)", _bars(shown)),
+        (marks, "P50", "Median", _marker("diamond", PALETTE["ink"], look["median"])),
+        (marks, "Limit", "Limit", _marker("long_dash", "#000000", look["limit"])),
+    ):
+        chart.add_series({"name": name, "categories": names, "values": curves.series(heading, len(shown)), **how})
+    bars.combine(marks)
+    bars.set_y_axis({**_axis(shown), "major_gridlines": GRID})
+    bars.set_x_axis({"num_font": {"rotation": look["turned"], "size": look["font"]}, "interval_unit": 1})
+    bars.set_legend({"position": "bottom", "delete_series": [0]})
+    return bars
+
+
+def chart_words(drawn: Sequence[Drawn]) -> str:
+    """Return the alternative text of the chart."""
+    return (
+        f"For {min(len(drawn), _CHARTED)} variants, worst first: a bar from the backlash that 2.5 % of units stay "
+        "below to that which 97.5 % stay below, the median as a diamond, the limit as a dash. Bars of variants with "
+        "verdict red are dark orange, with amber orange, others blue."
+    )
+
+
+def _bars(shown: Sequence[Drawn]) -> dict[str, Any]:
+    """Return the look of the bars, coloured by verdict."""
+
+    def look(colour: str) -> dict[str, Any]:
+        return {"fill": {"color": PALETTE[colour]}, "border": {"color": PALETTE[colour]}}
+
+    return {**look("sky"), "points": [look(_COLOURS.get(light(one.row), "sky")) for one in shown]}
+
+
+def _marker(shape: str, colour: str, size: int) -> dict[str, Any]:
+    """Return the look of a series that is marks without a line."""
+    fill = {"color": colour}
+    return {"line": {"none": True}, "marker": {"type": shape, "size": size, "fill": fill, "border": fill}}
+
+
+def _axis(shown: Sequence[Drawn]) -> dict[str, Any]:
+    """Return start, step and digits of an axis that begins at a round number below everything that is shown."""
+    rows = [one.row for one in shown]
+    limits = [row["backlash_limit_arcmin"] for row in rows if row["backlash_limit_arcmin"] is not None]
+    low = min([*limits, *(row["p2_5_arcmin"] for row in rows)])
+    high = max([*limits, *(row["p97_5_arcmin"] for row in rows)])
+    about = max(high - low, high / 100) / 6
+    power = 10.0 ** math.floor(math.log10(about))
+    step = power * next(times for times in (1, 2, 5, 10) if about <= times * power * (1 + 1e-9))
+    digits = max(0, -math.floor(math.log10(step * (1 + 1e-9))))
+    start = max(0.0, round(math.floor((low - step / 2) / step) * step, 12))
+    return {"min": start, "major_unit": round(step, 12), "num_format": f"0.{'0' * digits}" if digits else "0"}
