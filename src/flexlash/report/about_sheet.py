@@ -2,18 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from xlsxwriter.utility import quote_sheetname
 
 from flexlash.column import Column
 from flexlash.columns import DIMENSIONS, SETTINGS
 from flexlash.outcome import Outcome
+from flexlash.report.links import write_link
+from flexlash.report.results_sheet import AS_SUBMITTED, ERROR_DIGITS, SHARE_DECIMALS
 from flexlash.report.styles import Book
+from flexlash.report.verdict import NO_VERDICT, RULES
 from flexlash.result_columns import result_columns
 from flexlash.tolerance.line_nets import LINE_REPLICATES
 from flexlash.tolerance.line_spread import MOST_LINES, OF_PROBABILITY, OF_SD
 from flexlash.tolerance.sampling import REPLICATES
 
-__all__ = ["ERRATA", "LEFT_OUT", "MODEL", "PROOF", "write_about"]
+__all__ = ["ERRATA", "LEFT_OUT", "MODEL", "PROOF", "SHEETS", "write_about"]
+
+SHEETS = {
+    "Summary": "One page: what was computed, what fails, by how much, why and what to tighten.",
+    "Results": "Every number of every variant, in submitted order, to filter and to copy.",
+    "Explorer": "One variant picked from a list: the share over any limit, the limit for any share, its curves.",
+    "Compare": "Variants side by side: percentile boxes against their limits.",
+    "Ranking": "Variants worst first, each beside a base variant that you pick.",
+    "Contributions": "Which dimension causes how much of whose spread, and how much of the backlash the disk adds.",
+    "Trace": "One variant worked through in formulas, from its inputs to backlash and stress; inputs can be changed.",
+    "Trace steps": "The sums over points and the search behind single lines of Trace.",
+    "Sensitivity": "Which dimension causes the spread: tornado of the worst variant, shares of all.",
+    "Sections": "Where along the part the nominal backlash arises.",
+    "Strength": "Stress in each section, when it yields or buckles, how stiff the part is.",
+    "Elasticity": "The formula beside two-dimensional elasticity.",
+    "Stress": "Shear stress in the half-section of the worst checked variants, as pictures.",
+    "Findings": "What was found in the submission: each rule with its mend, then every cell.",
+    "Submission": "Sheet Variants as read, cell by cell; coloured cells say in a comment what is wrong.",
+    "Materials": "The materials used, as read or built in.",
+    "Tolerances": "The tolerance classes used, as read or built in.",
+    "Settings": "The settings as read.",
+    "About": "This page: where the numbers come from and what they mean.",
+    "Curves": "Stored percentiles behind Summary and Explorer.",
+    "Compared": "Stored figures behind Compare, Ranking and Contributions.",
+    "Inputs": "What was entered and what the program found, behind Trace.",
+}
+"""What each sheet is for, in one line."""
 
 MODEL = (
     "Backlash here is the lag of the output when the torque reverses: twice the torsional wind-up U of the flexspline.",
@@ -108,8 +140,36 @@ def _statistics(outcome: Outcome) -> Iterator[str]:
         "Ppk upper = (limit − P50)/(P99.865 − P50), ISO 22514-2; by normal theory (limit − mean)/(3 sd), which holds "
         "for a normal backlash alone."
     )
-    yield "Cells of Results show no more digits than the standard error of their number justifies; they hold all."
     yield "Exact to rounding: nominal columns, worst case, first-order sd. All other statistics are estimates."
+
+
+def _verdict() -> Iterator[str]:
+    """Yield how the verdict on a variant is formed."""
+    yield from (f"{colour.capitalize()}: {rule}." for colour, rule in RULES.items())
+    yield (
+        "By percentiles: green where P99.865 is at most the limit, else amber where P97.5 is, else red; "
+        f"{NO_VERDICT} where no limit was given. It judges the backlash alone, by the estimate as it stands; where the "
+        "limit lies within a few standard errors of the percentile, more samples may turn it."
+    )
+    yield "A variant with warnings has its verdict all the same: a part beyond yield can be green. See Findings."
+
+
+def _digits() -> Iterator[str]:
+    """Yield what the digits of Results mean."""
+    yield (
+        "A number with a standard error is shown down to the first digit of that error, and its cell holds all digits. "
+        "A number without one is shown with the digits usual for its unit."
+    )
+    yield (
+        f"Standard errors are kept to {ERROR_DIGITS} digits and estimated shares to {SHARE_DECIMALS} decimals, which "
+        "is finer than they are known. Files in CSV, Parquet and JSON hold every digit of every number."
+    )
+    yield (
+        "A share of units below 0.001 ppb is called practically none, and practically all the other way round; the "
+        "columns of Results have the bounds."
+    )
+    yield "The columns marked + above can be folded away: standard errors, radians, arc seconds and bounds."
+    yield f"Columns of the submission that flexlash does not know stand at the right end, marked “{AS_SUBMITTED}”."
 
 
 def _result_columns(outcome: Outcome) -> tuple[Column, ...]:
@@ -117,50 +177,70 @@ def _result_columns(outcome: Outcome) -> tuple[Column, ...]:
     return tuple(column for column in every if column.key in outcome.results.columns)
 
 
-def write_about(book: Book, outcome: Outcome) -> None:
-    """Write the About sheet."""
-    from flexlash import __version__
+_LINES = (30, 88, 114)
+"""Widths of both columns, and how many characters fit on a line across both."""
 
+
+def write_about(book: Book, outcome: Outcome, later: Sequence[str] = ()) -> None:
+    """Write the About sheet; `later` are sheets that follow it."""
     sheet = book.sheet("About", landscape=False)
-    sheet.set_column(0, 0, 30)
-    sheet.set_column(1, 1, 92)
+    sheet.set_column(0, 0, _LINES[0])
+    sheet.set_column(1, 1, _LINES[1])
     sheet.write_string(0, 0, "About this report", book.format("title"))
     sheet.set_row(0, 28)
     row = 2
-    settings = {
-        **{key: value for key, value in vars(outcome.settings).items() if key != "calibrations"},
-        **outcome.settings.calibrations,
-    }
-    identity = {
-        "Submission": outcome.submission.name,
-        "sha256": outcome.submission.sha256,
-        "Kind": outcome.submission.kind,
-        "flexlash version": __version__,
-        **{column.key: _text(settings[column.key]) for column in SETTINGS},
-    }
+    present = [one.get_name() for one in book.workbook.worksheets()] + list(later)
     sections: tuple[tuple[str, list[tuple[str, str]]], ...] = (
-        ("Provenance and settings", list(identity.items())),
+        ("Provenance and settings", list(_identity(outcome).items())),
+        ("Sheets", [(name, SHEETS.get(name, "")) for name in present]),
+        ("Verdict", [("", text) for text in _verdict()]),
+        ("Digits and columns", [("", text) for text in _digits()]),
+        ("Spread", [("", text) for text in _statistics(outcome)]),
         ("Model", [("", text) for text in MODEL]),
         ("How good the formula is", [("", text) for text in PROOF]),
-        ("Spread", [("", text) for text in _statistics(outcome)]),
         ("Not covered", [("", text) for text in LEFT_OUT]),
         ("Errata of the published study", [("", text) for text in ERRATA]),
         ("Columns of Results", [(column.label, column.help) for column in _result_columns(outcome)]),
         ("Dimensions", [(name, f"{column.sheet}: {column.label}") for name, column in DIMENSIONS.items()]),
     )
     for title, entries in sections:
-        sheet.write_string(row, 0, title, book.format("section"))
-        sheet.write_blank(row, 1, None, book.format("section"))
+        row = _write_section(book, sheet, row, title, entries)
+
+
+def _write_section(book: Book, sheet: Any, row: int, title: str, entries: Sequence[tuple[str, str]]) -> int:
+    """Write a section, names beside their texts; return the row after it."""
+    sheet.write_string(row, 0, title, book.format("section"))
+    sheet.write_blank(row, 1, None, book.format("section"))
+    for name, text in entries:
         row += 1
-        for name, text in entries:
-            if name:
-                sheet.write_string(row, 0, name, book.format("wrap"))
-                sheet.write_string(row, 1, text, book.format("wrap"))
-            else:
-                sheet.merge_range(row, 0, row, 1, f"•  {text}", book.format("wrap"))
-            sheet.set_row(row, 15.5 * (1 + len(text) // (92 if name else 118)))
-            row += 1
-        row += 1
+        if not name:
+            sheet.merge_range(row, 0, row, 1, f"•  {text}", book.format("wrap"))
+        elif title == "Sheets":
+            write_link(sheet, row, 0, f"{quote_sheetname(name)}!A1", name, style=book.format("link"))
+        else:
+            sheet.write_string(row, 0, name, book.format("wrap"))
+        if name:
+            sheet.write_string(row, 1, text, book.format("wrap"))
+        lines = max(1 + len(text) // _LINES[1 if name else 2], 1 + len(name) // _LINES[0])
+        sheet.set_row(row, 15.5 * lines)
+    return row + 2
+
+
+def _identity(outcome: Outcome) -> dict[str, str]:
+    """Return where the numbers come from: submission, version, settings."""
+    from flexlash import __version__
+
+    settings = {
+        **{key: value for key, value in vars(outcome.settings).items() if key != "calibrations"},
+        **outcome.settings.calibrations,
+    }
+    return {
+        "Submission": outcome.submission.name,
+        "sha256": outcome.submission.sha256,
+        "Kind": outcome.submission.kind,
+        "flexlash version": __version__,
+        **{column.key: _text(settings[column.key]) for column in SETTINGS},
+    }
 
 
 def _text(value: object) -> str:

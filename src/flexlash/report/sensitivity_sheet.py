@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from flexlash.columns import DIMENSIONS
+from flexlash.findings import shown
 from flexlash.outcome import Outcome
+from flexlash.report.results_sheet import SHARE_DECIMALS
 from flexlash.report.selection import Drawn
 from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.summary import dimension_words
@@ -14,8 +16,10 @@ from flexlash.units import ARCMIN
 
 __all__ = ["write_sensitivity"]
 
+_NAME = 30
 _TORNADO_ROWS = len(DIMENSIONS)
 _HEADER = 5 + max(_TORNADO_ROWS, 20)
+_CHART = (780, 410)
 
 
 def write_sensitivity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
@@ -23,11 +27,12 @@ def write_sensitivity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> N
     sheet = book.sheet("Sensitivity")
     sheet.write_string(0, 0, "What causes the spread", book.format("title"))
     sheet.set_row(0, 28)
-    sheet.set_column(0, 0, 26)
+    sheet.set_column(0, 0, 28)
     sheet.set_column(1, 2 * len(DIMENSIONS) + 2, 12)
     if drawn:
         _write_tornado(book, sheet, drawn[0])
     _write_shares(book, sheet, outcome)
+    sheet.freeze_panes(0, 1)
 
 
 def _write_tornado(book: Book, sheet: Any, worst: Drawn) -> None:
@@ -35,7 +40,7 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn) -> None:
     variation = worst.computed.variation
     if variation is None or not variation.swings:
         return
-    name = worst.row["variant"]
+    name = shown(worst.row["variant"], longest=_NAME)
     text = f"Worst variant, {name}: backlash [arcmin] with one dimension at its limits, by its share of variance."
     sheet.write_string(1, 0, text, book.format("quiet"))
     headings = ("Dimension", "At lower limit", "At upper limit", "Share of variance", "Share with interactions")
@@ -49,8 +54,11 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn) -> None:
         sheet.write_number(row, 2, high / ARCMIN, book.format("text", "arcmin"))
         sheet.write_number(row, 3, variation.shares[dimension], book.format("text", "share"))
         sheet.write_number(row, 4, variation.totals[dimension], book.format("text", "share"))
-    last = 3 + len(swings)
-    middle = sum(swings[0][1]) / 2 / ARCMIN
+    _draw_tornado(book, sheet, name, 3 + len(swings), sum(swings[0][1]) / 2 / ARCMIN)
+
+
+def _draw_tornado(book: Book, sheet: Any, name: str, last: int, middle: float) -> None:
+    """Draw the tornado beside its table; both bars of a dimension start at the middle."""
     chart = book.chart("bar", f"Tornado of {name} [arcmin]")
     for place, label, colour in (
         (1, "at the lower limit", PALETTE["sky"]),
@@ -65,14 +73,16 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn) -> None:
             "gap": 40,
         })  # fmt: skip
     chart.set_x_axis({"crossing": middle, "num_format": "0.000", "major_gridlines": GRID})
-    chart.set_y_axis({"reverse": True, "crossing": "min", "label_position": "low"})
-    book.insert(sheet, 3, 6, chart, size=(700, 400), text="Tornado chart of the worst variant")
+    # Every bar has its label: at its own choice Excel leaves out each second one of many.
+    labels = {"label_position": "low", "interval_unit": 1, "num_font": {"size": 9}}
+    chart.set_y_axis({"reverse": True, "crossing": "min", **labels})
+    book.insert(sheet, 3, 6, chart, size=_CHART, text=f"Tornado chart of the worst variant, {name}")
 
 
 def _write_shares(book: Book, sheet: Any, outcome: Outcome) -> None:
-    """Write the first-order shares of variance of every variant, one column per dimension that varies."""
-    rows = [one for one in outcome.computed.values() if one.variation is not None]
-    names = [name for name in DIMENSIONS if any(name in one.variation.shares for one in rows if one.variation)]
+    """Write the shares of variance of every computed variant, one column per dimension that varies, to be filtered."""
+    rows = [(one.variant.name, one.variation) for one in outcome.computed.values() if one.variation is not None]
+    names = [name for name in DIMENSIONS if any(name in variation.shares for _, variation in rows)]
     right = len(names) + 1
     text = (
         "Share of each dimension in the variance of the backlash (first-order Sobol' index); what is missing to "
@@ -83,24 +93,23 @@ def _write_shares(book: Book, sheet: Any, outcome: Outcome) -> None:
     for place, name in enumerate(names, start=1):
         sheet.write_string(_HEADER, place, dimension_words(name), book.format("header"))
         sheet.write_string(_HEADER, place + right, f"{dimension_words(name)}, total", book.format("header"))
+    sheet.set_column(right, right, 3)
     sheet.set_row(_HEADER, 48)
-    for row, one in enumerate(rows, start=_HEADER + 1):
-        sheet.write_string(row, 0, one.variant.name, book.format("text"))
-        shares = one.variation.shares if one.variation else {}
-        totals = one.variation.totals if one.variation else {}
-        for place, name in enumerate(names, start=1):
-            if name in shares:
-                sheet.write_number(row, place, shares[name], book.format("text", "share"))
-                sheet.write_number(row, place + right, totals[name], book.format("text", "share"))
+    plain, share = book.format("text"), book.format("text", "share")
+    for row, (variant, variation) in enumerate(rows, start=_HEADER + 1):
+        sheet.write_string(row, 0, variant, plain)
+        for start, indices in ((1, variation.shares), (1 + right, variation.totals)):
+            for place, name in enumerate(names, start=start):
+                if name in indices:
+                    sheet.write_number(row, place, round(indices[name], SHARE_DECIMALS), share)
     if rows and names:
-        scale = {
-            "type": "2_color_scale",
-            "min_color": "#FFFFFF",
-            "max_color": PALETTE["orange"],
-            "min_type": "num",
-            "min_value": 0,
-            "max_type": "num",
-            "max_value": 1,
-        }
-        sheet.conditional_format(_HEADER + 1, 1, _HEADER + len(rows), len(names), scale)
-        sheet.conditional_format(_HEADER + 1, right + 1, _HEADER + len(rows), right + len(names), scale)
+        last = _HEADER + len(rows)
+        sheet.autofilter(_HEADER, 0, last, right + len(names))
+        for start in (1, right + 1):
+            sheet.conditional_format(_HEADER + 1, start, last, start + len(names) - 1, _scale())
+
+
+def _scale() -> dict[str, Any]:
+    """Return the rule that colours a share the stronger the greater it is."""
+    ends = {"min_type": "num", "min_value": 0, "max_type": "num", "max_value": 1}
+    return {"type": "2_color_scale", "min_color": "#FFFFFF", "max_color": PALETTE["orange"], **ends}

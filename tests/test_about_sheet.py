@@ -1,0 +1,62 @@
+"""The About sheet: what every sheet and column is, how the verdict is formed, what the digits mean."""
+
+from __future__ import annotations
+
+import openpyxl
+import pytest
+
+from flexlash.pipeline import run
+from flexlash.report.about_sheet import SHEETS
+from flexlash.report.verdict import RULES
+from flexlash.result_columns import RESULTS
+
+
+@pytest.fixture
+def book(table, sound, tmp_path):
+    """Return a report."""
+    run(table([sound]), tmp_path / "report.xlsx", samples=256)
+    return openpyxl.load_workbook(tmp_path / "report.xlsx")
+
+
+def _section(sheet, title):
+    """Return the rows of a section as (name, text, link)."""
+    start = next(cell.row for cell in sheet["A"] if cell.value == title)
+    rows = []
+    for row in sheet.iter_rows(min_row=start + 1, max_col=2):
+        if row[0].value is None:
+            break
+        rows.append((row[0].value, row[1].value, row[0].hyperlink and row[0].hyperlink.location))
+    return rows
+
+
+def test_every_sheet_is_listed_with_its_line(book):
+    """The index names every visible sheet in order, says in a line what it is for, and leads to it."""
+    visible = [sheet.title for sheet in book.worksheets if sheet.sheet_state == "visible"]
+    links = {name: f"'{name}'!A1" if " " in name else f"{name}!A1" for name in visible}
+    assert _section(book["About"], "Sheets") == [(name, SHEETS[name], links[name]) for name in visible]
+
+
+def test_every_column_of_results_is_defined(book):
+    """Each heading of Results stands in About with its help."""
+    defined = [(name, text) for name, text, _ in _section(book["About"], "Columns of Results")]
+    assert defined == [(column.label, column.help) for column in RESULTS]
+
+
+def test_verdict_and_digits_are_explained(book):
+    """About gives the rule of each verdict, and says what is rounded and what is exact."""
+    said = " ".join(name for name, _, _ in _section(book["About"], "Verdict"))
+    for colour, rule in RULES.items():
+        assert f"{colour.capitalize()}: {rule}." in said
+    digits = " ".join(name for name, _, _ in _section(book["About"], "Digits and columns"))
+    assert "Standard errors are kept to 4 digits and estimated shares to 5 decimals" in digits
+    spread = " ".join(name for name, _, _ in _section(book["About"], "Spread"))
+    assert "Exact to rounding: nominal columns" in spread
+
+
+def test_long_texts_have_rows_high_enough(book):
+    """A row of About is as high as its text needs at its width."""
+    sheet = book["About"]
+    for row in sheet.iter_rows(min_row=3, max_col=2):
+        text, width = (row[1].value, 88) if row[1].value else (row[0].value, 114)
+        if text and len(text) > width:
+            assert sheet.row_dimensions[row[0].row].height >= 15 * (1 + (len(text) - 3) // width)

@@ -1,0 +1,88 @@
+"""The submission as read: filters, comments on guilty cells, percentages, links."""
+
+from __future__ import annotations
+
+import openpyxl
+import pytest
+
+from flexlash.pipeline import run
+from flexlash.report import submission_sheets
+
+
+def _report(path, tmp_path):
+    outcome = run(path, tmp_path / "report.xlsx", samples=256)
+    return outcome, openpyxl.load_workbook(tmp_path / "report.xlsx")
+
+
+@pytest.fixture
+def faulty(table, sound):
+    """Return the path of a table with a sound row, two rows without a torque and one with two faults."""
+    rows = [
+        sound,
+        {**sound, "variant": "a", "torque_Nm": ""},
+        {**sound, "variant": "b", "torque_Nm": ""},
+        {**sound, "variant": "c", "wall_thickness_mm": "thin", "flexspline_type": "cap"},
+    ]
+    return table(rows)
+
+
+def test_guilty_cells_say_what_is_wrong(faulty, tmp_path):
+    """Each guilty cell has its finding's code and message in a comment; no other cell has one."""
+    outcome, book = _report(faulty, tmp_path)
+    expected = {}
+    for found in outcome.findings:
+        if found.level != "info":
+            expected.setdefault(found.cell, []).append(f"{found.code} {found.message}")
+    comments = {cell.coordinate: cell.comment.text for row in book["Submission"].iter_rows()
+                for cell in row if cell.comment}  # fmt: skip
+    assert comments == {cell: "\n".join(messages) for cell, messages in expected.items()}
+    assert len(comments) == 4
+
+
+def test_comments_are_no_more_than_can_be_kept(faulty, tmp_path, monkeypatch):
+    """With more guilty cells than comments the first cells have one; all are coloured."""
+    monkeypatch.setattr(submission_sheets, "MOST_COMMENTS", 2)
+    outcome, book = _report(faulty, tmp_path)
+    cells = [cell for row in book["Submission"].iter_rows() for cell in row]
+    guilty = {found.cell for found in outcome.findings if found.level == "error"}
+    assert sum(cell.comment is not None for cell in cells) == 2
+    assert {cell.coordinate for cell in cells if cell.fill.fgColor.rgb == "FFF8CBAD"} == guilty
+
+
+def test_entry_sheets_are_frozen_and_filtered_below_their_headers(workbook, sound, tmp_path):
+    """Rows above the header stay on screen, and the table below it can be filtered, on every entry sheet."""
+    outcome, book = _report(workbook([sound]), tmp_path)
+    for schema, header in outcome.validated.header_rows.items():
+        sheet = book["Submission" if schema == "Variants" else schema]
+        assert sheet.freeze_panes == f"B{header + 1}"
+        first, last = sheet.auto_filter.ref.split(":")
+        assert first == f"A{header}"
+        assert int(last.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")) == max(sheet.max_row, header)
+
+
+def test_percentages_look_as_entered(workbook, sound, tmp_path):
+    """A cell that showed 5% shows 5% again, whatever was computed of it."""
+    path = workbook([sound])
+    book = openpyxl.load_workbook(path)
+    sheet = book["Tolerances"]
+    header = next(cell.row for cell in sheet["A"] if cell.value == "Tolerance class")
+    places = {cell.value: cell.column for cell in sheet[header]}
+    row = ["standard-2", "wall_thickness", -0.05, 0.125, "%"]
+    labels = ("Tolerance class", "Dimension", "Lower deviation", "Upper deviation", "Deviation unit")
+    last = sheet.max_row + 1
+    for label, value in zip(labels, row, strict=True):
+        place = next(place for title, place in places.items() if title and title.startswith(label))
+        cell = sheet.cell(last, place, value)
+        if isinstance(value, float):
+            cell.number_format = "0.0%"
+    book.save(path)
+    _, report = _report(path, tmp_path)
+    shown = {cell.value: cell.number_format for cell in report["Tolerances"][last]}
+    assert shown[-0.05] == "0%"
+    assert shown[0.125] == "0.0%"
+
+
+def test_a_name_that_is_a_number_stays_a_number(workbook, sound, tmp_path):
+    """A variant whose name was typed as a number is repeated as a number."""
+    _, book = _report(workbook([{**sound, "variant": 12}]), tmp_path)
+    assert 12 in [cell.value for cell in book["Submission"]["A"]]
