@@ -57,6 +57,9 @@ def write_explorer(book: Book, curves: Stored, total: int) -> None:
         sheet.set_column(place, place, width)
     sheet.write_string(0, 0, "Explorer: one variant, any limit", book.format("title"))
     sheet.set_row(0, 28)
+    if not curves.rows:
+        sheet.write_string(1, 0, "Nothing was computed, see Findings.", book.format("quiet"))
+        return
     note = "Change the four yellow cells; figures and charts follow."
     if len(curves.rows) < total:
         note += f" The {len(curves.rows)} worst of {total} variants can be picked; all are in Results."

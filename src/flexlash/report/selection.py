@@ -7,23 +7,24 @@ from typing import Any
 
 from flexlash.assessment import Computed
 from flexlash.outcome import Outcome
-from flexlash.summary import worst_first
+from flexlash.tolerance.curves import Curve
 
-__all__ = ["DRAWN", "Drawn", "drawn_variants"]
-
-DRAWN = 500
-"""Most variants whose curves are stored."""
+__all__ = ["Drawn", "drawn_variants"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Drawn:
-    """A variant with its Results row and what was computed of it."""
+    """A variant with its Results row, what was computed of it, and its whole distribution."""
 
     row: dict[str, Any]
     computed: Computed
+    curve: Curve
 
 
 def drawn_variants(outcome: Outcome) -> list[Drawn]:
-    """Return up to `DRAWN` computed variants, worst first."""
-    by_name = {one.variant.name: one for one in outcome.computed.values()}
-    return [Drawn(row=row, computed=by_name[row["variant"]]) for row in worst_first(outcome)[:DRAWN]]
+    """Return the variants that have a curve, worst first."""
+    rows = {row["variant"]: row for row in outcome.results.iter_rows(named=True)}
+    return [
+        Drawn(row=rows[outcome.computed[place].variant.name], computed=outcome.computed[place], curve=curve)
+        for place, curve in outcome.curves.items()
+    ]
