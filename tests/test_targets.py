@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from flexlash.targets import beside, mended_targets, report_targets, template_target
+from flexlash.targets import beside, mended_targets, recreated_targets, report_targets, template_target
 
 
 def _names(targets, folder):
@@ -84,3 +84,35 @@ def test_a_template_is_a_workbook(tmp_path, name):
     with pytest.raises(ValueError, match=r"must end in \.xlsx"):
         template_target(tmp_path / name, None, force=True)
     assert template_target(tmp_path / "t.XLSX", None, force=False) == tmp_path / "t.XLSX"
+
+
+NAMES = {
+    "a file": ("study.xlsx", ["study-recreated.xlsx", "study-recreated-report.xlsx"]),
+    "a path": ("../../study.csv", [".._.._study-recreated.xlsx", ".._.._study-recreated-report.xlsx"]),
+    "another system's path": ("C:\\x.csv", ["C__x-recreated.xlsx", "C__x-recreated-report.xlsx"]),
+    "a device": ("a:b|c\0", ["a_b_c_-recreated.xlsx", "a_b_c_-recreated-report.xlsx"]),
+}
+
+
+@pytest.mark.parametrize("what", NAMES)
+def test_a_name_that_a_report_carries_leads_nowhere_else(what, tmp_path):
+    """What is made anew stands beside the report, whatever the submission is said to be called."""
+    name, expected = NAMES[what]
+    targets = recreated_targets(tmp_path / "r.xlsx", None, name, set())
+    assert [target.parent for target in targets] == [tmp_path, tmp_path]
+    assert _names(targets, tmp_path) == expected
+
+
+def test_what_is_made_anew_replaces_no_given_report(tmp_path):
+    """A report made anew from a report made anew gets a number; so do two of one name."""
+    taken = {(tmp_path / "a-recreated-report.xlsx").resolve()}
+    first = recreated_targets(tmp_path / "a-recreated-report.xlsx", None, "a.csv", taken)
+    second = recreated_targets(tmp_path / "other.xlsx", tmp_path, "a.csv", taken)
+    assert _names(first, tmp_path) == ["a-recreated.xlsx", "a-recreated-report (2).xlsx"]
+    assert _names(second, tmp_path) == ["a-recreated (2).xlsx", "a-recreated-report (3).xlsx"]
+
+
+def test_the_report_made_anew_goes_where_it_is_wanted(tmp_path):
+    """A path given for the report is its path, and the submission stands beside it."""
+    targets = recreated_targets(tmp_path / "r.xlsx", tmp_path / "new" / "x.csv", "a.csv", set())
+    assert _names(targets, tmp_path) == ["new/a-recreated.xlsx", "new/x.csv"]

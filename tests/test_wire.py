@@ -8,7 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexlash.submission.reading.raw import ErrorCell, Percentage, RawSheet, Unstored
+from flexlash.submission.reading.raw import (
+    CommaNumber,
+    DoubtfulNumber,
+    ErrorCell,
+    Manner,
+    Percentage,
+    RawSheet,
+    Unstored,
+)
 from flexlash.submission.reading.wire import from_wire, to_wire
 from flexlash.submission.reading.workbook import Cells
 
@@ -34,6 +42,8 @@ VALUES = [
     datetime.timedelta(days=-3, seconds=1.5),
     ErrorCell("#REF!"),
     Percentage(0.05),
+    CommaNumber("1,6"),
+    DoubtfulNumber("1.200"),
     ErrorCell(""),
     Unstored(),
 ]
@@ -76,6 +86,12 @@ def test_everything_about_a_file_comes_through():
         sheets=[
             RawSheet(name="b", rows={2: {1: 1}, 9: {7: "x"}}, hidden_rows=frozenset({2}), merged=((1, 1, 2, 3),)),
             RawSheet(name="a", rows={}, hidden=True),
+            RawSheet(
+                name="c",
+                rows={1: {1: "x"}},
+                numbers_are_texts=True,
+                manner=Manner(delimiter=";", encoding="UTF-8", file="c.csv", comma_number=(2, 3), foreign_text=None),
+            ),
         ],
         modified=datetime.datetime(2026, 1, 2, 3, 4, 5),  # noqa: DTZ001
         role="report",

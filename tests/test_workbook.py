@@ -2,6 +2,7 @@
 
 import contextlib
 import datetime
+import io
 import random
 import time
 import tracemalloc
@@ -9,6 +10,7 @@ import zipfile
 from xml.sax.saxutils import escape
 
 import numpy as np
+import openpyxl
 import pytest
 
 from flexlash.submission.reading.limits import ReadingLimits
@@ -332,3 +334,20 @@ def test_numbers_that_are_shown_as_percentages(number_format, code, percentage):
     found = _read(book_of(_row(_number("0.05", s="1"), _number("7", "B1")), **{STYLES: styles}))[1]
     assert found == {1: 0.05, 2: 7}
     assert [isinstance(value, Percentage) for value in found.values()] == [percentage, False]
+
+
+def test_only_the_named_sheets_are_read():
+    """Sheets that are not asked for are neither read nor counted, nor refused for what stands in them."""
+    book = openpyxl.Workbook()
+    for name, cells in (("Wanted", 3), ("Other", 300)):
+        sheet = book.create_sheet(name)
+        for row in range(1, cells + 1):
+            sheet.cell(row, 1, row)
+    buffer = io.BytesIO()
+    book.save(buffer)
+    limits = ReadingLimits(cells=3)
+    found = read_workbook(buffer.getvalue(), limits, only=["Wanted", "Absent"])
+    assert [(sheet.name, len(sheet.rows)) for sheet in found.sheets] == [("Wanted", 3)]
+    with pytest.raises(Refusal) as refusal:
+        read_workbook(buffer.getvalue(), limits)
+    assert refusal.value.code == "E110"

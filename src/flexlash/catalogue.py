@@ -180,6 +180,27 @@ CATALOGUE = _rules(
         "computed.",
     ),
     (
+        "E120",
+        "not a report",
+        "{file} is no report made by flexlash.",
+        "Give a report, <name>-report.xlsx; a submission is computed without --from-report.",
+        "With --from-report everything is computed anew from a report alone, without the file it was made of.",
+    ),
+    (
+        "E121",
+        "report without its inputs",
+        "{file} carries no inputs: an older version made it, or its hidden sheet Carried was deleted.",
+        "Run the submission that it was made of; its name stands on the report's sheet About.",
+        "A report carries what was read on a hidden sheet, with every digit, so that the report alone is enough.",
+    ),
+    (
+        "E122",
+        "inputs of a report unreadable",
+        "{file} carries inputs that cannot be read: {found}.",
+        "Take the report as flexlash wrote it, or run the submission that it was made of.",
+        "The hidden sheet Carried is checked as every submission is; nothing of it is used when one part is wrong.",
+    ),
+    (
         "E201",
         "required cell empty",
         "{place} {name} is empty: {requirement} is required.",
@@ -771,7 +792,7 @@ CATALOGUE = _rules(
         "I508",
         "skipped",
         "{file} is a report of flexlash, not a submission; it was skipped.",
-        "Submit the filled template.",
+        "Submit the filled template, or compute the report's own inputs anew: flexlash run --from-report.",
         "Reports carry a mark by which they are recognised when a whole folder is submitted.",
     ),
     (

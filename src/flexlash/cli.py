@@ -15,7 +15,18 @@ import click
 from flexlash import __version__
 from flexlash.findings import CATALOGUE, finding, shown
 from flexlash.targets import beside, mended_targets, report_targets, template_target
-from flexlash.terminal import INTERNAL, INTERRUPTED, NO_FILE, NOTHING, named, one_submission, progress, tell, worst
+from flexlash.terminal import (
+    INTERNAL,
+    INTERRUPTED,
+    NO_FILE,
+    NOTHING,
+    named,
+    one_submission,
+    progress,
+    tell,
+    tell_refused,
+    worst,
+)
 
 if TYPE_CHECKING:
     from flexlash.submission.mending.repair import Repair
@@ -42,6 +53,7 @@ def cli() -> None:
       flexlash check variants.xlsx           say what is wrong with it
       flexlash run variants.xlsx             compute it, write variants-report.xlsx
       flexlash run variants.xlsx -o out.csv  the results table alone
+      flexlash diff old.xlsx new.xlsx        what changed between two reports or submissions
     """  # noqa: D301
 
 
@@ -83,8 +95,7 @@ def _upgraded(old: Path) -> bytes:
     except Refusal as refusal:
         facts: dict[str, Any] = {"file": old.name, **refusal.facts}
         found = finding(refusal.code, **facts)
-        click.secho(f"{found.code} {found.message}", fg="red", err=True)
-        click.echo(f"Mend: {found.fix}", err=True)
+        tell_refused(found, old.name)
         sys.exit(NOTHING)
     made = f", made from template version {upgrade.version}" if upgrade.version else ""
     click.echo(f"{named(old)}{made}: {upgrade.rows} {'row' if upgrade.rows == 1 else 'rows'} of Variants carried over.")
@@ -150,7 +161,7 @@ _LIMITS = click.option(
 _MARKED = click.option(
     "--marked-copies", is_flag=True, help="Take marked copies (<name>-checked.xlsx) as submissions, too."
 )
-_STRICT = click.option("--strict", is_flag=True, help="Compute nothing when any row has an error.")
+_STRICT = click.option("--strict/--no-strict", default=None, help="Compute nothing when any row has an error.")
 
 
 def _table_option(name: str) -> Callable[[Command], Command]:
@@ -228,14 +239,21 @@ def check(
 @click.option("--seed", type=click.IntRange(0, 2**32 - 1), help="Start of the random numbers.")
 @click.option("--method", type=click.Choice(["line", "sobol", "random"]), help="How the spread is sampled.")
 @click.option("--samples", type=click.IntRange(1, 2**22), help="Lines or points per variant.")
-@click.option("--cross-check", is_flag=True, help="Put plain Monte Carlo beside the spread and say whether they agree.")
-@click.option("--elasticity", is_flag=True, help="Check each variant by two-dimensional elasticity.")
+@click.option(
+    "--cross-check/--no-cross-check", default=None,
+    help="Put plain Monte Carlo beside the spread and say whether they agree.",
+)  # fmt: skip
+@click.option("--elasticity/--no-elasticity", default=None, help="Check each variant by two-dimensional elasticity.")
 @click.option(
     "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default="all cores", help="Processes."
 )
 @_STRICT
 @_LIMITS
 @_JSON
+@click.option(
+    "--from-report", is_flag=True,
+    help="The files are reports: write the submission that each carries and compute it anew, with its own options.",
+)  # fmt: skip
 @click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")
 @click.option(
     "--annotate/--no-annotate", default=True, show_default=True,
@@ -249,6 +267,7 @@ def run(
     output: Path | None,
     *,
     annotate: bool,
+    from_report: bool,
     as_json: bool,
     quiet: bool,
     **options: Any,
@@ -260,6 +279,10 @@ def run(
     if options["elasticity"] and not is_available():
         raise click.UsageError(MISSING)
     targets = _planned(report_targets, submissions, output)
+    if from_report:
+        from flexlash.commands import recreate_all
+
+        sys.exit(worst(recreate_all(submissions, output, as_json=as_json, quiet=quiet, **options)))
     codes: list[int] = []
     for path, target, copy in zip(submissions, targets, beside(submissions, targets), strict=True):
         with one_submission(path, codes, as_json=as_json), progress(quiet=quiet or as_json) as advance:
@@ -272,6 +295,26 @@ def run(
                 tell(outcome, path, as_json=as_json, ran=True)
             codes += [] if outcome.skipped else [outcome.exit_code]
     sys.exit(worst(codes))
+
+
+@cli.command()
+@click.argument("old", metavar="A", type=click.Path(path_type=Path, readable=False))
+@click.argument("new", metavar="B", type=click.Path(path_type=Path, readable=False))
+@click.option(
+    "--tolerance", type=click.FloatRange(0, 1), default=1e-12, show_default=True, metavar="RELATIVE",
+    help="Numbers of Results that differ by no more than this part of themselves are equal.",
+)  # fmt: skip
+@click.option("--all", "every", is_flag=True, help="Tell every column of Results and every variant.")
+@_LIMITS
+@_JSON
+def diff(old: Path, new: Path, *, tolerance: float, every: bool, limits: ReadingLimits, as_json: bool) -> None:
+    """Say what differs between A and B, reports or submissions: inputs and, of two reports, results.
+
+    The exit code is 0 whether or not they differ.
+    """
+    from flexlash.commands import compare
+
+    sys.exit(compare(old, new, tolerance=tolerance, every=every, limits=limits, as_json=as_json))
 
 
 def _planned(plan: Callable[..., Planned], *paths: Any, **options: bool) -> Planned:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from flexlash.submission.reading.limits import ReadingLimits
 
@@ -19,19 +20,29 @@ class Options:
     """What the caller decides; None leaves it to the submission's settings.
 
     `marked_copy` is where the submission goes with its errors and warnings marked, when there are any;
-    `marked_copies` takes such copies as submissions as well.
+    `marked_copies` takes such copies as submissions as well. `from_report` says that the file is a report, of whose
+    submission everything is computed anew; what is None is then as it was in that run.
     """
 
     seed: int | None = None
     method: str | None = None
     samples: int | None = None
-    strict: bool = False
-    cross_check: bool = False
-    elasticity: bool = False
+    strict: bool | None = None
+    cross_check: bool | None = None
+    elasticity: bool | None = None
     jobs: int = 1
     tolerances: str | Path | None = None
     materials: str | Path | None = None
     limits: ReadingLimits = field(default_factory=ReadingLimits)
     marked_copy: str | Path | None = None
     marked_copies: bool = False
+    from_report: bool = False
     progress: Progress | None = None
+
+    def __post_init__(self) -> None:
+        if self.from_report and self.marked_copy is not None:
+            raise ValueError("a report does not hold the file itself, so that nothing can be marked in it")
+
+    def completed(self, run_with: Mapping[str, Any] | None) -> Options:
+        """Return these options, and those of an earlier run where these leave them open."""
+        return replace(self, **{name: value for name, value in (run_with or {}).items() if getattr(self, name) is None})

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from flexlash import __version__
 from flexlash.assessment import Computed
 from flexlash.findings import Finding
+from flexlash.options import Options
 from flexlash.submission.reading.read import Submission
 from flexlash.submission.validate import Validated
 from flexlash.variant import Settings
@@ -30,7 +31,8 @@ class Outcome:
     """What came out of one submission.
 
     `results` is the Results table; `findings` all findings in the order of the submission; `outputs` the
-    files written. `computed` holds, by row number, what the report draws on.
+    files written; `options` what was decided beside the settings.
+    `computed` holds, by row number, what the report draws on.
     `pictured` holds, by variant, the elasticity checks that the report draws.
     `skipped` says that the file is a report or a marked copy, not a submission; `marked_copy` is
     where its findings were marked, `not_carried` what of it that copy could not take over.
@@ -40,6 +42,7 @@ class Outcome:
     results: pl.DataFrame
     findings: list[Finding]
     settings: Settings
+    options: Options = field(default_factory=Options)
     validated: Validated | None = None
     computed: dict[int, Computed] = field(default_factory=dict)
     outputs: list[Path] = field(default_factory=list)

@@ -21,7 +21,7 @@ from flexlash.submission.mending.repair import Repair
 from flexlash.submission.reading.gate import kind_of, read_bytes
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import column_number
-from flexlash.submission.reading.read import RawSheet, Reading, Submission, read_table
+from flexlash.submission.reading.read import RawSheet, Reading, ReportReading, Submission, read_table
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.stops import stopped_by
 from flexlash.submission.validate import Validated, validate
@@ -85,16 +85,17 @@ def run(submission: str | Path | Reading, output: str | Path | None = None, **op
     """Return the outcome of a submission and write it to `output`, unless that is None.
 
     Options are those of the command line: seed, method, samples, cross_check, elasticity, strict, jobs,
-    tolerances, materials. The output's ending decides its form: .xlsx, .csv, .parquet or .json.
+    tolerances, materials, from_report. The output's ending decides its form: .xlsx, .csv, .parquet or .json.
 
     Raises OSError when a file cannot be opened or written, ValueError for an unknown ending, ModuleNotFoundError
     for elasticity without its libraries.
     """
     chosen = Options(**options)
-    if chosen.elasticity and not is_available():
-        raise ModuleNotFoundError(MISSING)
     reading = _reading(submission, chosen)
     outcome = _examine(reading, chosen)
+    chosen = chosen.completed(outcome.submission.run_with)
+    if chosen.elasticity and not is_available():
+        raise ModuleNotFoundError(MISSING)
     _spread(outcome, chosen)
     if chosen.elasticity:
         _verify(outcome, chosen)
@@ -110,7 +111,9 @@ def run(submission: str | Path | Reading, output: str | Path | None = None, **op
 
 def _reading(given: str | Path | Reading, options: Options) -> Reading:
     """Return a submission being read."""
-    return given if isinstance(given, Reading) else Reading(Path(given), options.limits)
+    if isinstance(given, Reading):
+        return given
+    return (ReportReading if options.from_report else Reading)(Path(given), options.limits)
 
 
 def _examine(reading: Reading, options: Options) -> Outcome:
@@ -118,7 +121,9 @@ def _examine(reading: Reading, options: Options) -> Outcome:
     path = reading.path
     try:
         submission = reading.submission()
-        if submission.role in {"report"} | (set() if options.marked_copies else {"checked"}):
+        options = options.completed(submission.run_with)
+        others = {"report"} | (set() if options.marked_copies else {"checked"})
+        if submission.run_with is None and submission.role in others:
             skipped = [finding("I508" if submission.role == "report" else "I513", file=path.name)]
             return Outcome(
                 submission=submission,
@@ -192,6 +197,7 @@ def _validated(submission: Submission, options: Options) -> Outcome:
         results=results_frame([]),
         findings=findings,
         settings=settings,
+        options=options,
         validated=validated,
         computed=computed,
     )
@@ -221,7 +227,7 @@ def _spread(outcome: Outcome, options: Options) -> None:
         samples=settings.samples,
         seed=settings.seed,
         coverage=settings.coverage_percent / 100,
-        cross_check=options.cross_check,
+        cross_check=bool(options.cross_check),
     )
     rows = list(outcome.computed.values())
     models = {kind: partial(backlash, kind) for kind in ("cup", "hat", "cylinder")}
@@ -235,7 +241,7 @@ def _spread(outcome: Outcome, options: Options) -> None:
         outcome.computed[one.variant.row] = replace(one, variation=variation)
         if options.progress:
             options.progress(done, len(rows) * (2 if options.elasticity else 1))
-    outcome.results = _results(outcome, cross_check=options.cross_check)
+    outcome.results = _results(outcome, cross_check=bool(options.cross_check))
 
 
 def _verify(outcome: Outcome, options: Options) -> None:
@@ -253,7 +259,7 @@ def _verify(outcome: Outcome, options: Options) -> None:
         progress=(lambda done, total: progress(rows + done, rows + total)) if progress else None,
     )
     outcome.findings = _in_order(outcome.validated, outcome.submission)
-    outcome.results = _results(outcome, cross_check=options.cross_check, elasticity=True)
+    outcome.results = _results(outcome, cross_check=bool(options.cross_check), elasticity=True)
 
 
 def _picture(outcome: Outcome) -> None:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
-__all__ = ["MARKED", "beside", "mended_targets", "report_targets", "template_target"]
+__all__ = ["MARKED", "beside", "mended_targets", "recreated_targets", "report_targets", "template_target"]
 
 MARKED = "-checked"
 MENDED = "-mended"
+_RECREATED = "-recreated"
+_FORBIDDEN = re.compile(r'[<>:"/\\|?*\x00-\x1f\x7f]')
+"""What no name of a file can hold on every system."""
+
 REPORTS = (".xlsx", ".csv", ".parquet", ".json")
 """Forms in which results are written, by the ending of their path."""
 
@@ -36,6 +41,27 @@ def template_target(output: Path | None, old: Path | None, *, force: bool) -> Pa
     if target.exists() and not force:
         raise ValueError(f"{target} exists and may be filled; choose another -o, or --force.")
     return target
+
+
+def recreated_targets(report: Path, output: Path | None, name: str, taken: set[Path]) -> tuple[Path, Path]:
+    """Return where the submission goes that a report carries by this name, and where the report made anew.
+
+    Neither takes the place of a path in `taken`, to which both are added.
+    """
+    stem = Path(_FORBIDDEN.sub("_", name)).stem or "submission"
+    is_file = output is not None and not output.is_dir()
+    folder = report.parent if output is None else output.parent if is_file else output
+    found: list[Path] = []
+    for ending in (_RECREATED, f"{_RECREATED}-report"):
+        target, copy = folder / f"{stem}{ending}.xlsx", 1
+        if output is not None and is_file and found:
+            target = output
+        while target != output and target.resolve() in taken:
+            copy += 1
+            target = folder / f"{stem}{ending} ({copy}).xlsx"
+        taken.add(target.resolve())
+        found.append(target)
+    return found[0], found[1]
 
 
 def _targets(

@@ -4,21 +4,33 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from flexlash.findings import shown
 
 if TYPE_CHECKING:
+    from flexlash.findings import Finding
     from flexlash.options import Progress
     from flexlash.outcome import Outcome
     from flexlash.submission.mending.repair import Repair
 
-__all__ = ["INTERNAL", "INTERRUPTED", "NOTHING", "NO_FILE", "named", "one_submission", "progress", "tell", "worst"]
+__all__ = [
+    "INTERNAL",
+    "INTERRUPTED",
+    "NOTHING",
+    "NO_FILE",
+    "named",
+    "one_submission",
+    "progress",
+    "tell",
+    "tell_refused",
+    "worst",
+]
 
 INTERNAL, _USAGE, SOME_ROWS, NOTHING, NO_FILE, INTERRUPTED = 1, 2, 3, 4, 5, 130
 
@@ -51,6 +63,13 @@ def one_submission(path: Path, codes: list[int], *, as_json: bool) -> Iterator[N
         codes.append(NO_FILE)
 
 
+def tell_refused(found: Finding, file: str) -> None:
+    """Print why a file was refused, and the mend."""
+    name = "" if file in found.message else f"{named(file)}: "
+    click.secho(f"{name}{found.code} {found.message}", fg="red", err=True)
+    click.echo(f"Mend: {found.fix}", err=True)
+
+
 @contextmanager
 def progress(*, quiet: bool) -> Iterator[Progress | None]:
     """Yield a callback that draws a progress bar, or None off a terminal."""
@@ -67,12 +86,18 @@ def progress(*, quiet: bool) -> Iterator[Progress | None]:
 
 
 def tell(
-    outcome: Outcome, path: Path, *, as_json: bool, ran: bool = False, repairs: list[Repair] | None = None
+    outcome: Outcome,
+    path: Path,
+    *,
+    as_json: bool,
+    ran: bool = False,
+    repairs: list[Repair] | None = None,
+    further: Mapping[str, Any] | None = None,
 ) -> None:
-    """Print an outcome: as one JSON object, or findings grouped by rule and then the summary."""
+    """Print an outcome: as one JSON object, with `further` fields, or findings grouped by rule and then the summary."""
     if as_json:
         fixes = {} if repairs is None else {"fixes": [repair.as_dictionary() for repair in repairs]}
-        click.echo(json.dumps({**outcome.as_dictionary(), **fixes}, ensure_ascii=False))
+        click.echo(json.dumps({**outcome.as_dictionary(), **fixes, **(further or {})}, ensure_ascii=False))
         return
     from flexlash.summary import finding_lines, repair_lines, summary_lines
 

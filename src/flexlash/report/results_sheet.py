@@ -15,7 +15,15 @@ from flexlash.result_columns import RESULTS, result_columns
 if TYPE_CHECKING:
     import polars as pl
 
-__all__ = ["AS_SUBMITTED", "ERROR_DIGITS", "FIRST_ROW", "SHARE_DECIMALS", "column_place", "write_results"]
+__all__ = [
+    "AS_SUBMITTED",
+    "ERROR_DIGITS",
+    "FIRST_ROW",
+    "SHARE_DECIMALS",
+    "column_place",
+    "stored_values",
+    "write_results",
+]
 
 AS_SUBMITTED = "as submitted"
 """What stands in the place of the key above a column that the submission has and flexlash does not use."""
@@ -91,7 +99,7 @@ def _write_heading(book: Book, sheet: Any, place: int, texts: tuple[str, str, st
 
 def _write_cells(book: Book, sheet: Any, results: pl.DataFrame, columns: Sequence[Column]) -> None:
     """Write the table row by row, in which order XlsxWriter is quickest."""
-    lists = [_values(results, column) for column in columns]
+    lists = [stored_values(results, column) for column in columns]
     styles = [_styles(book, results, column) for column in columns]
     write_number, write_string = sheet.write_number, sheet.write_string
     for row, (values, formats) in enumerate(
@@ -106,7 +114,7 @@ def _write_cells(book: Book, sheet: Any, results: pl.DataFrame, columns: Sequenc
                 write_number(row, place, value, formats[place])
 
 
-def _values(results: pl.DataFrame, column: Column) -> list[Any]:
+def stored_values(results: pl.DataFrame, column: Column) -> list[Any]:
     """Return the numbers of a column as the workbook holds them: errors and estimated shares rounded."""
     values = results[column.key].to_list()
     if "standard_error" in column.key:

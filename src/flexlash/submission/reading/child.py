@@ -36,6 +36,12 @@ def _workbook(data: bytes, limits: ReadingLimits) -> Answer:
     return to_wire(read_workbook(data, limits)), b""
 
 
+def _report(data: bytes, limits: ReadingLimits) -> Answer:
+    from flexlash.submission.reading.carried import read_report
+
+    return read_report(data, limits), b""
+
+
 def _parquet(data: bytes, limits: ReadingLimits) -> Answer:  # noqa: ARG001
     from flexlash.submission.reading.parquet import read_parquet
     from flexlash.submission.reading.wire import to_wire
@@ -67,6 +73,7 @@ def _mend(data: bytes, limits: ReadingLimits, repairs: list[dict[str, Any]]) -> 
 
 TASKS: dict[str, Callable[..., Answer]] = {
     "workbook": _workbook,
+    "report": _report,
     "parquet": _parquet,
     "leftovers": _leftovers,
     "mark": _mark,
@@ -74,6 +81,7 @@ TASKS: dict[str, Callable[..., Answer]] = {
 }
 _NEEDED = {
     "workbook": ("flexlash.submission.reading.wire", "flexlash.submission.reading.sheet_cells"),
+    "report": ("flexlash.submission.reading.carried", "flexlash.submission.reading.sheet_cells"),
     "parquet": ("flexlash.submission.reading.wire", "polars"),
     "leftovers": ("flexlash.submission.templating.leftovers",),
     "mark": ("flexlash.submission.marking.marked_copy",),

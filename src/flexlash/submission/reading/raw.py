@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import datetime
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 __all__ = [
     "ERROR_WORDS",
@@ -103,7 +104,10 @@ class RawSheet:
 
 @dataclass(frozen=True, kw_only=True)
 class Submission:
-    """A submission as read, and its bytes. `role` is what its document properties say it is."""
+    """A submission as read, and its bytes. `role` is what its document properties say it is.
+
+    `run_with` are the options of the run whose report carried it; None for a submission that was read itself.
+    """
 
     name: str
     sha256: str
@@ -113,6 +117,7 @@ class Submission:
     role: str = ""
     template_version: str = ""
     data: bytes = field(default=b"", repr=False)
+    run_with: Mapping[str, Any] | None = None
 
     @property
     def manner(self) -> Manner | None:

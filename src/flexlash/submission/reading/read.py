@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 from pathlib import Path
 
+from flexlash.submission.reading.carried import NONSENSE, carried_submission
 from flexlash.submission.reading.delimited import read_table
 from flexlash.submission.reading.gate import kind_of, read_bytes
 from flexlash.submission.reading.isolated import Asked
@@ -20,12 +22,17 @@ __all__ = [
     "RawSheet",
     "RawValue",
     "Reading",
+    "ReportReading",
     "Submission",
     "Unstored",
     "column_letters",
     "read_submission",
     "read_table",
 ]
+
+
+_MORE = 4
+"""Times more cells, and time, than a submission has that a report may need, which has its results beside it."""
 
 
 class Reading:
@@ -45,10 +52,13 @@ class Reading:
         try:
             self.data = read_bytes(path, self.limits) if data is None else data
             self.kind = kind_of(self.data)
-            if self.kind != "csv":
-                self.asked = Asked(self.kind, self.data, self.limits)
+            self.asked = self._ask()
         except Refusal as refusal:
             self.refusal = refusal
+
+    def _ask(self) -> Asked | None:
+        """Have the limited process begin, where this kind of file needs it."""
+        return None if self.kind == "csv" else Asked(self.kind, self.data, self.limits)
 
     def submission(self) -> Submission:
         """Return the cells, once they are read; raise Refusal when the file is no readable submission."""
@@ -73,6 +83,38 @@ class Reading:
             template_version=cells.template_version,
             data=self.data,
         )
+
+
+class ReportReading(Reading):
+    """A report being read for the submission that it carries; `results` are its Results, None before they are read."""
+
+    results: RawSheet | None = None
+    carried: Submission | None = None
+
+    def _ask(self) -> Asked | None:
+        if self.kind != "workbook":
+            raise Refusal("E120")
+        cells, seconds, processor = (
+            _MORE * limit for limit in (self.limits.cells, self.limits.seconds, self.limits.processor_seconds)
+        )
+        return Asked(
+            "report", self.data, replace(self.limits, cells=cells, seconds=seconds, processor_seconds=processor)
+        )
+
+    def submission(self) -> Submission:
+        """Return the submission that the report carries; raise Refusal when the file is no report that carries one."""
+        if self.refusal:
+            raise self.refusal
+        if self.carried is None and self.asked is not None:
+            answer = self.asked.answer()[0]
+            try:
+                self.results = next(iter(from_wire(answer["results"]).sheets), None)
+                self.carried = carried_submission(answer["carried"], self.limits)
+            except NONSENSE as fault:
+                raise Refusal("E118") from fault
+        if self.carried is None:
+            raise Refusal("E118")
+        return self.carried
 
 
 def read_submission(path: Path, limits: ReadingLimits | None = None) -> Submission:

@@ -1,12 +1,25 @@
-"""Cells as JSON and back: how the limited process hands over what it read. Nothing in it can be executed."""
+"""Cells as JSON and back: how the limited process hands over what it read, and a report carries it.
+
+Nothing in it can be executed.
+"""
 
 from __future__ import annotations
 
 import datetime
 from collections.abc import Callable
+from dataclasses import asdict
 from typing import Any
 
-from flexlash.submission.reading.raw import ErrorCell, Percentage, RawSheet, RawValue, Unstored
+from flexlash.submission.reading.raw import (
+    CommaNumber,
+    DoubtfulNumber,
+    ErrorCell,
+    Manner,
+    Percentage,
+    RawSheet,
+    RawValue,
+    Unstored,
+)
 from flexlash.submission.reading.workbook import Cells
 
 __all__ = ["from_wire", "to_wire"]
@@ -23,8 +36,14 @@ _KINDS: dict[str, tuple[type, Callable[[Any], str], Callable[[str], RawValue]]] 
     "error": (ErrorCell, lambda value: value.text, ErrorCell),
     "unstored": (Unstored, lambda _: "", lambda _: Unstored()),
     "percentage": (Percentage, float.__repr__, lambda text: Percentage(float(text))),
+    "comma": (CommaNumber, str, CommaNumber),
+    "doubtful": (DoubtfulNumber, str, DoubtfulNumber),
 }
 """How each kind of value that JSON lacks is written and read."""
+
+_PLACES = ("comma_number", "foreign_text")
+_OWN = frozenset({str, int, float, bool})
+"""Kinds of value that JSON has itself."""
 
 
 def to_wire(cells: Cells) -> dict[str, Any]:
@@ -40,6 +59,8 @@ def to_wire(cells: Cells) -> dict[str, Any]:
                 "hidden": sheet.hidden,
                 "hidden_rows": sorted(sheet.hidden_rows),
                 "merged": sheet.merged,
+                "numbers_are_texts": sheet.numbers_are_texts,
+                "manner": asdict(sheet.manner) if sheet.manner else None,
             }
             for sheet in cells.sheets
         ],
@@ -51,7 +72,7 @@ def to_wire(cells: Cells) -> dict[str, Any]:
 
 def _written(value: RawValue) -> Any:
     """Return a value as JSON holds it; kinds that it lacks become a pair of their name and a text."""
-    if isinstance(value, str | int | float) and not isinstance(value, Percentage):
+    if type(value) in _OWN:
         return value
     for kind, (type_, write, _) in _KINDS.items():
         if isinstance(value, type_):
@@ -69,6 +90,8 @@ def from_wire(wire: dict[str, Any]) -> Cells:
                 hidden=sheet["hidden"],
                 hidden_rows=frozenset(sheet["hidden_rows"]),
                 merged=tuple(tuple(area) for area in sheet["merged"]),
+                numbers_are_texts=sheet["numbers_are_texts"],
+                manner=_manner(sheet["manner"]),
             )
             for sheet in wire["sheets"]
         ],
@@ -76,6 +99,14 @@ def from_wire(wire: dict[str, Any]) -> Cells:
         role=wire["role"],
         template_version=wire["template_version"],
     )
+
+
+def _manner(written: dict[str, Any] | None) -> Manner | None:
+    """Return how a delimited text was written."""
+    if written is None:
+        return None
+    places = {name: place and tuple(place) for name, place in written.items() if name in _PLACES}
+    return Manner(**(written | places))
 
 
 def _read(value: Any) -> RawValue:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import datetime
 import re
 import warnings
-from dataclasses import dataclass, field
+from collections.abc import Collection
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from flexlash.submission.reading.archive import packed, unpacked
@@ -37,9 +38,11 @@ class Cells:
     template_version: str = ""
 
 
-def read_workbook(data: bytes, limits: ReadingLimits) -> Cells:
-    """Return the cells of every worksheet; raise Refusal when one of them might be read wrongly."""
+def read_workbook(data: bytes, limits: ReadingLimits, only: Collection[str] = ()) -> Cells:
+    """Return the cells of every worksheet, or of those named; raise Refusal when one of them might be read wrongly."""
     package = open_package(unpacked(data, limits), limits)
+    if only:
+        package = replace(package, sheets=[sheet for sheet in package.sheets if sheet.title in only])
     looked_at = look_at(package, limits)
     try:
         # openpyxl warns of every feature that it does not carry over, none of which holds a cell's value.

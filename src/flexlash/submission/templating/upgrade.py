@@ -27,7 +27,7 @@ from flexlash.submission.templating.template import TITLES, template_bytes
 from flexlash.submission.validate import validate
 from flexlash.submission.versions import template_version
 
-__all__ = ["Upgrade", "upgraded"]
+__all__ = ["Upgrade", "refilled", "upgraded"]
 
 _MADE_ANEW = ("Dictionary", "Lists")
 _ABOVE = re.compile(r"Template version \d+|\d+ of \d+ rows complete|No row entered yet", re.IGNORECASE)
@@ -62,12 +62,21 @@ def upgraded(path: Path, limits: ReadingLimits | None = None) -> Upgrade:
     submission = read_submission(path, limits)
     if submission.role not in {"", "template"}:
         raise Refusal("E101", found="it is a report or a marked copy made by flexlash")
+    if submission.kind != "workbook":
+        return refilled(submission, limits)
+    upgrade = refilled(submission, limits, Leftovers.of(ask("leftovers", submission.data, limits)[0]))
+    return replace(upgrade, remarks=(*upgrade.remarks, _WITHOUT_FORMAT))
+
+
+def refilled(submission: Submission, limits: ReadingLimits, beside: Leftovers | None = None) -> Upgrade:
+    """Return a template of this version, filled with what was read and with what stood `beside` the values.
+
+    Raises Refusal when there is no header row, or a newer template's.
+    """
+    beside = beside or Leftovers()
     validated = validate(submission, limits)
     if validated.table is None:
         raise Refusal("E109", sheet="Variants", cell="A1")
-    beside = Leftovers()
-    if submission.kind == "workbook":
-        beside = Leftovers.of(ask("leftovers", submission.data, limits)[0])
     filled: dict[str, Entries] = {}
     remarks: list[str] = []
     sheets = _entry_sheets(submission, limits, remarks)
@@ -80,7 +89,7 @@ def upgraded(path: Path, limits: ReadingLimits | None = None) -> Upgrade:
         data=template_bytes(Filling(sheets=filled)),
         version=template_version(submission),
         rows=validated.table.frame.height,
-        remarks=(*remarks, _WITHOUT_FORMAT) if submission.kind == "workbook" else tuple(remarks),
+        remarks=tuple(remarks),
     )
 
 

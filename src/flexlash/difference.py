@@ -1,0 +1,233 @@
+"""Two reports or submissions → what differs between them: per variant what was entered, what it uses, what came out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from flexlash.column import Column
+from flexlash.columns import SETTINGS, VARIANTS
+from flexlash.result_columns import result_columns
+from flexlash.sides import Name, Side, Used
+from flexlash.submission.spellings import plain
+
+__all__ = ["FIRST", "ROUNDING", "Change", "Difference", "Differing", "changed_results", "difference"]
+
+ROUNDING = 1e-12
+"""Numbers that differ by no more than this part of themselves are equal."""
+
+FIRST = ("status", "backlash_arcmin", "p97_5_arcmin", "probability_over_limit", "main_contributor")
+"""Results on which a verdict rests, in the order in which a reader wants them."""
+
+_RESULTS = {column.key: column for column in result_columns(cross_check=True, elasticity=True)}
+_TWICE = frozenset({"variant", "notes", "findings", "backlash_limit_arcmin"})
+"""Results that repeat what was entered, or name cells."""
+
+_NAMES = frozenset({"material", "tolerance_class"})
+"""Columns that name a row of another sheet, in whatever spelling."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """One value that differs, in printed units; None where there is none. `owner` is the table's row it stands in."""
+
+    sheet: str
+    owner: str = ""
+    key: str
+    label: str
+    unit: str = ""
+    old: str | float | None
+    new: str | float | None
+
+    @property
+    def part(self) -> float | None:
+        """The change as a part of the old number; None where there is no such number."""
+        if isinstance(self.old, str) or isinstance(self.new, str) or not self.old or self.new is None:
+            return None
+        return self.new / self.old - 1
+
+    def as_dictionary(self) -> dict[str, Any]:
+        """Return the change as JSON holds it."""
+        names = ("sheet", "owner", "key", "label", "unit", "old", "new")
+        percent = None if self.part is None else 100 * self.part
+        return {**{name: getattr(self, name) for name in names}, "change_percent": percent}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Differing:
+    """What differs of one variant: what was entered in its row, what it uses of other sheets, what came out."""
+
+    name: Name
+    entered: list[Change] = field(default_factory=list)
+    used: list[Change] = field(default_factory=list)
+    results: list[Change] = field(default_factory=list)
+    limit: str = ""
+    """Whether P97.5 is `over` the limit now, or `within` it, where it was not before."""
+
+    def as_dictionary(self) -> dict[str, Any]:
+        """Return it as JSON holds it."""
+        parts = {"entered": self.entered, "used": self.used, "results": self.results}
+        return {
+            "variant": self.name.text,
+            **{part: [change.as_dictionary() for change in changes] for part, changes in parts.items()},
+            "limit": self.limit,
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Difference:
+    """What differs between two files; `variants` are those of both that differ, `common` is how many both have."""
+
+    old: Side
+    new: Side
+    common: int
+    variants: list[Differing]
+    removed: list[Name]
+    added: list[Name]
+
+    @property
+    def has_results(self) -> bool:
+        """Whether both are reports, whose results are compared."""
+        return self.old.results is not None and self.new.results is not None
+
+    @property
+    def is_none(self) -> bool:
+        """Whether nothing differs."""
+        return not (self.variants or self.removed or self.added)
+
+    @property
+    def shared(self) -> dict[Change, list[Name]]:
+        """Return every change of a table or setting with the variants that use it."""
+        found: dict[Change, list[Name]] = {}
+        for one in self.variants:
+            for change in one.used:
+                found.setdefault(change, []).append(one.name)
+        return found
+
+    def as_dictionary(self) -> dict[str, Any]:
+        """Return the object that `flexlash diff --json` prints."""
+        return {
+            "old": self.old.as_dictionary(),
+            "new": self.new.as_dictionary(),
+            "results_compared": self.has_results,
+            "counts": {
+                "common": self.common,
+                "differing": len(self.variants),
+                "removed": len(self.removed),
+                "added": len(self.added),
+            },
+            "removed": [name.text for name in self.removed],
+            "added": [name.text for name in self.added],
+            "variants": [one.as_dictionary() for one in self.variants],
+        }
+
+
+def difference(old: Side, new: Side, tolerance: float = ROUNDING) -> Difference:
+    """Return what differs between two files; numbers of Results may differ by `tolerance` of themselves."""
+    before, after = old.entries(), new.entries()
+    common = [name for name in after if name in before]
+    found = []
+    for name in common:
+        one = Differing(
+            name=name,
+            entered=list(_entered(before[name], after[name])),
+            used=list(_used(old, new, name)),
+            results=_results(old, new, name, tolerance),
+            limit=_limit(old, new, name),
+        )
+        if one.entered or one.used or one.results:
+            found.append(one)
+    return Difference(
+        old=old,
+        new=new,
+        common=len(common),
+        variants=found,
+        removed=[name for name in before if name not in after],
+        added=[name for name in after if name not in before],
+    )
+
+
+def _entered(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[Change]:
+    """Yield what differs between two rows of Variants."""
+    for column in VARIANTS:
+        pair = old.get(column.key), new.get(column.key)
+        alike = column.key in _NAMES and plain(pair[0] or "") == plain(pair[1] or "")
+        if column.key != "variant" and not (alike or equal(*pair)):
+            yield _change(column, *pair)
+
+
+def _change(column: Column, old: Any, new: Any) -> Change:
+    return Change(sheet=column.sheet, key=column.key, label=column.name, unit=column.unit, old=old, new=new)
+
+
+def _used(old: Side, new: Side, name: Name) -> Iterator[Change]:
+    """Yield what differs of the material, the tolerances and the settings that a variant uses on both sides."""
+    yield from _values("Materials", old.material(name), new.material(name))
+    its_own = old.dimensions(name) | new.dimensions(name)
+    for change in _values("Tolerances", old.tolerances(name), new.tolerances(name)):
+        if change.key in its_own:
+            yield change
+    before, after = old.settings, new.settings
+    for column in SETTINGS:
+        if not equal(before[column.key], after[column.key]):
+            yield _change(column, before[column.key], after[column.key])
+
+
+def _values(sheet: str, old: Used | None, new: Used | None) -> Iterator[Change]:
+    """Yield what differs between two rows of a table; other rows were chosen on purpose and are told as that."""
+    if old is None or new is None or old.owner != new.owner:
+        return
+    for key in dict.fromkeys([*old.values, *new.values]):
+        one, other = old.values.get(key), new.values.get(key)
+        named = one or other
+        if named and not equal(one and one.value, other and other.value):
+            yield Change(
+                sheet=sheet,
+                owner=old.name,
+                key=key,
+                label=named.label,
+                unit=named.unit,
+                old=one.shown if one else None,
+                new=other.shown if other else None,
+            )
+
+
+def _results(old: Side, new: Side, name: Name, tolerance: float) -> list[Change]:
+    """Return what differs between the Results of a variant; without them, whether it can be computed."""
+    if old.results is None or new.results is None:
+        pair = old.hindrance(name), new.hindrance(name)
+        words = [f"no, {one}" if one else "yes" for one in pair]
+        told = Change(sheet="Variants", key="status", label="Computable", old=words[0], new=words[1])
+        return [told] if bool(pair[0]) != bool(pair[1]) else []
+    return changed_results(old.results.get(name, {}), new.results.get(name, {}), tolerance)
+
+
+def changed_results(old: Mapping[str, Any], new: Mapping[str, Any], tolerance: float = ROUNDING) -> list[Change]:
+    """Return what differs between two rows of Results, what a verdict rests on first; a column of one alone is none."""
+    keys = [key for key in _RESULTS if key in old and key in new and key not in _TWICE]
+    order = sorted(keys, key=lambda key: FIRST.index(key) if key in FIRST else len(FIRST))
+    return [_change(_RESULTS[key], old[key], new[key]) for key in order if not equal(old[key], new[key], tolerance)]
+
+
+def _limit(old: Side, new: Side, name: Name) -> str:
+    """Return whether P97.5 has crossed the limit."""
+    verdicts = []
+    for side in (old, new):
+        row = (side.results or {}).get(name, {})
+        value, limit = row.get("p97_5_arcmin"), row.get("backlash_limit_arcmin")
+        verdicts.append(None if value is None or limit is None else value > limit)
+    if None in verdicts or verdicts[0] == verdicts[1]:
+        return ""
+    return "over" if verdicts[1] else "within"
+
+
+def equal(one: Any, other: Any, tolerance: float = ROUNDING) -> bool:
+    """Whether two values say the same; numbers, alone or in a row, may differ by their rounding."""
+    if isinstance(one, tuple) and isinstance(other, tuple):
+        pairs = zip(one, other, strict=False)
+        return len(one) == len(other) and all(equal(*pair, tolerance) for pair in pairs)
+    if isinstance(one, int | float) and isinstance(other, int | float):
+        return math.isclose(one, other, rel_tol=tolerance)
+    return bool(one == other)

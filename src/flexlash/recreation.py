@@ -1,0 +1,90 @@
+"""A report alone → the submission it was made of, in a template of this version, and the report made anew."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from flexlash.difference import changed_results
+from flexlash.handback import sealed, unclaimed
+from flexlash.outcome import Outcome
+from flexlash.pipeline import run
+from flexlash.result_columns import result_columns
+from flexlash.sides import Name, frame_rows, result_rows
+from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.read import ReportReading
+from flexlash.submission.reading.refusal import Refusal
+from flexlash.targets import recreated_targets
+
+if TYPE_CHECKING:
+    import polars as pl
+
+__all__ = ["Recreation", "recreate"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recreation:
+    """What came of a report: the outcome, what the template could not take over, how many numbers are other ones.
+
+    `numbers` is how many numbers of Results were compared, 0 when there were none to compare.
+    """
+
+    outcome: Outcome
+    remarks: tuple[str, ...] = ()
+    numbers: int = 0
+    different: int = 0
+
+
+def recreate(report: Path, output: Path | None, taken: set[Path], **options: Any) -> Recreation:
+    """Write the submission and the report anew; return what came of it.
+
+    `output` is a folder, the new report's path, or None for the folder of the given one; neither takes the place of
+    files in `taken`, to which they are added. Raises OSError when a file cannot be opened or written.
+    """
+    limits = options.get("limits") or ReadingLimits()
+    reading = ReportReading(report, limits)
+    try:
+        name = reading.submission().name
+    except Refusal:
+        # Running it says why.
+        name = report.name
+    filled, anew = recreated_targets(report, output, name, taken)
+    outcome = run(reading, anew, from_report=True, **options)
+    if outcome.validated is None or outcome.validated.table is None or not outcome.computed:
+        return Recreation(outcome=outcome)
+    from flexlash.report.output import write_bytes
+    from flexlash.submission.templating.upgrade import refilled
+
+    upgrade = refilled(outcome.submission, limits)
+    data = sealed(upgrade.data)
+    outcome.outputs.insert(0, write_bytes(data, unclaimed(filled, data)))
+    numbers, different = _compared(result_rows(reading.results), frame_rows(_as_stored(outcome.results)))
+    return Recreation(outcome=outcome, remarks=upgrade.remarks, numbers=numbers, different=different)
+
+
+def _as_stored(results: pl.DataFrame) -> pl.DataFrame:
+    """Return a Results table with the digits that a report keeps of its numbers."""
+    import polars as pl
+
+    from flexlash.report.results_sheet import stored_values
+
+    columns = {column.key: column for column in result_columns(cross_check=True, elasticity=True)}
+    stored = {key: stored_values(results, columns[key]) for key in results.columns}
+    return pl.DataFrame(stored, schema=results.schema)
+
+
+def _compared(old: Mapping[Name, Mapping[str, Any]], new: Mapping[Name, Mapping[str, Any]]) -> tuple[int, int]:
+    """Return how many numbers two Results hold, and how many of them differ."""
+    numbers = different = 0
+    for name in dict.fromkeys([*old, *new]):
+        before, after = (rows.get(name, dict.fromkeys(other.get(name, {}))) for rows, other in ((old, new), (new, old)))
+        numeric = {
+            key for key in before.keys() | after.keys() for row in (before, after) if isinstance(row.get(key), float)
+        }
+        same_columns = before.keys() & after.keys()
+        changed = {change.key for change in changed_results(before, after)} & numeric
+        numbers += len(numeric)
+        different += len(changed | (numeric - same_columns))
+    return numbers, different

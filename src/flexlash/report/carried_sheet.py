@@ -1,0 +1,78 @@
+"""The hidden sheet by which a report carries what was read: every digit of it, so that the report alone recreates it.
+
+A sheet is kept by every program that saves a workbook; a part of its own would not be.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+
+from flexlash import __version__
+from flexlash.columns import ENTRY_SHEETS
+from flexlash.outcome import Outcome
+from flexlash.report.styles import Book
+from flexlash.submission.reading.carried import FORM, SHEET, SWITCHES
+from flexlash.submission.reading.raw import RawSheet, RawValue
+from flexlash.submission.reading.wire import to_wire
+from flexlash.submission.reading.workbook import Cells
+from flexlash.submission.spellings import plain
+
+__all__ = ["carried_text", "write_carried"]
+
+_PIECE = 30_000
+"""Characters of a cell, which can hold 32,767."""
+
+_TOP = 15
+"""Rows of a sheet that was not read itself, in which its headers were recognised."""
+
+_NOTE = "What flexlash read, for flexlash run --from-report and flexlash diff. Please leave it as it is."
+
+
+def write_carried(book: Book, outcome: Outcome) -> None:
+    """Write the sheet, last of all and hidden from the list of hidden sheets."""
+    sheet = book.workbook.add_worksheet(SHEET)
+    text = carried_text(outcome)
+    for row, start in enumerate(range(0, len(text), _PIECE)):
+        sheet.write_string(row, 0, text[start : start + _PIECE])
+    sheet.write_string(0, 1, _NOTE)
+    sheet.very_hidden()
+
+
+def carried_text(outcome: Outcome) -> str:
+    """Return what was read and the options that shaped the numbers, as JSON in plain letters."""
+    submission, settings = outcome.submission, outcome.settings
+    carried = {
+        "form": FORM,
+        "version": __version__,
+        "submission": {"name": submission.name, "sha256": submission.sha256, "kind": submission.kind},
+        "options": {name: getattr(settings, name) for name in ("seed", "method", "samples")}
+        | {name: bool(getattr(outcome.options, name)) for name in SWITCHES},
+        "cells": to_wire(
+            Cells(
+                sheets=_sheets(submission.sheets, {found.sheet for found in outcome.findings}),
+                modified=submission.modified,
+                role=submission.role,
+                template_version=submission.template_version,
+            )
+        ),
+    }
+    # Readers of workbooks take _x0041_ for a letter.
+    return json.dumps(carried, separators=(",", ":")).replace("_x", "_\\u0078")
+
+
+def _sheets(sheets: Mapping[str, RawSheet], named: set[str]) -> list[RawSheet]:
+    """Return the sheets that were read, and of others that a finding names as much as makes it found again."""
+    ours = set(map(plain, ENTRY_SHEETS))
+    return [
+        sheet if plain(name) in ours else replace(sheet, rows=_top(sheet.rows))
+        for name, sheet in sheets.items()
+        if plain(name) in ours or name in named
+    ]
+
+
+def _top(rows: Mapping[int, dict[int, RawValue]]) -> dict[int, dict[int, RawValue]]:
+    """Return the rows by which a sheet was recognised: those of headers, and the first two."""
+    first = list(rows)[:2]
+    return {row: cells for row, cells in rows.items() if row <= _TOP or row in first}

@@ -1,0 +1,253 @@
+"""One of two files that are compared: what was entered, in the template's units, what it uses, what came out."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from flexlash.columns import DIMENSIONS, MATERIALS, columns_of
+from flexlash.findings import shown
+from flexlash.result_columns import result_columns
+from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.raw import RawSheet, Submission
+from flexlash.submission.reading.read import Reading, ReportReading
+from flexlash.submission.reading.refusal import Refusal
+from flexlash.submission.spellings import plain
+from flexlash.submission.tabulate import Table
+from flexlash.submission.validate import Validated, validate
+from flexlash.variant import ToleranceRow
+
+if TYPE_CHECKING:
+    import polars as pl
+
+__all__ = ["Name", "Side", "Used", "Value", "frame_rows", "result_rows", "side_of"]
+
+_TOP = 15
+_LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Name:
+    """A variant by its name, case as written; `place` counts rows of one name from 1."""
+
+    text: str
+    place: int = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Value:
+    """A value of a table: what is compared, how it is shown, what it is called."""
+
+    value: Any
+    shown: str | float | None
+    label: str
+    unit: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Used:
+    """What a variant uses of a table: the rows' owner, in plain letters and as written, and their values by key."""
+
+    owner: str
+    name: str
+    values: Mapping[str, Value]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Side:
+    """A report or submission as it is compared; `results` are a report's by variant, None for a submission."""
+
+    file: str
+    submission: Submission
+    validated: Validated
+    results: Mapping[Name, Mapping[str, Any]] | None = None
+
+    @property
+    def is_report(self) -> bool:
+        """Whether it is a report, which has results."""
+        return self.submission.run_with is not None
+
+    def as_dictionary(self) -> dict[str, Any]:
+        """Return what it is, as JSON holds it."""
+        kind = "report" if self.is_report else "submission"
+        return {"file": self.file, "kind": kind, "submission": self.submission.name, "sha256": self.submission.sha256}
+
+    @cached_property
+    def records(self) -> Mapping[Name, Mapping[str, Any]]:
+        """The typed rows of Variants by name, in submitted order."""
+        table = self.validated.table
+        rows = table.frame.to_dicts() if table else []
+        return dict(zip(_named(row["variant"] or "" for row in rows), rows, strict=True))
+
+    def entries(self) -> dict[Name, dict[str, Any]]:
+        """Return what was entered for each variant: blank cells with their default, faulty ones as entered."""
+        table = self.validated.table
+        mends = {
+            (found.cell, found.column): found.repair
+            for found in self.validated.ledger.findings
+            if table and found.sheet == table.sheet and found.repair is not None
+        }
+        return {name: _entered(record, table, mends) for name, record in self.records.items() if table}
+
+    def hindrance(self, name: Name) -> str:
+        """Return why a variant cannot be computed, an empty text where nothing is in its way."""
+        row = self.records[name]["row"]
+        if row in self._rows:
+            return ""
+        sheet = self.validated.table.sheet if self.validated.table else ""
+        errors = (found for found in self.validated.ledger.findings if found.level == "error")
+        mine = [found for found in errors if found.sheet == sheet and found.cell.lstrip(_LETTERS) == str(row)]
+        return ", ".join(f"{found.code} {found.cell}" for found in mine) or "an error on another sheet"
+
+    @cached_property
+    def _rows(self) -> Mapping[int, frozenset[str]]:
+        return {variant.row: frozenset(variant.dimensions) for variant in self.validated.variants}
+
+    def material(self, name: Name) -> Used | None:
+        """Return the material that a variant uses; None for one that is unknown."""
+        record = self.records[name]
+        found = self.validated.materials.get(plain(record["material"] or ""))
+        if found is None:
+            return None
+        constants = found.constants | {"yield": found.yield_strength}
+        values = {
+            column.dimension: Value(
+                value=number,
+                shown=None if number is None else number / column.si_unit.si,
+                label=column.name,
+                unit=column.unit,
+            )
+            for column in MATERIALS
+            if (number := constants.get(column.dimension)) is not None
+        }
+        return Used(owner=plain(found.name), name=found.name, values=values)
+
+    def tolerances(self, name: Name) -> Used | None:
+        """Return the tolerances of a variant's class; None for one that is unknown."""
+        record = self.records[name]
+        class_name = record["tolerance_class"] or "standard"
+        rows = self.validated.classes.get(plain(class_name))
+        if rows is None:
+            return None
+        return Used(owner=plain(class_name), name=class_name, values={row.dimension: _tolerance(row) for row in rows})
+
+    def dimensions(self, name: Name) -> frozenset[str]:
+        """Return the dimensions that a variant has itself; none for one with errors."""
+        return self._rows.get(self.records[name]["row"], frozenset())
+
+    @cached_property
+    def settings(self) -> dict[str, Any]:
+        """Return the settings that hold, those that options of the run have replaced among them."""
+        run_with = self.submission.run_with or {}
+        settings = vars(self.validated.settings) | self.validated.settings.calibrations
+        return settings | {key: run_with[key] for key in ("seed", "method", "samples") if run_with}
+
+
+def side_of(path: Path, limits: ReadingLimits) -> Side:
+    """Return a report or submission to compare.
+
+    Raises OSError when the file cannot be opened, Refusal when it is neither.
+    """
+    reading: Reading = ReportReading(path, limits)
+    try:
+        submission = reading.submission()
+    except Refusal as refusal:
+        if refusal.code != "E120":
+            raise
+        reading = Reading(path, limits, reading.data)
+        submission = reading.submission()
+    validated = validate(submission, limits)
+    if validated.table is None:
+        raise Refusal("E109", sheet="Variants", cell="A1")
+    results = result_rows(reading.results) if isinstance(reading, ReportReading) else None
+    return Side(file=path.name, submission=submission, validated=validated, results=results)
+
+
+def _named(names: Iterable[str]) -> list[Name]:
+    """Return names that tell apart the rows of one name."""
+    seen: Counter[str] = Counter()
+    found = []
+    for name in names:
+        seen[name] += 1
+        found.append(Name(text=name, place=seen[name]))
+    return found
+
+
+def _entered(
+    record: Mapping[str, Any], table: Table, mends: Mapping[tuple[str, str], str | float | None]
+) -> dict[str, Any]:
+    """Return a row of Variants as it is compared."""
+    found = {}
+    for key, column in columns_of("Variants").items():
+        value = record[key]
+        if (record["row"], key) in table.faulty:
+            mend = mends.get((table.address(record["row"], key), key))
+            value = shown(table.entered(record["row"], key))
+            if isinstance(mend, float):
+                value = mend * table.heading.factors.get(key, 1.0)
+        elif value is None and not column.is_number:
+            value = column.default
+        # A fillet of 0 is none.
+        found[key] = None if value == 0 and key.endswith("fillet_radius_mm") else value
+    return found
+
+
+def _tolerance(row: ToleranceRow) -> Value:
+    """Return a row of Tolerances as it is compared and shown."""
+    column = DIMENSIONS[row.dimension]
+    scatter = row.limits_sigma if "normal" in row.distribution else None
+    limits = () if row.grade else (row.lower, row.upper)
+    size, unit = (0.01, "%") if row.relative else (column.si_unit.si, column.unit)
+    words = row.grade or _deviations(row.lower / size, row.upper / size, "" if unit == "-" else unit)
+    words += "" if row.distribution == "normal" else f", {row.distribution}"
+    words += f", limits at ± {scatter:g} sigma" if scatter not in {None, 3.0} else ""
+    value = (limits, row.relative and bool(limits), row.grade, row.distribution, scatter)
+    return Value(value=value, shown=words, label=column.plain_name)
+
+
+def _deviations(lower: float, upper: float, unit: str) -> str:
+    """Return two deviations as a drawing gives them: `± 0.05 mm`, `−0.1 to +0.2 mm`."""
+    space = " " if unit else ""
+    if lower == -upper:
+        return f"± {upper:.10g}{space}{unit}"
+    ends = (f"{end:+.10g}".replace("-", "−") if end else "0" for end in (lower, upper))
+    return f"{' to '.join(ends)}{space}{unit}"
+
+
+def result_rows(sheet: RawSheet | None) -> dict[Name, dict[str, Any]]:
+    """Return the rows of a Results sheet by variant; its keys stand in one row, above the first variant."""
+    if sheet is None:
+        raise Refusal("E122", found="its sheet Results is missing")
+    columns = {column.key: column for column in result_columns(cross_check=True, elasticity=True)}
+    head = next((row for row, cells in sheet.rows.items() if {"variant", "status"} <= _texts(cells)), None)
+    if head is None or head > _TOP:
+        raise Refusal("E122", found="its sheet Results has no row of keys")
+    places = {key: place for place, key in sheet.rows[head].items() if key in columns}
+    numeric = {key: columns[str(key)].is_number for key in places}
+    rows: list[dict[str, Any]] = [
+        {str(key): _plain_value(cells.get(place), is_number=numeric[key]) for key, place in places.items()}
+        for row, cells in sheet.rows.items()
+        if row > head
+    ]
+    return dict(zip(_named(row["variant"] or "" for row in rows), rows, strict=True))
+
+
+def frame_rows(results: pl.DataFrame) -> dict[Name, dict[str, Any]]:
+    """Return the rows of a Results table by variant."""
+    rows = results.to_dicts()
+    return dict(zip(_named(row["variant"] or "" for row in rows), rows, strict=True))
+
+
+def _texts(cells: Mapping[int, Any]) -> set[str]:
+    return {value for value in cells.values() if isinstance(value, str)}
+
+
+def _plain_value(value: Any, *, is_number: bool) -> str | float | None:
+    """Return what a cell of Results holds; None for what its column cannot hold."""
+    if is_number:
+        return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
+    return None if value is None else str(value)
