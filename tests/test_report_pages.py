@@ -29,11 +29,11 @@ def _on_paper(report, target, code):
     return target
 
 
-@pytest.fixture(scope="module")
-def report(tmp_path_factory):
-    """Return the path of the study's report."""
+@pytest.fixture(scope="module", params=["b3-160-study", "needs-fixing", "catalogue-sizes"])
+def report(request, tmp_path_factory):
+    """Return the path of the report on an example."""
     path = tmp_path_factory.mktemp("pages") / "report.xlsx"
-    run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path)
+    run(regenerate.ROOT / "data" / f"{request.param}.xlsx", path)
     return path
 
 
@@ -80,3 +80,5 @@ def test_every_page_is_whole(report, tmp_path, paper):
     assert set(shown) == set(names)
     for name in ONE_PAGE:
         assert shown.count(name) == 1, name
+    assert shown.count("Results") == 4
+    assert shown.count("Trace") == 2
