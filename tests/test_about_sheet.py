@@ -48,7 +48,7 @@ def test_verdict_and_digits_are_explained(book):
     for colour, rule in RULES.items():
         assert f"{colour.capitalize()}: {rule}." in said
     digits = " ".join(name for name, _, _ in _section(book["About"], "Digits and columns"))
-    assert "Standard errors are kept to 4 digits and estimated shares to 5 decimals" in digits
+    assert "Standard errors are kept to 4 digits and estimated shares to 4 decimals" in digits
     spread = " ".join(name for name, _, _ in _section(book["About"], "Spread"))
     assert "Exact to rounding: nominal columns" in spread
 

@@ -25,9 +25,9 @@ def test_every_variant_has_its_shares_however_few_are_drawn(table, sound, tmp_pa
     first = next(iter(outcome.computed.values())).variation
     headings = {cell.value: cell.column for cell in sheet[_HEADER + 1]}
     for name, share in first.shares.items():
-        assert sheet.cell(_HEADER + 2, headings[dimension_words(name)]).value == round(share, 5)
+        assert sheet.cell(_HEADER + 2, headings[dimension_words(name)]).value == round(share, 4)
         assert sheet.cell(_HEADER + 2, headings[f"{dimension_words(name)}, total"]).value == round(
-            first.totals[name], 5
+            first.totals[name], 4
         )
     assert sheet.auto_filter.ref.startswith(f"A{_HEADER + 1}:")
     assert sheet.auto_filter.ref.endswith(str(_HEADER + 1 + 5))

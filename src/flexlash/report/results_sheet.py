@@ -31,8 +31,8 @@ AS_SUBMITTED = "as submitted"
 ERROR_DIGITS = 4
 """Digits of a standard error that the workbook holds; an estimate of an error has two or three."""
 
-SHARE_DECIMALS = 5
-"""Decimals of an estimated share that the workbook holds; it is good to the third."""
+SHARE_DECIMALS = 4
+"""Decimals of an estimated share that the workbook holds, as many as it shows; it is good to the third."""
 
 _ESTIMATED_SHARES = frozenset({"main_contributor_share", "interaction_share"})
 _PLACES = {column.key: place for place, column in enumerate(RESULTS)}

@@ -18,6 +18,7 @@ from flexlash.report.elasticity_sheet import write_elasticity, write_stress
 from flexlash.report.explorer_sheet import write_explorer
 from flexlash.report.findings_sheet import write_findings
 from flexlash.report.inputs import INPUTS_NOTE, stored_inputs
+from flexlash.report.packing import packed
 from flexlash.report.ranking_sheet import write_ranking
 from flexlash.report.results_sheet import write_results
 from flexlash.report.sections_sheet import write_sections
@@ -67,4 +68,4 @@ def report_bytes(outcome: Outcome) -> bytes:
     inputs.write(book, INPUTS_NOTE)
     write_carried(book, outcome)
     workbook.close()
-    return buffer.getvalue()
+    return packed(buffer.getvalue())
