@@ -33,12 +33,14 @@ ALLOWED = {
     "assessment": CORE | {"mechanics", "submission", "tolerance"},
     "verification": CORE | {"assessment", "elasticity", "mechanics", "submission"},
     "results": CORE | {"tolerance"},
-    "outcome": CORE | {"assessment", "elasticity", "options", "submission"},
+    "scatter": CORE | {"assessment", "mechanics", "options", "tolerance"},
+    "outcome": CORE | {"assessment", "elasticity", "options", "remedies", "submission", "tolerance.curves"},
+    "remedies": CORE | {"assessment", "mechanics", "options", "scatter", "tolerance"},
     "targets": CORE | {"submission"},
     "handback": CORE | {"outcome", "submission"},
     "summary": CORE | {"outcome", "submission"},
     "report": CORE
-    | {"assessment", "elasticity", "outcome", "summary", "submission", "tolerance"}
+    | {"assessment", "elasticity", "outcome", "remedies", "summary", "submission", "tolerance"}
     | {"mechanics.fillets", "mechanics.strength", "mechanics.windup"},  # points and bounds that Trace shows
     "pipeline": CORE
     | {
@@ -48,18 +50,17 @@ ALLOWED = {
         "mechanics",
         "options",
         "outcome",
+        "remedies",
         "report",
         "results",
+        "scatter",
         "submission",
         "summary",
-        "tolerance",
         "verification",
     },
-    "sides": CORE | {"submission"},
-    "difference": CORE | {"sides", "submission"},
-    "difference_lines": CORE | {"difference", "sides"},
-    "recreation": CORE | {"difference", "handback", "outcome", "pipeline", "report", "sides", "submission", "targets"},
-    "commands": CORE | {"difference", "difference_lines", "pipeline", "recreation", "sides", "submission", "terminal"},
+    "comparison": CORE | {"submission"},
+    "recreation": CORE | {"comparison", "handback", "outcome", "pipeline", "report", "submission", "targets"},
+    "commands": CORE | {"comparison", "pipeline", "recreation", "submission", "terminal"},
     "options": CORE | {"submission"},
     "terminal": CORE | {"options", "outcome", "submission", "summary"},
     "cli": CORE

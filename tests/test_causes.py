@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from flexlash.pipeline import run
-from flexlash.report.causes import Cause, cause_sentences, causes_of, left_out, mean_share, ranked_dimensions
+from flexlash.report.compare.causes import Cause, cause_sentences, causes_of, left_out, mean_share, ranked_dimensions
 
 WALL, E, NU, HUB = "wall_thickness", "youngs_modulus", "poisson_ratio", "disk_inner_radius"
 

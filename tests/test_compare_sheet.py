@@ -12,7 +12,7 @@ import pytest
 
 import regenerate
 from flexlash.pipeline import run
-from flexlash.report.compare_sheet import BOXES
+from flexlash.report.compare.compare_sheet import BOXES
 from flexlash.report.selection import drawn_variants
 from libreoffice import convert, needs_libreoffice
 from report_charts import chart_titled, points_of

@@ -8,7 +8,7 @@ from scipy.special import ndtri
 
 import regenerate
 from flexlash.pipeline import run
-from flexlash.report.compared import compared_variants, percentile_between, share_heading
+from flexlash.report.compare.compared import compared_variants, percentile_between, share_heading
 from flexlash.report.selection import drawn_variants
 from flexlash.tolerance.curves import CURVE_SCORES
 from flexlash.units import ARCMIN

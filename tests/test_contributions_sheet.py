@@ -9,8 +9,8 @@ import pytest
 
 import regenerate
 from flexlash.pipeline import run
-from flexlash.report.causes import cause_sentences, causes_of, ranked_dimensions
-from flexlash.report.contributions_sheet import MAPPED
+from flexlash.report.compare.causes import cause_sentences, causes_of, ranked_dimensions
+from flexlash.report.compare.contributions_sheet import MAPPED
 from flexlash.report.selection import drawn_variants
 from flexlash.summary import dimension_words
 from report_charts import chart_titled, points_of

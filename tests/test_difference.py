@@ -6,10 +6,10 @@ import csv
 
 import pytest
 
-from flexlash.difference import Change, changed_results, difference
-from flexlash.difference import equal as is_equal
+from flexlash.comparison.difference import Change, changed_results, difference
+from flexlash.comparison.difference import equal as is_equal
+from flexlash.comparison.sides import side_of
 from flexlash.pipeline import run
-from flexlash.sides import side_of
 from flexlash.submission.reading.limits import ReadingLimits
 
 LIMITS = ReadingLimits()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from flexlash.difference import Change, Difference, Differing
-from flexlash.difference_lines import comparison_line, difference_lines
-from flexlash.sides import Name, Side
+from flexlash.comparison.difference import Change, Difference, Differing
+from flexlash.comparison.difference_lines import comparison_line, difference_lines
+from flexlash.comparison.sides import Name, Side
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.reading.raw import Submission
 from flexlash.submission.validate import Validated

@@ -11,8 +11,8 @@ from scipy.special import ndtri
 
 import regenerate
 from flexlash.pipeline import run
-from flexlash.report.curves_sheet import CURVES_NOTE, stored_curves
-from flexlash.report.explorer_sheet import write_explorer
+from flexlash.report.explorer.curves_sheet import CURVES_NOTE, stored_curves
+from flexlash.report.explorer.explorer_sheet import write_explorer
 from flexlash.report.selection import drawn_variants
 from flexlash.report.styles import Book
 from flexlash.tolerance.curves import CURVE_SCORES

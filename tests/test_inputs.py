@@ -6,7 +6,7 @@ import pytest
 
 from flexlash.columns import DIMENSIONS
 from flexlash.pipeline import check
-from flexlash.report.inputs import ENTERED, PROGRAM, stored_inputs
+from flexlash.report.trace.inputs import ENTERED, PROGRAM, stored_inputs
 
 
 def _row(path, **options):

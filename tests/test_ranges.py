@@ -9,7 +9,7 @@ import pytest
 import xlsxwriter
 
 from flexlash.report.live import Live, fill, put
-from flexlash.report.ranges import (
+from flexlash.report.trace.ranges import (
     PI,
     all_of,
     any_of,

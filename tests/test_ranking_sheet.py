@@ -9,7 +9,7 @@ import pytest
 
 import regenerate
 from flexlash.pipeline import run
-from flexlash.report.ranking_sheet import BASE_ROW, DIFFERENCES, FIRST_ROW, HEADER
+from flexlash.report.compare.ranking_sheet import BASE_ROW, DIFFERENCES, FIRST_ROW, HEADER
 from flexlash.report.selection import drawn_variants
 from flexlash.report.verdict import light
 from flexlash.summary import dimension_words, share_words

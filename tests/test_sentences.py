@@ -9,7 +9,7 @@ import pytest
 
 import regenerate
 from flexlash.pipeline import run
-from flexlash.report.sentences import sentences
+from flexlash.report.summary.sentences import sentences
 
 EXACT = "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n"
 

@@ -6,8 +6,8 @@ import openpyxl
 import pytest
 
 import regenerate
+from flexlash.comparison.sides import Name, result_rows, side_of
 from flexlash.pipeline import run
-from flexlash.sides import Name, result_rows, side_of
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import Percentage, RawSheet
 from flexlash.submission.reading.refusal import Refusal

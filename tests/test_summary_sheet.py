@@ -13,11 +13,11 @@ import xlsxwriter
 
 import regenerate
 from flexlash.pipeline import run
-from flexlash.report.curves_sheet import stored_curves
+from flexlash.report.explorer.curves_sheet import stored_curves
 from flexlash.report.selection import drawn_variants
-from flexlash.report.sentences import sentences
 from flexlash.report.styles import PALETTE, Book
-from flexlash.report.summary_sheet import write_summary
+from flexlash.report.summary.sentences import sentences
+from flexlash.report.summary.summary_sheet import write_summary
 from flexlash.report.verdict import RULES, light
 from flexlash.report.wrapping import LINE_HEIGHT, lines_of
 from flexlash.summary import dimension_words, share_words

@@ -12,9 +12,9 @@ import xlsxwriter
 
 import regenerate
 from flexlash.pipeline import check
-from flexlash.report.inputs import INPUTS_NOTE, PROGRAM, stored_inputs
 from flexlash.report.styles import Book
-from flexlash.report.trace_sheet import AGREES, CHANGED, write_trace
+from flexlash.report.trace.inputs import INPUTS_NOTE, PROGRAM, stored_inputs
+from flexlash.report.trace.trace_sheet import AGREES, CHANGED, write_trace
 from flexlash.submission.templating.template import Filling, template_bytes
 from libreoffice import convert_all, needs_libreoffice
 from report_entries import error_cells, typed, values_of

@@ -9,11 +9,11 @@ from typing import Any
 
 import click
 
-from flexlash.difference import difference
-from flexlash.difference_lines import comparison_line, difference_lines
+from flexlash.comparison.difference import difference
+from flexlash.comparison.difference_lines import comparison_line, difference_lines
+from flexlash.comparison.sides import Side, side_of
 from flexlash.findings import finding, shown
 from flexlash.recreation import Recreation, recreate
-from flexlash.sides import Side, side_of
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.terminal import NOTHING, one_submission, progress, tell, tell_refused, worst

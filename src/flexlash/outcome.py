@@ -19,8 +19,13 @@ if TYPE_CHECKING:
     import polars as pl
 
     from flexlash.elasticity.twist import ElasticityCheck
+    from flexlash.remedies import Remedy
+    from flexlash.tolerance.curves import Curve
 
-__all__ = ["PICTURED", "Outcome"]
+__all__ = ["DRAWN", "PICTURED", "Outcome"]
+
+DRAWN = 500
+"""Most variants that the report draws, worst first."""
 
 PICTURED = 6
 """Most variants of which the report shows the half-section."""
@@ -33,7 +38,9 @@ class Outcome:
     `results` is the Results table; `findings` all findings in the order of the submission; `outputs` the
     files written; `options` what was decided beside the settings.
     `computed` holds, by row number, what the report draws on.
+    `curves` holds, by row number, the whole distribution of the variants that the report draws.
     `pictured` holds, by variant, the elasticity checks that the report draws.
+    `remedies` say what would bring the worst failing variants within their limit.
     `skipped` says that the file is a report or a marked copy, not a submission; `marked_copy` is
     where its findings were marked, `not_carried` what of it that copy could not take over.
     """
@@ -46,7 +53,9 @@ class Outcome:
     validated: Validated | None = None
     computed: dict[int, Computed] = field(default_factory=dict)
     outputs: list[Path] = field(default_factory=list)
+    curves: dict[int, Curve] = field(default_factory=dict)
     pictured: dict[str, ElasticityCheck] = field(default_factory=dict)
+    remedies: list[Remedy] = field(default_factory=list)
     skipped: bool = False
     marked_copy: Path | None = None
     not_carried: tuple[str, ...] = ()

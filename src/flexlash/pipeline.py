@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,10 +12,11 @@ from flexlash.assessment import assess
 from flexlash.elasticity import MISSING, is_available
 from flexlash.findings import Finding, finding
 from flexlash.handback import certain_repairs, marked, mended, sealed, unclaimed, worth_marking
-from flexlash.mechanics.flexspline import backlash
 from flexlash.options import Options
-from flexlash.outcome import PICTURED, Outcome
+from flexlash.outcome import DRAWN, PICTURED, Outcome
+from flexlash.remedies import remedies_of
 from flexlash.results import result_record, results_frame
+from flexlash.scatter import drawn_curves, scattered
 from flexlash.submission.mending.repair import Repair
 from flexlash.submission.reading.gate import kind_of, read_bytes
 from flexlash.submission.reading.limits import ReadingLimits
@@ -26,8 +26,6 @@ from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.stops import stopped_by
 from flexlash.submission.validate import Validated, validate
 from flexlash.summary import worst_first
-from flexlash.tolerance.spreading import spread_rows
-from flexlash.tolerance.variation import Draws
 from flexlash.variant import Settings
 
 if TYPE_CHECKING:
@@ -99,7 +97,9 @@ def run(submission: str | Path | Reading, output: str | Path | None = None, **op
     _spread(outcome, chosen)
     if chosen.elasticity:
         _verify(outcome, chosen)
-        if str(output).lower().endswith(".xlsx"):
+    if str(output).lower().endswith(".xlsx"):
+        _draw(outcome, chosen)
+        if chosen.elasticity:
             _picture(outcome)
     if output is not None and outcome.computed:
         from flexlash.report.output import write_outcome
@@ -218,30 +218,25 @@ def _place_order(submission: Submission) -> Callable[[Finding], tuple[int, int, 
 
 
 def _spread(outcome: Outcome, options: Options) -> None:
-    """Put the tolerance spread into every computed row; the same points serve all rows."""
+    """Put the tolerance spread into every computed row, and what would help the worst beside them."""
     if not outcome.computed:
         return
-    settings = outcome.settings
-    draws = Draws(
-        method=settings.method,
-        samples=settings.samples,
-        seed=settings.seed,
-        coverage=settings.coverage_percent / 100,
-        cross_check=bool(options.cross_check),
+    progress, steps = options.progress, 2 if options.elasticity else 1
+    outcome.computed = scattered(
+        outcome.computed,
+        outcome.settings,
+        options,
+        (lambda done, rows: progress(done, rows * steps)) if progress else None,
     )
-    rows = list(outcome.computed.values())
-    models = {kind: partial(backlash, kind) for kind in ("cup", "hat", "cylinder")}
-    tasks = [
-        (models[one.variant.flexspline_type], one.variant.dimensions, one.limits, one.variant.backlash_limit)
-        for one in rows
-    ]
-    spreads = spread_rows(tasks, draws, jobs=options.jobs)
-    for done, (place, variation) in enumerate(spreads, start=1):
-        one = rows[place]
-        outcome.computed[one.variant.row] = replace(one, variation=variation)
-        if options.progress:
-            options.progress(done, len(rows) * (2 if options.elasticity else 1))
     outcome.results = _results(outcome, cross_check=bool(options.cross_check))
+    outcome.remedies = remedies_of(outcome.computed, outcome.settings)
+
+
+def _draw(outcome: Outcome, options: Options) -> None:
+    """Put the whole distribution beside the variants that the report draws, worst first."""
+    by_name = {one.variant.name: one for one in outcome.computed.values()}
+    drawn = [by_name[row["variant"]] for row in worst_first(outcome)[:DRAWN]]
+    outcome.curves = drawn_curves(drawn, outcome.settings, options)
 
 
 def _verify(outcome: Outcome, options: Options) -> None:

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from flexlash.difference import changed_results
+from flexlash.comparison.difference import changed_results
+from flexlash.comparison.sides import Name, frame_rows, result_rows
 from flexlash.handback import sealed, unclaimed
 from flexlash.outcome import Outcome
 from flexlash.pipeline import run
 from flexlash.result_columns import result_columns
-from flexlash.sides import Name, frame_rows, result_rows
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.read import ReportReading
 from flexlash.submission.reading.refusal import Refusal

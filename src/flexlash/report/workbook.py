@@ -10,16 +10,15 @@ import xlsxwriter
 from flexlash.outcome import Outcome
 from flexlash.report.about_sheet import write_about
 from flexlash.report.carried_sheet import write_carried
-from flexlash.report.compare_sheet import write_compare
-from flexlash.report.compared import COMPARED_NOTE, compared_variants
-from flexlash.report.contributions_sheet import write_contributions
-from flexlash.report.curves_sheet import CURVES_NOTE, stored_curves
+from flexlash.report.compare.compare_sheet import write_compare
+from flexlash.report.compare.compared import COMPARED_NOTE, compared_variants
+from flexlash.report.compare.contributions_sheet import write_contributions
+from flexlash.report.compare.ranking_sheet import write_ranking
 from flexlash.report.elasticity_sheet import write_elasticity, write_stress
-from flexlash.report.explorer_sheet import write_explorer
+from flexlash.report.explorer.curves_sheet import CURVES_NOTE, stored_curves
+from flexlash.report.explorer.explorer_sheet import write_explorer
 from flexlash.report.findings_sheet import write_findings
-from flexlash.report.inputs import INPUTS_NOTE, stored_inputs
 from flexlash.report.packing import packed
-from flexlash.report.ranking_sheet import write_ranking
 from flexlash.report.results_sheet import write_results
 from flexlash.report.sections_sheet import write_sections
 from flexlash.report.selection import drawn_variants
@@ -27,8 +26,9 @@ from flexlash.report.sensitivity_sheet import write_sensitivity
 from flexlash.report.strength_sheet import write_strength
 from flexlash.report.styles import Book
 from flexlash.report.submission_sheets import write_submission
-from flexlash.report.summary_sheet import write_summary
-from flexlash.report.trace_sheet import write_trace
+from flexlash.report.summary.summary_sheet import write_summary
+from flexlash.report.trace.inputs import INPUTS_NOTE, stored_inputs
+from flexlash.report.trace.trace_sheet import write_trace
 
 __all__ = ["report_bytes"]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from flexlash.mechanics.strength import GREATEST_SLENDERNESS, KNOCK_DOWN, LEAST_CURVATURE
 from flexlash.report.live import Live, greatest, live, root, when
-from flexlash.report.ranges import PI, all_of, is_number
-from flexlash.report.trace_mechanics import in_disk, only
-from flexlash.report.trace_page import Page
-from flexlash.report.trace_steps import Steps, shear
+from flexlash.report.trace.ranges import PI, all_of, is_number
+from flexlash.report.trace.trace_mechanics import in_disk, only
+from flexlash.report.trace.trace_page import Page
+from flexlash.report.trace.trace_steps import Steps, shear
 
 __all__ = ["write_buckling", "write_stresses"]
 

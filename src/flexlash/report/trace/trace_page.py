@@ -6,11 +6,11 @@ from typing import Any
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
-from flexlash.report.inputs import PROGRAM
 from flexlash.report.live import Live, Value, put, when
-from flexlash.report.ranges import PI
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book
+from flexlash.report.trace.inputs import PROGRAM
+from flexlash.report.trace.ranges import PI
 
 __all__ = ["CHANGE", "HEADER", "SHEET", "SUBMITTED", "VALUE", "Page", "Words"]
 

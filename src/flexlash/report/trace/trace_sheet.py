@@ -12,14 +12,14 @@ from typing import Any
 from xlsxwriter.utility import xl_rowcol_to_cell
 
 from flexlash.report.live import Live, fill, fixed, greatest, joined, place_of_name, put, when
-from flexlash.report.ranges import PI, filled, greatest_in, least_in
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book
-from flexlash.report.trace_inputs import LEFT_OUT, write_inputs
-from flexlash.report.trace_mechanics import write_integrals, write_shape, write_sums, write_windups
-from flexlash.report.trace_page import CHANGE, HEADER, SHEET, Page
-from flexlash.report.trace_steps import Steps
-from flexlash.report.trace_strength import write_buckling, write_stresses
+from flexlash.report.trace.ranges import PI, filled, greatest_in, least_in
+from flexlash.report.trace.trace_inputs import LEFT_OUT, write_inputs
+from flexlash.report.trace.trace_mechanics import write_integrals, write_shape, write_sums, write_windups
+from flexlash.report.trace.trace_page import CHANGE, HEADER, SHEET, Page
+from flexlash.report.trace.trace_steps import Steps
+from flexlash.report.trace.trace_strength import write_buckling, write_stresses
 
 __all__ = ["AGREEMENT", "AGREES", "CHANGED", "write_trace"]
 

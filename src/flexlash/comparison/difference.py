@@ -9,8 +9,8 @@ from typing import Any
 
 from flexlash.column import Column
 from flexlash.columns import SETTINGS, VARIANTS
+from flexlash.comparison.sides import Name, Side, Used
 from flexlash.result_columns import result_columns
-from flexlash.sides import Name, Side, Used
 from flexlash.submission.spellings import plain
 
 __all__ = ["FIRST", "ROUNDING", "Change", "Difference", "Differing", "changed_results", "difference"]

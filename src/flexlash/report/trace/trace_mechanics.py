@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from flexlash.report.live import Live, logarithm, sine, when
-from flexlash.report.ranges import PI, all_of, is_number
-from flexlash.report.trace_page import Page
-from flexlash.report.trace_steps import Steps, thickness_at
+from flexlash.report.trace.ranges import PI, all_of, is_number
+from flexlash.report.trace.trace_page import Page
+from flexlash.report.trace.trace_steps import Steps, thickness_at
 
 __all__ = ["in_disk", "only", "write_integrals", "write_shape", "write_sums", "write_windups"]
 

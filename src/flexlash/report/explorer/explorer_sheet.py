@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from flexlash.report.explorer_charts import write_charts
-from flexlash.report.explorer_choice import USUAL_SHARE, Choice
-from flexlash.report.explorer_working import Read, Working
+from flexlash.report.explorer.explorer_charts import write_charts
+from flexlash.report.explorer.explorer_choice import USUAL_SHARE, Choice
+from flexlash.report.explorer.explorer_working import Read, Working
 from flexlash.report.live import Live, greatest, least, live, normal_score, normal_share, put, when
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 from flexlash.assessment import Computed
 from flexlash.findings import CATALOGUE, shown, spelled_out
 from flexlash.outcome import Outcome
-from flexlash.report.advice import stiffening, tightening
+from flexlash.report.summary.advice import stiffening, tightening
 from flexlash.report.verdict import light, verdict_counts
 from flexlash.summary import angle_words, counted, dimension_words, listed, share_words, spread_notes, worst_first
 

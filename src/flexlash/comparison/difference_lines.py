@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from flexlash.columns import DIMENSIONS
-from flexlash.difference import FIRST, Change, Difference, Differing
+from flexlash.comparison.difference import FIRST, Change, Difference, Differing
+from flexlash.comparison.sides import Name
 from flexlash.findings import shown
-from flexlash.sides import Name
 
 __all__ = ["comparison_line", "difference_lines"]
 

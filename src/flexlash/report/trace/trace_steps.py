@@ -24,9 +24,9 @@ from flexlash.report.live import (
     sine,
     when,
 )
-from flexlash.report.ranges import PI, elsewhere, greatest_in, magnitude, place_of_greatest, total
 from flexlash.report.styles import Book
-from flexlash.report.trace_page import SHEET, Page
+from flexlash.report.trace.ranges import PI, elsewhere, greatest_in, magnitude, place_of_greatest, total
+from flexlash.report.trace.trace_page import SHEET, Page
 
 __all__ = ["STEPS", "Steps", "shear", "thickness_at"]
 

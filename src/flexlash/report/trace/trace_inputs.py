@@ -5,10 +5,10 @@ from __future__ import annotations
 from xlsxwriter.utility import xl_rowcol_to_cell
 
 from flexlash.columns import VARIANTS, Column
-from flexlash.report.inputs import ENTERED
 from flexlash.report.live import Live, Operand, fill, put, when
-from flexlash.report.ranges import any_of, is_number
-from flexlash.report.trace_page import CHANGE, SUBMITTED, Page
+from flexlash.report.trace.inputs import ENTERED
+from flexlash.report.trace.ranges import any_of, is_number
+from flexlash.report.trace.trace_page import CHANGE, SUBMITTED, Page
 
 __all__ = ["LEFT_OUT", "write_inputs"]
 

@@ -8,8 +8,8 @@ from typing import Any
 from flexlash.findings import shown
 from flexlash.outcome import Outcome
 from flexlash.report.axes import axis_over
-from flexlash.report.causes import Cause, cause_sentences, causes_of, left_out, mean_share, ranked_dimensions
-from flexlash.report.compared import CONNECTED, share_heading
+from flexlash.report.compare.causes import Cause, cause_sentences, causes_of, left_out, mean_share, ranked_dimensions
+from flexlash.report.compare.compared import CONNECTED, share_heading
 from flexlash.report.selection import Drawn
 from flexlash.report.stored import Stored
 from flexlash.report.styles import GRID, PALETTE, Book

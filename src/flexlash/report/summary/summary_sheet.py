@@ -10,10 +10,10 @@ from flexlash.findings import shown
 from flexlash.outcome import Outcome
 from flexlash.report.links import result_rows, write_link
 from flexlash.report.selection import Drawn
-from flexlash.report.sentences import FINDINGS, sentences
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book, decimals_of
-from flexlash.report.summary_chart import chart_words, variants_chart
+from flexlash.report.summary.sentences import FINDINGS, sentences
+from flexlash.report.summary.summary_chart import chart_words, variants_chart
 from flexlash.report.verdict import COLOURS, NO_VERDICT, RULES, light, verdict_counts
 from flexlash.report.wrapping import LINE_HEIGHT, fitted, lines_of, merged_width
 from flexlash.summary import counted, dimension_words, points_words, share_words

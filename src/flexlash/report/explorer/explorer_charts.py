@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from flexlash.report.curves_sheet import CAUSES, SEGMENTS
-from flexlash.report.explorer_choice import Choice
-from flexlash.report.explorer_working import COLUMN, CURVE_ROW, Working
+from flexlash.report.explorer.curves_sheet import CAUSES, SEGMENTS
+from flexlash.report.explorer.explorer_choice import Choice
+from flexlash.report.explorer.explorer_working import COLUMN, CURVE_ROW, Working
 from flexlash.report.live import Live, fixed, greatest, joined, least, live, put, when
 from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.tolerance.curves import CURVE_SCORES, HISTOGRAM_BINS

@@ -1,0 +1,1 @@
+"""Variants side by side: percentile boxes, ranking with differences to a base, what causes the spread."""

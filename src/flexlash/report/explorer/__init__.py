@@ -1,0 +1,1 @@
+"""The Explorer: one variant, any limit, read off stored percentiles by plain formulas."""

@@ -1,0 +1,1 @@
+"""One variant in live formulas, from its inputs to backlash and stress."""
