@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from flexlash.arrays import Array
 from flexlash.findings import shown
 from flexlash.report.selection import Drawn
 from flexlash.report.stored import Stored
@@ -30,7 +31,8 @@ SEGMENTS = {
 _LABEL = 24
 """Most characters of a name under a chart."""
 
-_ERROR_DIGITS = 4
+_OUTPUT_DIGITS, _HEIGHT_DIGITS, _ERROR_DIGITS = 12, 6, 4
+"""Digits that are stored: what the reading of a share asks for, and less where a number is drawn or an estimate."""
 _RESULTS = {
     "Mean": "mean_arcmin",
     "sd": "sd_arcmin",
@@ -70,17 +72,23 @@ def _entries(one: Drawn) -> Iterator[tuple[str, str | float | None]]:
     yield "Limit", row["backlash_limit_arcmin"]
     yield from ((heading, row[key]) for heading, key in _RESULTS.items())
     yield "Rarest share", curve.rarest
-    outputs = (curve.outputs / ARCMIN).tolist()
+    outputs = _rounded(curve.outputs / ARCMIN, _OUTPUT_DIGITS)
     yield from ((score_heading(score), value) for score, value in zip(CURVE_SCORES, outputs, strict=True))
-    errors = (float(f"{error:.{_ERROR_DIGITS - 1}e}") for error in curve.score_errors.tolist())
+    errors = _rounded(curve.score_errors, _ERROR_DIGITS)
     yield from ((error_heading(score), error) for score, error in zip(CURVE_SCORES, errors, strict=True))
     yield "Bin start", float(curve.edges[0]) / ARCMIN
     yield "Bin width", float(curve.edges[-1] - curve.edges[0]) / HISTOGRAM_BINS / ARCMIN
-    yield from ((f"Bin {number}", height) for number, height in enumerate(curve.heights.tolist(), start=1))
+    heights = _rounded(curve.heights, _HEIGHT_DIGITS)
+    yield from ((f"Bin {number}", height) for number, height in enumerate(heights, start=1))
     yield from _causes(one)
     for segment, name in SEGMENTS.items():
         angle = one.computed.nominal.get(f"{segment}_windup")
         yield name, 2 * angle / ARCMIN if isinstance(angle, float) else 0.0
+
+
+def _rounded(values: Array, digits: int) -> list[float]:
+    """Return numbers with so many digits, which a reader need not load more of."""
+    return [float(f"{value:.{digits - 1}e}") for value in values.tolist()]
 
 
 def _causes(one: Drawn) -> Iterator[tuple[str, str | float | None]]:
