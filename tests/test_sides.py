@@ -37,7 +37,7 @@ def test_results_of_a_report_are_those_of_its_run(tmp_path):
         assert found[name].keys() == row.keys()
         for key, value in row.items():
             shortened = "standard_error" in key or "share" in key
-            close = {"rel": 1e-3, "abs": 1e-5} if shortened else {"rel": 1e-14, "abs": 0}
+            close = {"rel": 1e-3, "abs": 0.51e-4} if shortened else {"rel": 1e-14, "abs": 0}
             assert found[name][key] == (pytest.approx(value, **close) if isinstance(value, float) else value)
 
 
