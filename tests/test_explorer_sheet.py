@@ -172,8 +172,8 @@ def test_the_unit_is_switched_in_one_cell(study, tmp_path):
     for cell in (SHARE, LOW, HIGH, PPM, "F14"):
         assert one[cell] == pytest.approx(other[cell], rel=1e-6), cell
     assert one["G4"] == one["C9"] == "arcsec"
-    assert any("[arcsec]" in str(value) for value in one.values())
-    assert not any("[arcmin]" in str(value) for value in one.values())
+    assert (one["A18"], other["A18"]) == ("Charts in arcsec", "Charts in arcmin")
+    assert "arcsec" in one["C6"]
 
 
 @needs_libreoffice
@@ -205,6 +205,8 @@ def test_without_limit_or_scatter_nothing_is_an_error(table, sound, tmp_path):
     assert far[SHARE] == pytest.approx(2.9e-7, rel=0.02)
     assert far["C10"].startswith("at most")
     assert near["C10"].startswith("at least")
+    assert (far[LOW], near[HIGH]) == (0, 1)
+    assert far["E18"] == "The limit 99.00 lies outside the pictures."
     assert (under[SHARE], over[SHARE]) == (0, 1)
     assert (under[VERDICT], over[VERDICT]) == ("green", "red")
 
@@ -219,8 +221,61 @@ def test_points_tell_no_rarer_share_than_they_hold(table, sound, tmp_path, how):
     assert not error_cells(values)
 
 
+NONSENSE = {
+    "a text for the limit": ({LIMIT: "3,8"}, "not a number above 0"),
+    "a limit below 0": ({LIMIT: -1.0}, "not a number above 0"),
+    "a limit of 0": ({LIMIT: 0.0}, "not a number above 0"),
+    "another letter case": ({VARIANT: "b3-160 HAT"}, "not in the list"),
+    "no variant": ({VARIANT: ""}, "not in the list"),
+    "a space behind": ({VARIANT: "B3-160 hat "}, "not in the list"),
+    "another unit": ({UNIT: "degrees"}, "nothing else"),
+    "no unit": ({UNIT: ""}, "nothing else"),
+    "a share of 0": ({WANTED: 0.0}, "a share from"),
+    "a share of 1e-9": ({WANTED: 1e-9}, "a share from"),
+    "no share": ({WANTED: ""}, "a share from"),
+    "a text for the share": ({WANTED: "much"}, "a share from"),
+}
+
+
+@needs_libreoffice
+def test_nonsense_is_told_and_gives_no_number(study, tmp_path):
+    """What cannot be read is named beside its cell, and nothing is answered from it: no verdict, no error in a cell."""
+    alone = _explorer_alone(study[0], tmp_path / "alone.xlsx")
+    books = [
+        typed(alone, tmp_path / f"{n}.xlsx", "Explorer", entries) for n, (entries, _) in enumerate(NONSENSE.values())
+    ]
+    hints = {"not in the list": "C4", "nothing else": "C5", "not a number above 0": "C6", "a share from": "C7"}
+    again = convert_all(books, "xlsx", tmp_path / "again")
+    for (name, (entries, words)), book in zip(NONSENSE.items(), again, strict=True):
+        values = values_of(book, "Explorer")
+        assert not error_cells(values), name
+        (cell,) = entries
+        if cell == WANTED:
+            assert values[FOUND] == values[FOUND_ERROR] == "none"
+            assert values[VERDICT] == "red"
+        else:
+            assert values[SHARE] == values[LOW] == values[PPM] == values["F14"] == "none"
+            assert values[VERDICT] == "–"
+        if cell in {VARIANT, UNIT}:
+            assert values["F4"] == values[FOUND] == "none"
+            assert values["A18"] == "Nothing to draw"
+            assert values[hints[words]] == 0
+        else:
+            assert words in values[hints[words]], name
+
+
+def test_a_verdict_that_is_not_settled_has_a_question_mark(table, sound, tmp_path):
+    """Sixteen plain draws cannot tell 0.135 %: what they show green is green with a question mark."""
+    rows = [{**sound, "backlash_limit_arcmin": "99"}]
+    run(table(rows), tmp_path / "few.xlsx", method="random", samples=16)
+    run(table(rows), tmp_path / "lines.xlsx")
+    few, lines = (values_of(tmp_path / f"{name}.xlsx", "Explorer") for name in ("few", "lines"))
+    assert (few[VERDICT], lines[VERDICT]) == ("green?", "green")
+    assert few[LOW] == 0
+
+
 def test_charts_hold_their_points_and_say_what_they_are(study):
-    """The four charts of Explorer have stored points, titles with the unit, and alternative texts."""
+    """The four charts of Explorer have stored points, titles that hold in any unit, and alternative texts."""
     with zipfile.ZipFile(study[1]) as archive:
         charts = {name: archive.read(name).decode() for name in archive.namelist() if name.startswith("xl/charts/")}
         drawings = "".join(
@@ -229,7 +284,8 @@ def test_charts_hold_their_points_and_say_what_they_are(study):
     mine = [text for text in charts.values() if "<c:f>Explorer!" in text]
     assert len(mine) == 4
     for text in mine:
-        assert "[arcmin]" in text
+        assert "<c:title>" in text
+        assert "arcmin" not in text
         assert text.count("<c:numCache>") == text.count("<c:numRef>") > 0
         assert '<c:ptCount val="0"/>' not in text
     for words in ("Histogram of the picked", "Cumulative curve of the picked", "Tornado of the picked", "each segment"):

@@ -22,15 +22,18 @@ __all__ = [
     "Live",
     "Operand",
     "Value",
+    "both",
     "call",
     "cosine",
     "count_up_to",
+    "decimal_logarithm",
     "entry_of",
     "exponential",
     "fill",
     "first_of",
     "fixed",
     "greatest",
+    "is_number",
     "joined",
     "least",
     "live",
@@ -43,6 +46,7 @@ __all__ = [
     "root",
     "sine",
     "when",
+    "whole",
 ]
 
 Value: TypeAlias = float | str | bool
@@ -209,6 +213,11 @@ def exponential(argument: Operand) -> Live:
     return _of_number("EXP", argument, math.exp)
 
 
+def decimal_logarithm(argument: Operand) -> Live:
+    """Return a logarithm to the base of ten."""
+    return _of_number("LOG10", argument, math.log10)
+
+
 def logarithm(argument: Operand) -> Live:
     """Return a natural logarithm."""
     return _of_number("LN", argument, math.log)
@@ -256,11 +265,27 @@ def joined(*texts: Live | str) -> Live:
     return Live("&".join(_within(one, _SUM) for one in parts), value, _TEXT)
 
 
-def fixed(number: Operand, decimals: int) -> Live:
+def fixed(number: Operand, decimals: Operand) -> Live:
     """Return a number as a text: FIXED, since the letters of TEXT differ between languages of Excel."""
-    one = live(number)
-    value = one.value if _is_error(one.value) else f"{one.number:.{decimals}f}"
-    return call("FIXED", [one, float(decimals), Live("TRUE", value=True)], value)
+    one, places = live(number), live(decimals)
+    value = one.value if _is_error(one.value) else f"{one.number:.{int(places.number)}f}"
+    return call("FIXED", [one, places, Live("TRUE", value=True)], value)
+
+
+def is_number(what: Live) -> Live:
+    """Return whether an expression is a number; a blank cell is none."""
+    number = isinstance(what.value, int | float) and not isinstance(what.value, bool)
+    return call("ISNUMBER", [what], number)
+
+
+def both(one: Live, other: Live) -> Live:
+    """Return whether two conditions hold."""
+    return call("AND", [one, other], bool(one.value) and bool(other.value))
+
+
+def whole(number: Live) -> Live:
+    """Return the whole number at or below a number."""
+    return _of_number("INT", number, lambda value: float(math.floor(value)))
 
 
 def when(condition: Live, then: Operand, otherwise: Operand) -> Live:
@@ -288,9 +313,12 @@ def count_up_to(wanted: Live, cells: str, values: Sequence[float]) -> Live:
 
 
 def place_of_name(name: Live, names: str, all_names: Sequence[str]) -> Live:
-    """Return the place, from 1, of a name in a range: MATCH alone ignores letter case and takes * and ? for any."""
-    value = float(all_names.index(str(name.value)) + 1)
-    return Live(f'MATCH(TRUE,INDEX(EXACT({names},{name.text}&""),0),0)', value)
+    """Return the place, from 1, of a name in a range, 0 for none: MATCH alone takes * and ? for any letters.
+
+    A range is to be looked up at a place of at least 1, since INDEX returns all of it at 0.
+    """
+    value = float(all_names.index(str(name.value)) + 1) if name.value in all_names else 0.0
+    return Live(f'IFERROR(MATCH(TRUE,INDEX(EXACT({names},{name.text}&""),0),0),0)', value)
 
 
 def put(sheet: Any, row: int, column: int, what: Live, style: Any) -> Live:

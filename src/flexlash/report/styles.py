@@ -22,6 +22,9 @@ PALETTE = {
 
 GRID = {"visible": True, "line": {"color": PALETTE["pale"]}}
 
+_TABS = {"entry": PALETTE["orange"], "stored": PALETTE["grey"]}
+"""Colours of the tabs of sheets with cells to change, and of sheets that only hold what others look up."""
+
 _BASE = {"font_name": "Calibri", "font_size": 11, "valign": "vcenter"}
 _NUMBERS = {
     "rad": "0.0000E+00",
@@ -154,9 +157,11 @@ class Book:
             self._formats[key] = self.workbook.add_format(properties)
         return self._formats[key]
 
-    def sheet(self, name: str, *, landscape: bool = True, pages_tall: int = 0) -> Any:
-        """Return a new sheet set up to print one page wide."""
+    def sheet(self, name: str, *, landscape: bool = True, pages_tall: int = 0, tab: str = "") -> Any:
+        """Return a new sheet set up to print one page wide; `tab` says what is special: `entry` or `stored`."""
         sheet = self.workbook.add_worksheet(name)
+        if tab:
+            sheet.set_tab_color(_TABS[tab])
         if landscape:
             sheet.set_landscape()
         sheet.set_paper(9)

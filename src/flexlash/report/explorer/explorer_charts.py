@@ -7,7 +7,19 @@ from typing import Any
 from flexlash.report.explorer.curves_sheet import CAUSES, SEGMENTS
 from flexlash.report.explorer.explorer_choice import Choice
 from flexlash.report.explorer.explorer_working import COLUMN, CURVE_ROW, Working
-from flexlash.report.live import Live, fixed, greatest, joined, least, live, put, when
+from flexlash.report.live import (
+    Live,
+    both,
+    decimal_logarithm,
+    fixed,
+    greatest,
+    joined,
+    least,
+    live,
+    put,
+    when,
+    whole,
+)
 from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.tolerance.curves import CURVE_SCORES, HISTOGRAM_BINS
 
@@ -17,11 +29,11 @@ _BINS = COLUMN + 11
 _BAR_ROW = CURVE_ROW
 _CAUSE_ROW = _BAR_ROW + HISTOGRAM_BINS + 2
 _SEGMENT_ROW = _CAUSE_ROW + CAUSES + 2
-_TITLE_ROW = _SEGMENT_ROW + 3
 _DRAWN_SCORE = 3.41
 """The cumulative curve is drawn as far as this score on both sides, from 0.03 to 99.97 % of units."""
 
-_FIRST_CHART, _CHART_ROWS = 17, 21
+_BINS_PER_LABEL = 5
+_FIRST_CHART, _CHART_ROWS = 18, 21
 _COLOURS = ("grey", "blue", "sky", "orange", "red")
 _WIDTHS, _HEIGHT = (560, 440), 410
 _RIGHT = 3
@@ -29,7 +41,7 @@ _RIGHT = 3
 
 def write_charts(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:
     """Write the cells behind the four charts, and draw them."""
-    titles = _titles(book, sheet, choice, working, limit)
+    _write_notes(book, sheet, choice, working, limit)
     charts = (
         (_density(book, sheet, choice, limit), "Histogram of the picked variant, the part over the limit in red"),
         (_cumulative(book, sheet, working, limit), "Cumulative curve of the picked variant with the limit"),
@@ -37,26 +49,19 @@ def write_charts(book: Book, sheet: Any, choice: Choice, working: Working, limit
         (_segments(book, sheet, choice), "Backlash of each segment of the picked variant"),
     )
     for number, (chart, text) in enumerate(charts):
-        chart.set_title({"name": titles[number], "name_font": {"size": 11, "color": PALETTE["ink"]}, "overlay": False})
         row, right = _FIRST_CHART + number // 2 * _CHART_ROWS, number % 2
-        size = (_WIDTHS[right], _HEIGHT)
-        book.insert(sheet, row, _RIGHT if right else 0, chart, size=size, text=text)
+        book.insert(sheet, row, _RIGHT if right else 0, chart, size=(_WIDTHS[right], _HEIGHT), text=text)
 
 
-def _titles(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> list[str]:
-    """Write the charts' titles, which name the unit, and return where they stand."""
-    unit = joined(" [", choice.unit, "]")
-    beyond = joined("; the limit ", fixed(when(limit.equals(""), 0.0, limit), 2), " lies outside")
-    seen = when(limit.equals(""), "; no limit", when(_in_picture(working, limit), "", beyond))
-    texts = (
-        joined("Density of the backlash", unit),
-        joined("Share of units below a backlash", unit, seen),
-        joined("Tornado: change between limits", unit),
-        joined("Where the nominal backlash arises", unit),
-    )
-    plain = book.format("text")
-    cells = [put(sheet, _TITLE_ROW + row, _BINS, text, plain) for row, text in enumerate(texts)]
-    return [f"=Explorer!{cell.text}" for cell in cells]
+def _write_notes(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:
+    """Say above the charts in which unit they are, and where the limit is when they do not show it.
+
+    Titles do not follow in all programs, so that they name no unit.
+    """
+    quiet, none = book.format("quiet"), limit.equals("")
+    put(sheet, _FIRST_CHART - 1, 0, when(choice.known, joined("Charts in ", choice.unit), "Nothing to draw"), quiet)
+    beyond = joined("The limit ", fixed(when(none, 0.0, limit), 2), " lies outside the pictures.")
+    put(sheet, _FIRST_CHART - 1, 4, when(none, "", when(_in_picture(working, limit), "", beyond)), quiet)
 
 
 def _drawn(working: Working) -> tuple[int, int]:
@@ -67,9 +72,7 @@ def _drawn(working: Working) -> tuple[int, int]:
 
 def _in_picture(working: Working, limit: Live) -> Live:
     """Return whether the limit lies not much farther out than the drawn curve."""
-    first, last = working.backlash[0], working.backlash[-1]
-    value = bool((limit >= first).value) and bool((limit <= last).value)
-    return Live(f"AND({limit.text}>={first.text},{limit.text}<={last.text})", value)
+    return both(limit >= working.backlash[0], limit <= working.backlash[-1])
 
 
 def _density(book: Book, sheet: Any, choice: Choice, limit: Live) -> Any:
@@ -78,17 +81,19 @@ def _density(book: Book, sheet: Any, choice: Choice, limit: Live) -> Any:
     for offset, text in enumerate(("bin middle", "within", "over the limit", "bin begins")):
         sheet.write_string(_BAR_ROW - 1, _BINS + offset, text, quiet)
     width = put(sheet, _BAR_ROW - 2, _BINS + 3, choice.angle("Bin width"), plain)
+    labelled = when(width > 0.0, width * float(_BINS_PER_LABEL), 1.0)
+    decimals = put(sheet, _BAR_ROW - 2, _BINS, greatest(live(1.0) - whole(decimal_logarithm(labelled)), 0.0), plain)
     begins = choice.angle("Bin start")
     for number in range(HISTOGRAM_BINS):
         row = _BAR_ROW + number
         begins = put(sheet, row, _BINS + 3, begins + width if number else begins, plain)
-        put(sheet, row, _BINS, begins + width / 2, plain)
-        height = choice.text(f"Bin {number + 1}")
+        put(sheet, row, _BINS, fixed(begins + width / 2, decimals), plain)
+        height = when(choice.known, choice.text(f"Bin {number + 1}"), 0.0)
         inside = when(width > 0.0, least(greatest((limit - begins) / width, 0.0), 1.0), 1.0)
         within = put(sheet, row, _BINS + 1, when(limit.equals(""), height, height * inside), plain)
         put(sheet, row, _BINS + 2, height - within, plain)
     last = _BAR_ROW + HISTOGRAM_BINS - 1
-    chart = book.chart("column", "", subtype="stacked")
+    chart = book.chart("column", "Density of the backlash", subtype="stacked")
     for offset, name, colour in ((1, "within the limit", "blue"), (2, "over the limit", "red")):
         chart.add_series({
             "name": name,
@@ -98,8 +103,7 @@ def _density(book: Book, sheet: Any, choice: Choice, limit: Live) -> Any:
             "border": {"none": True},
             "gap": 4,
         })  # fmt: skip
-    labels = {"num_format": "0.00", "num_font": {"rotation": -45, "size": 8}, "interval_unit": 5}
-    chart.set_x_axis({**labels, "num_format_linked": False})
+    chart.set_x_axis({"num_font": {"rotation": -45, "size": 8}, "interval_unit": _BINS_PER_LABEL})
     chart.set_y_axis({"num_format": "0%", "major_gridlines": GRID, "num_font": {"size": 8}})
     return chart
 
@@ -117,7 +121,7 @@ def _cumulative(book: Book, sheet: Any, working: Working, limit: Live) -> Any:
         put(sheet, row, column, when(none, middle, when(inside, limit, middle)), plain)
         put(sheet, row, column + 1, when(none, 0.0, when(inside, share, 0.0)), plain)
     first, last = (CURVE_ROW + place for place in _drawn(working))
-    chart = book.chart("scatter", "", subtype="straight")
+    chart = book.chart("scatter", "Share of units below a backlash", subtype="straight")
     for name, rows, columns, line in (
         ("share below", (first, last), (COLUMN + 2, COLUMN + 1), {"color": PALETTE["blue"], "width": 2.25}),
         ("limit", (_BAR_ROW, _BAR_ROW + 1), (column, column + 1), {
@@ -130,7 +134,7 @@ def _cumulative(book: Book, sheet: Any, working: Working, limit: Live) -> Any:
             "values": ["Explorer", rows[0], columns[1], rows[1], columns[1]],
             "line": line,
         })  # fmt: skip
-    chart.set_x_axis({"num_format": "0.00", "major_gridlines": {"visible": False}, "num_font": {"size": 8}})
+    chart.set_x_axis({"num_format": "General", "major_gridlines": {"visible": False}, "num_font": {"size": 8}})
     chart.set_y_axis({"min": 0, "max": 1, "num_format": "0%", "major_gridlines": GRID, "num_font": {"size": 8}})
     return chart
 
@@ -140,6 +144,7 @@ def _tornado(book: Book, sheet: Any, choice: Choice) -> Any:
     quiet, plain = book.format("quiet"), book.format("text", "general")
     for offset, text in enumerate(("dimension (share of variance)", "at lower limit", "at upper limit")):
         sheet.write_string(_CAUSE_ROW - 1, _BINS + offset, text, quiet)
+    shown = when(choice.known, 1.0, 0.0)
     for number in range(1, CAUSES + 1):
         row = _CAUSE_ROW + number - 1
         name = choice.text(f"Cause {number}")
@@ -149,10 +154,10 @@ def _tornado(book: Book, sheet: Any, choice: Choice) -> Any:
         percent = fixed(when(given, 0.0, share * 100.0), 0)
         put(sheet, row, _BINS, when(given, "", joined(name, " (", percent, " %)")), plain)
         half = (high - low) / 2
-        put(sheet, row, _BINS + 1, when(given, 0.0, live(0.0) - half), plain)
-        put(sheet, row, _BINS + 2, when(given, 0.0, half), plain)
+        put(sheet, row, _BINS + 1, when(given, 0.0, live(0.0) - half * shown), plain)
+        put(sheet, row, _BINS + 2, when(given, 0.0, half * shown), plain)
     last = _CAUSE_ROW + CAUSES - 1
-    chart = book.chart("bar", "")
+    chart = book.chart("bar", "Tornado: change between a dimension's limits")
     for offset, label, colour in ((1, "at its lower limit", "sky"), (2, "at its upper limit", "blue")):
         chart.add_series({
             "name": label,
@@ -170,18 +175,17 @@ def _tornado(book: Book, sheet: Any, choice: Choice) -> Any:
 def _segments(book: Book, sheet: Any, choice: Choice) -> Any:
     """Return one bar of the segments from the open end to the hub."""
     quiet, plain = book.format("quiet"), book.format("text", "general")
-    chart = book.chart("bar", "", subtype="stacked")
+    chart = book.chart("bar", "Where the nominal backlash arises", subtype="stacked")
     sheet.write_string(_SEGMENT_ROW, _BINS, "nominal", quiet)
     for offset, (segment, colour) in enumerate(zip(SEGMENTS.values(), _COLOURS, strict=True), start=1):
-        sheet.write_string(_SEGMENT_ROW - 1, _BINS + offset, segment, quiet)
-        put(sheet, _SEGMENT_ROW, _BINS + offset, choice.angle(segment), plain)
+        value = put(sheet, _SEGMENT_ROW, _BINS + offset, when(choice.known, choice.angle(segment), 0.0), plain)
+        put(sheet, _SEGMENT_ROW - 1, _BINS + offset, joined(f"{segment} ", fixed(value, 2)), quiet)
         chart.add_series({
             "name": ["Explorer", _SEGMENT_ROW - 1, _BINS + offset],
             "categories": ["Explorer", _SEGMENT_ROW, _BINS, _SEGMENT_ROW, _BINS],
             "values": ["Explorer", _SEGMENT_ROW, _BINS + offset, _SEGMENT_ROW, _BINS + offset],
             "fill": {"color": PALETTE[colour]},
             "border": {"color": "#FFFFFF", "width": 0.5},
-            "data_labels": {"value": True, "num_format": "0.00;;;", "font": {"size": 9}},
             "gap": 60,
         })  # fmt: skip
     chart.set_x_axis({"num_format": "0.0", "major_gridlines": GRID, "num_font": {"size": 8}})

@@ -1,58 +1,82 @@
-"""What the reader of the Explorer chooses: variant, angle unit, limit, wanted share."""
+"""What the reader of the Explorer chooses: variant, angle unit, limit, wanted share; nonsense is told and not used."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
-from flexlash.report.live import Live, fill, place_of_name, put, when
+from flexlash.report.live import Live, both, fill, greatest, is_number, joined, live, place_of_name, put, when
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book
 
-__all__ = ["USUAL_SHARE", "Choice"]
+__all__ = ["NONE", "USUAL_SHARE", "Choice"]
 
 USUAL_SHARE = 0.00135
 """Share of a normal beyond its mean + 3 sd."""
 
+NONE = "none"
 _FIRST_ROW = 3
 _SECONDS = 60.0
+_RAREST, _COMMONEST = 1e-6, 0.999999
+_LABELS = ("Variant", "Angle unit", "Another limit", "Wanted share over a limit")
 
 
 class Choice:
-    """The reader's cells, as references, with the picked variant's entries of Curves."""
+    """The reader's cells, as references, with the picked variant's entries of Curves.
+
+    `known` is whether variant and unit are of their lists; without, nothing is shown. `other` is the typed limit, an
+    empty text where none is to be used; `wanted` is the share to find the limit of, `wants` whether it is one.
+    """
 
     def __init__(self, book: Book, sheet: Any, curves: Stored) -> None:
         self._curves = curves
+        entry, hint = book.format("input"), book.format("hint")
         names = curves.cells("Variant")
         all_names = [str(row["Variant"]) for row in curves.rows]
-        labels = ("Variant", "Angle unit", "Another limit", "Wanted share over a limit")
-        hints = ("", "", "◄ blank: its own", "◄ gives the limit for it, below")
-        for row, (label, hint) in enumerate(zip(labels, hints, strict=True), start=_FIRST_ROW):
+        for row, label in enumerate(_LABELS, start=_FIRST_ROW):
             sheet.write_string(row, 0, label, book.format("label"))
-            sheet.write_string(row, 2, hint, book.format("quiet"))
-        self.name = fill(sheet, _FIRST_ROW, 1, all_names[0], book.format("input"))
-        place = place_of_name(self.name, names, all_names)
-        self.place = put(
-            sheet, _FIRST_ROW, 2, place, book.format("hint", f'"◄ pick; now number "0" of {len(all_names)}"')
-        )
-        self.unit = fill(sheet, _FIRST_ROW + 1, 1, "arcmin", book.format("input"))
-        self.other = fill(sheet, _FIRST_ROW + 2, 1, "", book.format("input", "general"))
-        self.wanted = fill(sheet, _FIRST_ROW + 3, 1, USUAL_SHARE, book.format("input", "0.0000##%"))
+        self.name = fill(sheet, _FIRST_ROW, 1, all_names[0], entry)
+        unit = fill(sheet, _FIRST_ROW + 1, 1, "arcmin", entry)
+        typed = fill(sheet, _FIRST_ROW + 2, 1, "", book.format("input", "general"))
+        wanted = fill(sheet, _FIRST_ROW + 3, 1, USUAL_SHARE, book.format("input", "0.0000##%"))
         _list(sheet, _FIRST_ROW, f"={names}", "Variant", "Everything on this sheet follows.")
         _list(sheet, _FIRST_ROW + 1, ["arcmin", "arcsec"], "Angle unit", "The limit below is read in it, too.")
         _number(sheet, _FIRST_ROW + 2, (0, 1e9), "Any limit", "Blank: the limit of the variant.")
-        _number(sheet, _FIRST_ROW + 3, (1e-6, 0.999999), "Wanted share", "From 0.0001 % (1 ppm) to 99.9999 %.")
-        factor = when(self.unit.equals("arcsec"), _SECONDS, 1.0)
-        words = '"◄ arcmin or arcsec (1 arcmin = "0")"'
-        self.factor = put(sheet, _FIRST_ROW + 1, 2, factor, book.format("hint", words))
+        _number(sheet, _FIRST_ROW + 3, (_RAREST, _COMMONEST), "Wanted share", "From 0.0001 % (1 ppm) to 99.9999 %.")
+        words = f'"◄ number "0" of {len(all_names)}";;"◄ not in the list: pick one"'
+        place = put(sheet, _FIRST_ROW, 2, place_of_name(self.name, names, all_names), book.format("hint", words))
+        words = '"◄ arcmin or arcsec (1 arcmin = "0")";;"◄ arcmin or arcsec, nothing else"'
+        factor = when(unit.equals("arcsec"), _SECONDS, when(unit.equals("arcmin"), 1.0, 0.0))
+        factor = put(sheet, _FIRST_ROW + 1, 2, factor, book.format("hint", words))
+        self.known = both(place > 0.0, factor > 0.0)
+        self._place, self._factor = greatest(place, 1.0), greatest(factor, 1.0)
+        self.unit = when(factor > 0.0, unit, live(""))
+        self._write_limit(sheet, hint, typed)
+        sound = when(is_number(wanted), both(wanted >= _RAREST, wanted <= _COMMONEST), Live("FALSE", value=False))
+        told = when(sound, "◄ gives the limit for it, below", "◄ a share from 0.0001 % to 99.9999 %")
+        put(sheet, _FIRST_ROW + 3, 2, told, hint)
+        self.wants = both(self.known, sound)
+        self.wanted = when(sound, wanted, USUAL_SHARE)
+
+    def _write_limit(self, sheet: Any, hint: Any, typed: Live) -> None:
+        """Say in which unit the typed limit is read, or that it is none."""
+        sound = when(is_number(typed), typed > 0.0, Live("FALSE", value=False))
+        told = when(sound, joined("◄ read in ", self.unit), "◄ not a number above 0: not used")
+        put(sheet, _FIRST_ROW + 2, 2, when(typed.equals(""), "◄ blank: its own", told), hint)
+        self.other = when(sound, typed, "")
+        self.is_blank = typed.equals("")
 
     def text(self, heading: str) -> Live:
         """Return what Curves holds for the variant; an empty text where it holds nothing."""
-        return self._curves.pick(self.place, heading)
+        return self._curves.pick(self._place, heading)
 
     def angle(self, heading: str) -> Live:
         """Return an angle of Curves in the chosen unit; an empty text where there is none."""
-        return self._curves.pick(self.place, heading, self.factor)
+        return self._curves.pick(self._place, heading, self._factor)
+
+    def told(self, what: Live) -> Live:
+        """Return a figure, or that there is none where variant or unit are not of their lists."""
+        return when(self.known, what, NONE)
 
 
 def _list(sheet: Any, row: int, source: str | Sequence[str], title: str, message: str) -> None:

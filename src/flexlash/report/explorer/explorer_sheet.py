@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import Any
 
 from flexlash.report.explorer.explorer_charts import write_charts
-from flexlash.report.explorer.explorer_choice import USUAL_SHARE, Choice
+from flexlash.report.explorer.explorer_choice import NONE, USUAL_SHARE, Choice
 from flexlash.report.explorer.explorer_working import Read, Working
-from flexlash.report.live import Live, greatest, least, live, normal_score, normal_share, put, when
+from flexlash.report.live import Live, both, greatest, least, live, normal_score, normal_share, put, when
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book
 
@@ -23,7 +23,7 @@ _AMBER = 0.025
 _NEARLY = 1.000001
 """Room for rounding where a share meets the rarest that is told."""
 
-_LAST_ROW = 59
+_LAST_ROW = 60
 _SECTIONS = ((2, 0, "Your choice"), (7, 0, "Answer"), (2, 4, "Figures of this variant"))
 _ANSWERS = (
     "Limit",
@@ -52,7 +52,7 @@ _FIGURES = {
 
 def write_explorer(book: Book, curves: Stored, total: int) -> None:
     """Write the Explorer of the stored variants, the worst one picked; `total` counts all computed ones."""
-    sheet = book.sheet("Explorer", landscape=False, pages_tall=1)
+    sheet = book.sheet("Explorer", landscape=False, pages_tall=1, tab="entry")
     for place, width in enumerate(_WIDTHS):
         sheet.set_column(place, place, width)
     sheet.write_string(0, 0, "Explorer: one variant, any limit", book.format("title"))
@@ -81,15 +81,16 @@ def _write_answers(book: Book, sheet: Any, choice: Choice, working: Working) -> 
     """Write what the curve says of the limit and of the wanted share; return the limit, an empty text for none."""
     for row, words in enumerate(_ANSWERS, start=_FIRST_ANSWER):
         sheet.write_string(row, 0, words, book.format("text" if words.startswith(" ") else "label"))
-    used = when(choice.other.equals(""), choice.angle("Limit"), choice.other)
-    limit = put(sheet, 8, 1, used, book.format("figure", "arcmin"))
-    put(sheet, 8, 2, choice.unit, book.format("quiet"))
+    used = when(choice.known, when(choice.is_blank, choice.angle("Limit"), choice.other), "")
+    limit = working.cell("limit that counts", used)
+    put(sheet, 8, 1, when(limit.equals(""), NONE, limit), book.format("figure", "arcmin"))
     read = working.read_share(when(limit.equals(""), choice.angle("P50"), limit))
     _write_share(book, sheet, choice, (working, read), limit)
     found, error = working.read_output(live(0.0) - normal_score(choice.wanted))
-    put(sheet, 14, 1, found, book.format("figure", "arcmin"))
-    put(sheet, 14, 2, choice.unit, book.format("quiet"))
-    put(sheet, 15, 1, error * _INTERVAL, book.format("figure", "0.00000"))
+    put(sheet, 14, 1, when(choice.wants, found, NONE), book.format("figure", "arcmin"))
+    put(sheet, 15, 1, when(choice.wants, error * _INTERVAL, NONE), book.format("figure", "0.00000"))
+    for row in (8, 14, 15):
+        put(sheet, row, 2, choice.unit, book.format("quiet"))
     return limit
 
 
@@ -100,35 +101,44 @@ def _write_share(book: Book, sheet: Any, choice: Choice, reading: tuple[Working,
     none = limit.equals("")
     rarest = working.cell("rarest share told", choice.text("Rarest share"))
     told = working.cell("share told", least(greatest(read.share, rarest), live(1.0) - rarest))
-    put(sheet, 9, 1, when(none, "none", told), percent)
-    edge = rarest * _NEARLY
-    bound = when(read.share < edge, "at most: rarer than computed", "")
-    bound = when(read.share > live(1.0) - edge, "at least: rarer than computed", bound)
-    put(sheet, 9, 2, when(none, "◄ no limit: type one above", bound), quiet)
-    for row, sign, kept in ((10, 1.0, least), (11, -1.0, greatest)):
+    few, many = read.share < rarest * _NEARLY, read.share > live(1.0) - rarest * _NEARLY
+    bound = when(few, "at most: rarer than computed", when(many, "at least: rarer than computed", ""))
+    put(sheet, 9, 1, when(none, NONE, told), percent)
+    put(sheet, 9, 2, when(none, "◄ no limit: type one above", when(working.is_level, "", bound)), quiet)
+    ends = []
+    for row, sign, beyond in ((10, 1.0, when(few, 0.0, told)), (11, -1.0, when(many, 1.0, told))):
         end = normal_share(live(0.0) - (read.score + read.error * (sign * _INTERVAL)))
-        put(sheet, row, 1, when(none, "none", when(working.is_level, told, kept(end, told))), percent)
+        kept = (least if sign > 0 else greatest)(end, beyond)
+        ends.append(working.cell("end of its interval", when(working.is_level, told, kept)))
+        put(sheet, row, 1, when(none, NONE, ends[-1]), percent)
     sheet.write_string(10, 2, "from the spread's standard errors", quiet)
-    put(sheet, 12, 1, when(none, "none", told * 1e6), book.format("figure", "#,##0.0"))
-    verdict = when(told <= USUAL_SHARE, "green", when(told <= _AMBER, "amber", "red"))
-    put(sheet, 13, 1, when(none, "–", verdict), figure)
-    sheet.write_string(13, 2, "green to 0.135 %, amber to 2.5 %", quiet)
+    put(sheet, 12, 1, when(none, NONE, told * 1e6), book.format("figure", "#,##0.0"))
+    put(sheet, 13, 1, when(none, "–", _verdict(read.share, *ends)), figure)
+    sheet.write_string(13, 2, "green to 0.135 %, amber to 2.5 %; ?: not settled", quiet)
     for word, style in (("green", "ok"), ("amber", "warning"), ("red", "error")):
-        rule = {"type": "cell", "criteria": "==", "value": f'"{word}"', "format": book.format(style)}
+        rule = {"type": "text", "criteria": "begins with", "value": word, "format": book.format(style)}
         sheet.conditional_format(13, 1, 13, 1, rule)
+
+
+def _verdict(share: Live, low: Live, high: Live) -> Live:
+    """Return the verdict on a share, with a question mark where its interval reaches another one."""
+    green = when(high <= USUAL_SHARE, "green", "green?")
+    amber = when(both(low > USUAL_SHARE, high <= _AMBER), "amber", "amber?")
+    red = when(low > _AMBER, "red", "red?")
+    return when(share <= USUAL_SHARE, green, when(share <= _AMBER, amber, red))
 
 
 def _write_figures(book: Book, sheet: Any, choice: Choice, limit: Live) -> None:
     """Write the figures of the picked variant beside the answers."""
     figure, quiet = book.format("figure", "arcmin"), book.format("quiet")
-    at = {}
     for row, (heading, words) in enumerate(_FIGURES.items(), start=_FIRST_FIGURE):
         sheet.write_string(row, 4, words, book.format("label"))
-        at[heading] = put(sheet, row, 5, choice.angle(heading), figure)
+        put(sheet, row, 5, choice.told(choice.angle(heading)), figure)
         put(sheet, row, 6, choice.unit, quiet)
     row = _FIRST_FIGURE + len(_FIGURES)
     sheet.write_string(row, 4, "Ppk upper at this limit", book.format("label"))
-    reach = at["P99.865"] - at["P50"]
-    capability = when(reach > 0.0, (limit - at["P50"]) / reach, "none")
-    put(sheet, row, 5, when(limit.equals(""), "none", capability), book.format("figure", "plain"))
+    median = choice.angle("P50")
+    reach = choice.angle("P99.865") - median
+    capability = when(reach > 0.0, (limit - median) / reach, NONE)
+    put(sheet, row, 5, when(limit.equals(""), NONE, capability), book.format("figure", "plain"))
     sheet.write_string(row, 6, "ISO 22514-2", quiet)

@@ -54,7 +54,7 @@ class Working:
         self.errors: list[Live] = []
         for row, score in enumerate(CURVE_SCORES, start=CURVE_ROW):
             at = fill(sheet, row, COLUMN, score, self._plain)
-            put(sheet, row, COLUMN + 1, normal_share(at), self._plain)
+            put(sheet, row, COLUMN + 1, when(choice.known, normal_share(at), 0.0), self._plain)
             self.backlash.append(put(sheet, row, COLUMN + 2, choice.angle(score_heading(score)), self._plain))
             self.errors.append(put(sheet, row, COLUMN + 3, choice.text(error_heading(score)), self._plain))
         self.is_level = self.cell("nothing scatters", self.backlash[-1] <= self.backlash[0])
