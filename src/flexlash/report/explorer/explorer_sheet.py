@@ -11,7 +11,7 @@ from typing import Any
 from flexlash.report.explorer.explorer_charts import write_charts
 from flexlash.report.explorer.explorer_choice import NONE, USUAL_SHARE, Choice
 from flexlash.report.explorer.explorer_working import Read, Working
-from flexlash.report.live import Live, both, greatest, least, live, normal_score, normal_share, put, when
+from flexlash.report.live import Live, both, greatest, joined, least, live, normal_score, normal_share, put, when
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book
 
@@ -23,6 +23,7 @@ _AMBER = 0.025
 _NEARLY = 1.000001
 """Room for rounding where a share meets the rarest that is told."""
 
+_RULE = "green to 0.135 %, amber to 2.5 %"
 _LAST_ROW = 60
 _SECTIONS = ((2, 0, "Your choice"), (7, 0, "Answer"), (2, 4, "Figures of this variant"))
 _ANSWERS = (
@@ -114,7 +115,8 @@ def _write_share(book: Book, sheet: Any, choice: Choice, reading: tuple[Working,
     sheet.write_string(10, 2, "from the spread's standard errors", quiet)
     put(sheet, 12, 1, when(none, NONE, told * 1e6), book.format("figure", "#,##0.0"))
     put(sheet, 13, 1, when(none, "–", _verdict(read.share, *ends)), figure)
-    sheet.write_string(13, 2, "green to 0.135 %, amber to 2.5 %; ?: not settled", quiet)
+    told = when(none, _RULE, when(_settled(read.share, *ends), _RULE, "◄ the interval reaches another"))
+    put(sheet, 13, 2, told, quiet)
     for word, style in (("green", "ok"), ("amber", "warning"), ("red", "error")):
         rule = {"type": "text", "criteria": "begins with", "value": word, "format": book.format(style)}
         sheet.conditional_format(13, 1, 13, 1, rule)
@@ -122,10 +124,14 @@ def _write_share(book: Book, sheet: Any, choice: Choice, reading: tuple[Working,
 
 def _verdict(share: Live, low: Live, high: Live) -> Live:
     """Return the verdict on a share, with a question mark where its interval reaches another one."""
-    green = when(high <= USUAL_SHARE, "green", "green?")
-    amber = when(both(low > USUAL_SHARE, high <= _AMBER), "amber", "amber?")
-    red = when(low > _AMBER, "red", "red?")
-    return when(share <= USUAL_SHARE, green, when(share <= _AMBER, amber, red))
+    word = when(share <= USUAL_SHARE, "green", when(share <= _AMBER, "amber", "red"))
+    return joined(word, when(_settled(share, low, high), "", "?"))
+
+
+def _settled(share: Live, low: Live, high: Live) -> Live:
+    """Return whether the whole interval of a share has the same verdict."""
+    amber = both(low > USUAL_SHARE, high <= _AMBER)
+    return when(share <= USUAL_SHARE, high <= USUAL_SHARE, when(share <= _AMBER, amber, low > _AMBER))
 
 
 def _write_figures(book: Book, sheet: Any, choice: Choice, limit: Live) -> None:
