@@ -23,9 +23,9 @@ from flexlash.units import ARCMIN
 from libreoffice import convert, needs_libreoffice
 
 SHEETS = [
-    "Summary", "Results", "Explorer", "Compare", "Ranking", "Contributions", "Trace", "Trace steps", "Sensitivity",
+    "Summary", "Results", "Explorer", "Compare", "Ranking", "Contributions", "Trace", "Sensitivity",
     "Sections", "Strength", "Findings", "Submission", "Materials", "Tolerances", "Settings", "About", "Curves",
-    "Compared", "Inputs", "Carried",
+    "Compared", "Inputs", "Trace steps", "Carried",
 ]  # fmt: skip
 
 

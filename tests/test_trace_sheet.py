@@ -14,7 +14,7 @@ import regenerate
 from flexlash.pipeline import check
 from flexlash.report.styles import Book
 from flexlash.report.trace.inputs import INPUTS_NOTE, PROGRAM, stored_inputs
-from flexlash.report.trace.trace_sheet import AGREES, CHANGED, write_trace
+from flexlash.report.trace.trace_sheet import AGREES, CHANGED, NOT_LISTED, trace_sheet, write_trace
 from flexlash.submission.templating.template import Filling, template_bytes
 from libreoffice import convert_all, needs_libreoffice
 from report_entries import error_cells, typed, values_of
@@ -91,7 +91,7 @@ def traced(outcome, picked=0):
     with xlsxwriter.Workbook(buffer, {"in_memory": True, "strings_to_urls": False}) as workbook:
         book = Book(workbook)
         stored = stored_inputs(list(outcome.computed.values()), outcome.settings.lost_motion_percent)
-        lines = write_trace(book, stored, len(outcome.computed), picked)
+        lines = write_trace(book, trace_sheet(book), stored, len(outcome.computed), picked)
         stored.write(book, INPUTS_NOTE)
     return lines, buffer.getvalue()
 
@@ -164,8 +164,8 @@ def _opened(data):
 
 
 FUNCTIONS = {
-    "ABS", "AND", "COS", "COUNTA", "EXACT", "EXP", "FIXED", "IF", "INDEX", "ISNUMBER", "LN", "MATCH", "MAX", "MIN",
-    "OR", "PI", "SIN", "SQRT", "SUM",
+    "ABS", "AND", "COS", "COUNTA", "EXACT", "EXP", "FIXED", "IF", "IFERROR", "INDEX", "ISNUMBER", "LN", "MATCH", "MAX",
+    "MIN", "N", "NOT", "OR", "PI", "SIN", "SQRT", "SUM",
 }  # fmt: skip
 
 
@@ -192,6 +192,7 @@ def test_every_input_can_be_changed_within_the_bounds_of_a_submission(traces):
     ratio, cell = rules["G" + rows["poisson_ratio"]], "G" + rows["poisson_ratio"]
     assert ratio.formula1 == f'IF(ISNUMBER({cell}),AND({cell}>=0,{cell}<=0.5),{cell}="none")'
     assert ratio.error == "A number of at least 0 and at most 0.5 is required here, or none to leave it out."
+    assert rules["G" + rows["torque"]].error.startswith("A number in N·m ")
     assert rules["G" + rows["flexspline_type"]].formula1 == '"cup,hat,cylinder"'
     assert len([one for one in rules if one.startswith("G")]) == 25
 
@@ -213,7 +214,7 @@ def test_the_trace_says_when_more_variants_were_computed():
     for count, said in ((11, False), (3, True), (0, False)):
         with xlsxwriter.Workbook(io.BytesIO(), {"in_memory": True}) as workbook:
             book = Book(workbook)
-            lines = write_trace(book, stored_inputs(computed[:count], 4.0), 11)
+            lines = write_trace(book, trace_sheet(book), stored_inputs(computed[:count], 4.0), 11)
             texts = " ".join(workbook.str_table.string_table)
         assert ("The 3 worst of 11 variants can be picked." in texts) is said
         assert bool(lines) is (count > 0)
@@ -296,7 +297,7 @@ def test_a_reader_may_pick_and_change(traces, workbook, tmp_path):
         assert not error_cells(values_of(path, "Trace steps"))
         assert_program(found, nominal[name], name)
         assert values[cells["verdict"]] == CHANGED
-        assert values["F3"] == list(ROWS).index(name) + 1
+        assert values["F4"] == list(ROWS).index(name) + 1
 
 
 @needs_libreoffice
@@ -316,3 +317,23 @@ def test_another_variant_that_is_picked_agrees(everything, traces, tmp_path):
         assert not error_cells(values)
         assert_program({key: values[cells[key]] for key in PROGRAM}, nominal[name], name)
         assert values[cells["verdict"]] == AGREES, (name, values[cells["difference"]])
+
+
+@needs_libreoffice
+def test_a_variant_that_is_not_in_the_list_has_no_numbers(traces, tmp_path):
+    """A name typed that is not there to the letter is told beside it; no cell holds a number or an error."""
+    lines, data = traces[0]
+    (tmp_path / "report.xlsx").write_bytes(data)
+    names = ["absent", "", "Cup", "cup ", "c?p"]
+    paths = [
+        typed(tmp_path / "report.xlsx", tmp_path / f"typed {place}.xlsx", "Trace", {"B3": name})
+        for place, name in enumerate(names)
+    ]
+    for name, path in zip(names, convert_all(paths, "xlsx", tmp_path), strict=True):
+        values = values_of(path, "Trace")
+        assert values["E3"] == NOT_LISTED, name
+        assert not error_cells(values | values_of(path, "Trace steps")), name
+        shown = {key: values[line.text.replace("$", "")] for key, line in lines.items()}
+        assert {key for key, value in shown.items() if value not in {"none", 0}} == set(), name
+        beside = {cell: value for cell, value in values.items() if cell[0] in "FG" and int(cell[1:]) > 5}
+        assert not [cell for cell, value in beside.items() if isinstance(value, float | int)], name

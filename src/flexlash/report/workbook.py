@@ -28,7 +28,8 @@ from flexlash.report.styles import Book
 from flexlash.report.submission_sheets import write_submission
 from flexlash.report.summary.summary_sheet import write_summary
 from flexlash.report.trace.inputs import INPUTS_NOTE, stored_inputs
-from flexlash.report.trace.trace_sheet import write_trace
+from flexlash.report.trace.trace_sheet import trace_sheet, write_trace
+from flexlash.report.trace.trace_steps import STEPS
 
 __all__ = ["report_bytes"]
 
@@ -52,8 +53,7 @@ def report_bytes(outcome: Outcome) -> bytes:
     write_compare(book, outcome, drawn, compared)
     write_ranking(book, outcome, drawn, compared)
     write_contributions(book, outcome, drawn, compared)
-    inputs = stored_inputs([one.computed for one in drawn], outcome.settings.lost_motion_percent)
-    write_trace(book, inputs, len(outcome.computed))
+    trace = trace_sheet(book)
     write_sensitivity(book, outcome, drawn)
     write_sections(book, drawn, len(outcome.computed))
     write_strength(book, drawn, len(outcome.computed))
@@ -62,10 +62,13 @@ def report_bytes(outcome: Outcome) -> bytes:
         write_stress(book, outcome, drawn)
     write_findings(book, outcome)
     write_submission(book, outcome)
-    write_about(book, outcome, later=(curves.name, compared.name, inputs.name))
+    inputs = stored_inputs([one.computed for one in drawn], outcome.settings.lost_motion_percent)
+    steps = (STEPS,) if inputs.rows else ()
+    write_about(book, outcome, later=(curves.name, compared.name, inputs.name, *steps))
     curves.write(book, CURVES_NOTE)
     compared.write(book, COMPARED_NOTE)
     inputs.write(book, INPUTS_NOTE)
+    write_trace(book, trace, inputs, len(outcome.computed))
     write_carried(book, outcome)
     workbook.close()
     return packed(buffer.getvalue())

@@ -19,6 +19,9 @@ __all__ = [
     "is_number",
     "least_in",
     "magnitude",
+    "negation",
+    "number_in",
+    "place_of_first",
     "place_of_greatest",
     "total",
 ]
@@ -69,6 +72,22 @@ def magnitude(operand: Operand) -> Live:
 def is_number(operand: Live) -> Live:
     """Return whether a cell holds a number."""
     return call("ISNUMBER", [operand], isinstance(operand.value, float | int))
+
+
+def number_in(cell: Live) -> Live:
+    """Return the number that a cell holds, 0 for a text."""
+    return call("N", [cell], 0.0 if isinstance(cell.value, str) else cell.number)
+
+
+def place_of_first(wanted: float, cells: str, values: Sequence[float]) -> Live:
+    """Return the place, from 1, of the first such number of a range that holds these values, 0 for none."""
+    place = values.index(wanted) + 1 if wanted in values else 0
+    return Live(f"IFERROR(MATCH({live(wanted).text},{cells},0),0)", float(place))
+
+
+def negation(condition: Live) -> Live:
+    """Return whether a condition does not hold."""
+    return call("NOT", [condition], not condition.value)
 
 
 def all_of(*conditions: Live) -> Live:

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
-from flexlash.columns import VARIANTS, Column
+from flexlash.columns import Column
 from flexlash.report.live import Live, Operand, fill, put, when
 from flexlash.report.trace.inputs import ENTERED
-from flexlash.report.trace.ranges import any_of, is_number
-from flexlash.report.trace.trace_page import CHANGE, SUBMITTED, Page
+from flexlash.report.trace.part_rules import ALWAYS, TYPES
+from flexlash.report.trace.ranges import all_of, any_of, is_number
+from flexlash.report.trace.trace_page import CHANGE, LEFT_OUT, SUBMITTED, Page
 
-__all__ = ["LEFT_OUT", "write_inputs"]
+__all__ = ["write_inputs"]
 
-LEFT_OUT = "none"
-"""What a reader types to leave an optional input out, and what stands where there is none."""
-
-_TYPE = next(column for column in VARIANTS if column.key == "flexspline_type")
 _LINES = (
     ("torque", "T", ""),
     ("cylinder_length", "l", "inside depth, tooth rim included"),
@@ -42,10 +39,6 @@ _LINES = (
     ("lost_motion_percent", "p", "share of the rated torque at which lost motion is stated"),
     ("backlash_limit", "", ""),
 )
-_ALWAYS = frozenset({
-    "torque", "cylinder_length", "wall_thickness", "cylinder_calibration", "disk_calibration",
-    "lost_motion_percent",
-})  # fmt: skip
 _MAY_BE_ZERO = frozenset({"poisson_ratio", "disk_thickness_exponent"})
 _LOOKS = dict.fromkeys(_MAY_BE_ZERO, "plain") | {"shear_modulus": "figure"}
 _NAMES = {
@@ -63,7 +56,7 @@ def write_inputs(page: Page) -> str:
     bore: Live | None = None
     for name, symbol, equation in _LINES:
         column = ENTERED[name]
-        submitted, change = _cells(page, column.label, "general")
+        submitted, change = _cells(page, name, column.label, "general")
         _restrict(page, column, name)
         value = _used(page, name, submitted, change)
         if name == "bore_diameter":
@@ -82,23 +75,29 @@ def write_inputs(page: Page) -> str:
 
 def _write_words(page: Page) -> None:
     """Write type and material."""
-    submitted, change = _cells(page, "Flexspline type", "@")
+    submitted, change = _cells(page, "flexspline_type", "Flexspline type", "@")
     page.sheet.data_validation(page.row + 1, CHANGE, page.row + 1, CHANGE, {
-        "validate": "list", "source": list(_TYPE.choices), "error_title": "Flexspline type",
+        "validate": "list", "source": list(TYPES), "error_title": "Flexspline type",
         "error_message": "Pick an entry of the list.",
     })  # fmt: skip
     words = ("Flexspline type", "", "", "cup or hat: with a disk or flange; cylinder: without")
-    page.line("flexspline_type", when(change.equals(""), submitted, change), words, "plain")
+    page.line("flexspline_type", _counting(submitted, change), words, "plain")
     style = page.book.format("figure")
-    material = put(page.sheet, page.row + 1, SUBMITTED, page.stored.pick(page.place, "Material"), style)
-    page.line("material", material, ("Material", "", "", "its constants stand below"), "plain")
+    material = put(page.sheet, page.row + 1, SUBMITTED, page.submitted("Material"), style)
+    page.line(
+        "material",
+        when(material.equals(""), LEFT_OUT, material),
+        ("Material", "", "", "its constants stand below"),
+        "plain",
+    )
 
 
-def _cells(page: Page, heading: str, number: str) -> tuple[Live, Live]:
+def _cells(page: Page, name: str, heading: str, number: str) -> tuple[Live, Live]:
     """Write what was submitted and the cell for a change into the next line; return references to both."""
-    submitted = page.stored.pick(page.place, heading)
-    first = put(page.sheet, page.row + 1, SUBMITTED, submitted, page.book.format("figure"))
-    return first, fill(page.sheet, page.row + 1, CHANGE, "", page.book.format("input", number))
+    submitted = put(page.sheet, page.row + 1, SUBMITTED, page.submitted(heading), page.book.format("figure"))
+    change = fill(page.sheet, page.row + 1, CHANGE, "", page.book.format("input", number))
+    page.entries[name] = submitted, change
+    return submitted, change
 
 
 def _restrict(page: Page, column: Column, name: str) -> None:
@@ -108,8 +107,8 @@ def _restrict(page: Page, column: Column, name: str) -> None:
     if column.maximum is not None:
         bounds.append(f"{cell}<={column.maximum:.15g}")
     rule = f'IF(ISNUMBER({cell}),AND({",".join(bounds)}),{cell}="{LEFT_OUT}")'
-    required = f"{column.requirement.capitalize()} is required here"
-    if name in _ALWAYS:
+    required = f"{column.requirement[0].upper()}{column.requirement[1:]} is required here"
+    if name in ALWAYS:
         rule = f"AND(ISNUMBER({cell}),{','.join(bounds)})"
     else:
         required += f", or {LEFT_OUT} to leave it out"
@@ -120,19 +119,27 @@ def _restrict(page: Page, column: Column, name: str) -> None:
 
 def _used(page: Page, name: str, submitted: Live, change: Live) -> Live:
     """Return the input that counts: the change, else what was submitted, else what a blank stands for."""
-    if name in _ALWAYS:
-        return when(change.equals(""), submitted, change)
+    if name in ALWAYS:
+        return _counting(submitted, change)
     other = _otherwise(page, name)
     entered = when(submitted.equals(""), other, submitted)
     return when(change.equals(""), entered, when(change.equals(LEFT_OUT), other, change))
 
 
+def _counting(submitted: Live, change: Live) -> Live:
+    """Return the change, else what was submitted, which is missing where no variant is picked."""
+    return when(change.equals(""), when(submitted.equals(""), LEFT_OUT, submitted), change)
+
+
 def _otherwise(page: Page, name: str) -> Operand:
     """Return what a blank input stands for."""
     if name == "mean_radius":
-        return (page["bore_diameter"] + page["wall_thickness"]) / 2
+        bore, wall = page["bore_diameter"], page["wall_thickness"]
+        has_bore = all_of(is_number(bore), bore > 0, is_number(wall))
+        return when(has_bore, (bore + wall) / 2, LEFT_OUT)
     if name == "shear_modulus":
-        return page["youngs_modulus"] / (2 * (1 + page["poisson_ratio"]))
+        modulus, ratio = page["youngs_modulus"], page["poisson_ratio"]
+        return when(all_of(is_number(modulus), is_number(ratio), ratio > -1), modulus / (2 * (1 + ratio)), LEFT_OUT)
     same_as = {
         "disk_thickness": "wall_thickness",
         "disk_inner_radius": "mean_radius",
@@ -140,4 +147,6 @@ def _otherwise(page: Page, name: str) -> Operand:
     }
     if name in same_as:
         return page[same_as[name]]
-    return LEFT_OUT if name in _MAY_BE_ZERO else 90.0 if name == "disk_cone_angle" else 0.0
+    if name == "disk_cone_angle":
+        return when(page.place > 0, 90.0, LEFT_OUT)
+    return LEFT_OUT if name in _MAY_BE_ZERO else 0.0

@@ -10,11 +10,14 @@ from flexlash.report.live import Live, Value, put, when
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book
 from flexlash.report.trace.inputs import PROGRAM
-from flexlash.report.trace.ranges import PI
+from flexlash.report.trace.ranges import PI, all_of, elsewhere
 
-__all__ = ["CHANGE", "HEADER", "SHEET", "SUBMITTED", "VALUE", "Page", "Words"]
+__all__ = ["CHANGE", "HEADER", "LEFT_OUT", "SHEET", "SUBMITTED", "VALUE", "Page", "Words"]
 
 SHEET = "Trace"
+LEFT_OUT = "none"
+"""What a reader types to leave an optional input out, and what stands where there is none."""
+
 HEADER = 4
 """Row of the headings, from 0; they stay in sight."""
 
@@ -41,6 +44,8 @@ _LOOKS = {
 _SHAPES = {_UNIT: "indented"}
 _ARCMIN_LOOK = '"rad = "0.0000"′";"rad = "-0.0000"′";"rad"'
 
+_PART_LOOK = '"a part";;"no part"'
+
 Words = tuple[str, str, str, str]
 """Quantity, symbol, unit and equation of a line."""
 
@@ -56,6 +61,8 @@ class Page:
         self.row = HEADER
         self.lines: dict[str, Live] = {}
         self.rows: dict[str, int] = {}
+        self.entries: dict[str, tuple[Live, Live]] = {}
+        self._is_part: Live | None = None
         self.differences: list[Value] = []
         self._none = book.workbook.add_format({"font_color": "#8C8C8C"})
         for column, (heading, width) in enumerate(_COLUMNS):
@@ -66,6 +73,21 @@ class Page:
     def __getitem__(self, key: str) -> Live:
         """Return the reference to a line's value."""
         return self.lines[key]
+
+    def judge(self, fault: Live) -> None:
+        """Let all that follows say none where a variant is missing or the inputs have this fault; "" is none."""
+        found = when(all_of(self.place > 0, fault.equals("")), 1.0, 0.0)
+        self._is_part = put(self.sheet, HEADER - 1, CHANGE, found, self.book.format("quiet", _PART_LOOK))
+
+    def of_part(self, value: Live, instead: str = LEFT_OUT, sheet: str = "") -> Live:
+        """Return a number, or another text where the inputs make no part; as this or another sheet writes it."""
+        if self._is_part is None:
+            return value
+        return when(elsewhere(SHEET, self._is_part) if sheet else self._is_part, value, instead)
+
+    def submitted(self, heading: str) -> Live:
+        """Return what was submitted, an empty text where that is blank or no variant is picked."""
+        return when(self.place > 0, self.stored.pick(self.place, heading), "")
 
     def section(self, title: str) -> None:
         """Begin a section."""
@@ -79,11 +101,12 @@ class Page:
         self.row += 1
         self._write_words(words)
         style = self.book.format("figure", _LOOKS[look])
-        self.lines[key] = put(self.sheet, self.row, VALUE, value, style)
+        self.lines[key] = put(self.sheet, self.row, VALUE, self.of_part(value), style)
         self.rows[key] = self.row
         if look == "angle":
             unit = self.book.format("indented", _ARCMIN_LOOK)
-            put(self.sheet, self.row, _UNIT, self.lines[key] / (PI / 10800), unit)
+            arcmin = self.of_part(self.lines[key] / (PI / 10800), "rad")
+            put(self.sheet, self.row, _UNIT, arcmin, unit)
         self._grey()
         if key in PROGRAM:
             self._write_program(self.lines[key], PROGRAM[key][0], style, is_word=look == "plain")
@@ -103,11 +126,14 @@ class Page:
 
     def _write_program(self, traced: Live, heading: str, style: Any, *, is_word: bool) -> None:
         """Write what the program found and how far the traced value is from it."""
-        found = put(self.sheet, self.row, SUBMITTED, self.stored.pick(self.place, heading), style)
+        submitted = self.of_part(self.stored.pick(self.place, heading))
+        found = put(self.sheet, self.row, SUBMITTED, submitted, style)
         off = when(traced.equals(found), 0.0, 1.0) if is_word else traced / found - 1
         nothing = "none" if is_word else 0.0
         difference = when(found.equals(""), when(traced.equals(nothing), "", 1.0), off)
-        shown = put(self.sheet, self.row, CHANGE, difference, self.book.format("figure", _LOOKS["difference"]))
+        shown = put(
+            self.sheet, self.row, CHANGE, self.of_part(difference, ""), self.book.format("figure", _LOOKS["difference"])
+        )
         self.differences.append(shown.value)
         cell = xl_rowcol_to_cell(self.row, CHANGE)
         changed = self.book.workbook.add_format({"num_format": "+0.000%;-0.000%"})

@@ -13,26 +13,39 @@ from xlsxwriter.utility import xl_rowcol_to_cell
 
 from flexlash.report.live import Live, fill, fixed, greatest, joined, place_of_name, put, when
 from flexlash.report.stored import Stored
-from flexlash.report.styles import Book
-from flexlash.report.trace.ranges import PI, filled, greatest_in, least_in
-from flexlash.report.trace.trace_inputs import LEFT_OUT, write_inputs
+from flexlash.report.styles import PALETTE, Book
+from flexlash.report.trace.ranges import PI, any_of, filled, greatest_in, least_in
+from flexlash.report.trace.trace_inputs import write_inputs
 from flexlash.report.trace.trace_mechanics import write_integrals, write_shape, write_sums, write_windups
-from flexlash.report.trace.trace_page import CHANGE, HEADER, SHEET, Page
+from flexlash.report.trace.trace_page import CHANGE, HEADER, LEFT_OUT, SHEET, SUBMITTED, VALUE, Page
 from flexlash.report.trace.trace_steps import Steps
 from flexlash.report.trace.trace_strength import write_buckling, write_stresses
 
-__all__ = ["AGREEMENT", "AGREES", "CHANGED", "write_trace"]
+__all__ = ["AGREEMENT", "AGREES", "CHANGED", "NOT_LISTED", "NO_PART", "UNREAL", "trace_sheet", "write_trace"]
 
 AGREEMENT = 1e-12
 """Relative difference up to which a traced number agrees with the program's."""
 
 AGREES, CHANGED, _DIFFERS = "agrees to 1e-12", "inputs changed", "differs"
+NOT_LISTED = "◄ not in the list: pick one"
+NO_PART = "◄ these inputs make no part: "
+UNREAL = "◄ no flexspline has such a backlash: check values and units (E324)"
+_LEAST, _MOST = 1e-12, 10.0
+"""Backlash [rad] between which a submission is computed."""
+
+_LINES_BELOW = 100
+"""More than the lines of results."""
+
 _PICK, _EQUATION, _PLACE = 1, 4, 5
 
 
-def write_trace(book: Book, inputs: Stored, total: int, picked: int = 0) -> Mapping[str, Live]:
-    """Write Trace and its steps with the variant at a place, from 0, picked; return the lines by key."""
-    sheet = book.sheet(SHEET, landscape=False)
+def trace_sheet(book: Book) -> Any:
+    """Return the sheet for Trace in its place among the others; its steps come where it is written."""
+    return book.sheet(SHEET, landscape=False, tab="entry")
+
+
+def write_trace(book: Book, sheet: Any, inputs: Stored, total: int, picked: int = 0) -> Mapping[str, Live]:
+    """Write Trace, and its steps on a new sheet, with the variant at a place, from 0, picked; return lines by key."""
     sheet.write_string(0, 0, "Trace: one variant from its inputs to backlash and stress", book.format("title"))
     sheet.set_row(0, 28)
     note = (
@@ -46,14 +59,17 @@ def write_trace(book: Book, inputs: Stored, total: int, picked: int = 0) -> Mapp
     sheet.write_string(1, 0, note, book.format("quiet"))
     page = Page(book, sheet, _pick(book, sheet, inputs, picked), inputs)
     changes = write_inputs(page)
+    steps = Steps(page)
+    fault = steps.fault()
+    page.judge(fault)
+    _hide_unreal(page)
     write_shape(page)
-    steps = Steps(book, page)
     write_integrals(page, steps)
     write_windups(page)
     write_sums(page)
     write_stresses(page, steps)
     write_buckling(page)
-    _write_verdict(page, changes)
+    _write_headline(page, fault, _write_verdict(page, changes))
     sheet.freeze_panes(HEADER + 1, 0)
     sheet.repeat_rows(HEADER)
     sheet.print_area(0, 0, page.row, CHANGE)
@@ -76,11 +92,20 @@ def _pick(book: Book, sheet: Any, inputs: Stored, picked: int) -> Live:
         "error_title": "Variant",
         "error_message": "Pick a variant of the list.",
     })  # fmt: skip
-    return put(sheet, 2, _PLACE, place_of_name(name, names, all_names), book.format("quiet", '"number "0'))
+    return put(sheet, HEADER - 1, _PLACE, place_of_name(name, names, all_names), book.format("quiet", '"number "0'))
 
 
-def _write_verdict(page: Page, changes: str) -> None:
-    """Write how far the trace is from the program, at the end and beside the drop-down."""
+def _hide_unreal(page: Page) -> None:
+    """Let no number show below while the headline says that the backlash is no flexspline's."""
+    headline = xl_rowcol_to_cell(HEADER - 2, _EQUATION, row_abs=True, col_abs=True)
+    hidden = page.book.workbook.add_format({"num_format": '"none";"none";"none";@', "font_color": PALETTE["grey"]})
+    rule = {"type": "formula", "criteria": f'={headline}="{UNREAL}"', "format": hidden, "stop_if_true": True}
+    for column in (VALUE, VALUE + 1, SUBMITTED, CHANGE):
+        page.sheet.conditional_format(page.row + 1, column, page.row + _LINES_BELOW, column, rule)
+
+
+def _write_verdict(page: Page, changes: str) -> Live:
+    """Write how far the trace is from the program; return it in words."""
     page.section("7  Agreement with the program")
     first, last = min(page.rows[key] for key in page.rows if key.endswith("_windup")), page.row
     cells = ":".join(xl_rowcol_to_cell(row, CHANGE, row_abs=True, col_abs=True) for row in (first, last))
@@ -89,12 +114,19 @@ def _write_verdict(page: Page, changes: str) -> None:
     words = ("Greatest relative difference", "", "", "of the lines that have a value of the program")
     largest = page.line("difference", off, words, "difference")
     verdict = when(largest <= AGREEMENT, AGREES, _DIFFERS)
-    said = page.line(
+    return page.line(
         "verdict",
         when(filled(changes, []) > 0, CHANGED, verdict),
         ("Verdict", "", "", "traced numbers beside the program's"),
         "plain",
     )
-    angle = fixed(page["backlash"] / (PI / 10800), 4)
-    style = page.book.format("label")
-    put(page.sheet, 2, _EQUATION, joined("◄ backlash ", angle, "′, ", said), style)
+
+
+def _write_headline(page: Page, fault: Live, verdict: Live) -> None:
+    """Write the backlash beside the drop-down, or why there is none."""
+    backlash = page["backlash"]
+    found = joined("◄ backlash ", fixed(backlash / (PI / 10800), 4), "′, ", verdict)
+    is_unreal = any_of(backlash <= _LEAST, backlash >= _MOST)
+    told = when(fault.equals(""), when(is_unreal, UNREAL, found), joined(NO_PART, fault))
+    said = when(page.place.equals(0.0), NOT_LISTED, told)
+    put(page.sheet, HEADER - 2, _EQUATION, said, page.book.format("label"))

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from xlsxwriter.utility import xl_rowcol_to_cell
-
 from flexlash.mechanics.fillets import ARC_RULE, FINE_RULE, JUNCTION_RULE, WIDE
 from flexlash.mechanics.strength import PASSES, STATIONS
 from flexlash.mechanics.windup import NEARLY, TAPER_PLACES, TAPER_WEIGHTS
@@ -15,92 +11,56 @@ from flexlash.report.live import (
     cosine,
     entry_of,
     exponential,
-    fill,
     greatest,
     least,
     live,
     logarithm,
-    put,
     sine,
     when,
 )
-from flexlash.report.styles import Book
+from flexlash.report.trace.blocks import Block
+from flexlash.report.trace.part_rules import RULES_WIDTH, write_rules
 from flexlash.report.trace.ranges import PI, elsewhere, greatest_in, magnitude, place_of_greatest, total
-from flexlash.report.trace.trace_page import SHEET, Page
+from flexlash.report.trace.trace_page import Page
 
 __all__ = ["STEPS", "Steps", "shear", "thickness_at"]
 
 STEPS = "Trace steps"
 _TITLE_ROW = 3
-_ENTRY = 2
-"""Column of a block that holds its single numbers; their names reach over the columns before."""
-
 _WIDTH = 15.5
-_JUNCTION, _HUB, _DISK, _SEARCH, _END = 0, 6, 13, 18, 22
+_JUNCTION, _HUB, _DISK, _SEARCH, _END = RULES_WIDTH + 1, RULES_WIDTH + 7, RULES_WIDTH + 14, RULES_WIDTH + 19, 26
 _PROFILE_WORDS = "(t_1 + k (r − r_ci)) (r_ci/r)^n"
 _STEEP = 1.0
 """Size of an exponent from which e^z − 1 keeps its digits."""
 
 
-class _Block:
-    """A piece of the sheet: named cells and tables one below the other."""
-
-    def __init__(self, book: Book, sheet: Any, *, left: int, row: int, heads: tuple[str, str]) -> None:
-        self.book, self.sheet, self.left, self.row = book, sheet, left, row + 1
-        sheet.write_string(row, left, heads[0], book.format("label"))
-        sheet.write_string(row + 1, left, heads[1], book.format("quiet"))
-
-    def entry(self, name: str, value: Live) -> Live:
-        """Write a named number and return the reference to it."""
-        self.row += 1
-        self.sheet.write_string(self.row, self.left, name, self.book.format("text"))
-        return put(self.sheet, self.row, self.left + _ENTRY, value, self.book.format("text", "general"))
-
-    def heads(self, *headings: str) -> None:
-        """Begin a table."""
-        self.row += 1
-        for place, heading in enumerate(headings):
-            self.sheet.write_string(self.row, self.left + place, heading, self.book.format("header"))
-
-    def cell(self, place: int, value: Live | float) -> Live:
-        """Write a cell of the current row of a table and return the reference to it."""
-        style = self.book.format("text", "general")
-        if isinstance(value, Live):
-            return put(self.sheet, self.row, self.left + place, value, style)
-        return fill(self.sheet, self.row, self.left + place, value, style)
-
-    def column(self, place: int, count: int) -> str:
-        """Return the range of the last rows of a table."""
-        ends = (self.row - count + 1, self.row)
-        return ":".join(xl_rowcol_to_cell(row, self.left + place, row_abs=True, col_abs=True) for row in ends)
-
-
 class Steps:
     """The sheet Trace steps, written as Trace asks for its results."""
 
-    def __init__(self, book: Book, page: Page) -> None:
-        self.book, self.page = book, page
-        self.sheet = book.sheet(STEPS)
-        self.sheet.write_string(0, 0, "Steps behind Trace", book.format("title"))
+    def __init__(self, page: Page) -> None:
+        self.page = page
+        self.sheet = page.book.sheet(STEPS, landscape=False, tab="stored")
+        self.sheet.write_string(0, 0, "Steps behind Trace", page.book.format("title"))
         self.sheet.set_row(0, 28)
         note = (
             "Nothing to enter here: the inputs come from Trace, the results go back there. Lengths in mm, stresses in "
-            "MPa. Points and weights are those of the program."
+            "MPa. Points and weights are those of the program. Sums and search stand to the right; they do not print."
         )
-        self.sheet.write_string(1, 0, note, book.format("quiet"))
-        self.sheet.set_column(0, _END - 1, _WIDTH)
-        for gap in (_HUB, _DISK, _SEARCH):
+        self.sheet.merge_range(1, 0, 1, RULES_WIDTH - 1, note, page.book.format("wrap"))
+        self.sheet.set_row(1, 47)
+        self.sheet.set_column(_JUNCTION, _END - 1, _WIDTH)
+        for gap in (_JUNCTION, _HUB, _DISK, _SEARCH):
             self.sheet.set_column(gap - 1, gap - 1, 3)
-        self.sheet.freeze_panes(_TITLE_ROW + 1, 0)
-        self.sheet.repeat_rows(_TITLE_ROW)
-        self.sheet.print_area(0, 0, _TITLE_ROW + 16 + PASSES * (STATIONS + 6), _END - 1)
+        self.sheet.freeze_panes(_TITLE_ROW, 0)
 
-    def _block(self, left: int, title: str, formula: str, row: int = _TITLE_ROW) -> _Block:
-        return _Block(self.book, self.sheet, left=left, row=row, heads=(title, formula))
+    def fault(self) -> Live:
+        """Write what the inputs must be to make a part; return the first that they are not, else an empty text."""
+        said, last = write_rules(self.page, self.sheet, _TITLE_ROW)
+        self.sheet.print_area(0, 0, last, RULES_WIDTH - 1)
+        return elsewhere(STEPS, said)
 
-    def _links(self, block: _Block, **keys: str) -> list[Live]:
-        """Write the inputs of a block, each linked to its line of Trace."""
-        return [block.entry(name, elsewhere(SHEET, self.page[key])) for name, key in keys.items()]
+    def _block(self, left: int, title: str, formula: str, row: int = _TITLE_ROW) -> Block:
+        return Block(self.page, self.sheet, left=left, row=row, heads=(title, formula))
 
     def junction_fillet(self) -> Live:
         """Return the integral of the junction fillet [1/mm³]."""
@@ -109,7 +69,7 @@ class Steps:
             "Junction fillet: ∫ dz/(r³ t), angle p from the wall",
             "a = R (1 − cos p), r = r_m − a/2, t = Δ + a",
         )
-        radius, wall, fillet = self._links(block, r_m="mean_radius", Δ="wall_thickness", R_j="junction_fillet_radius")
+        radius, wall, fillet = block.links(r_m="mean_radius", Δ="wall_thickness", R_j="junction_fillet_radius")
         found = []
         for rule in (JUNCTION_RULE, FINE_RULE):
             block.heads("cos p", "weight w", "a", "r", "w cos p/(r³ t)")
@@ -134,7 +94,7 @@ class Steps:
             "Hub fillet: ∫ dr/(r³ t), angle q from the hub",
             f"r = r_ci + R (1 − cos q), t = {_PROFILE_WORDS} + R (1 − sin q)",
         )
-        fillet, inner, *profile = self._links(block, R_h="hub_fillet_radius", **_PROFILE)
+        fillet, inner, *profile = block.links(R_h="hub_fillet_radius", **_PROFILE)
         found = []
         for rule in (ARC_RULE, FINE_RULE):
             block.heads("sin q", "cos q", "weight w", "r", "t", "w sin q/(r³ t)")
@@ -155,8 +115,8 @@ class Steps:
     def taper(self) -> Live:
         """Return the integral of a disk that thins in a straight line [1/mm³]."""
         block = self._block(_DISK, "Straight taper: ∫ v dv/t between r_s and r_co", "v = 1/r, t = a + b r")
-        start, outer, inner_thickness, outer_thickness = self._links(
-            block, r_s="disk_start", r_co="disk_outer_radius", t_s="start_thickness", t_o="outer_thickness"
+        start, outer, inner_thickness, outer_thickness = block.links(
+            r_s="disk_start", r_co="disk_outer_radius", t_s="start_thickness", t_o="outer_thickness"
         )
         low, high = block.entry("v_o = 1/r_co", 1 / outer), block.entry("v_s = 1/r_s", 1 / start)
         reach = block.entry("v_s − v_o", high - low)
@@ -181,7 +141,7 @@ class Steps:
     def growth(self) -> Live:
         """Return (e^z − 1)/z, by which a disk that thins with a power of the radius differs from n = 2 [-]."""
         block = self._block(_DISK, "Power law: (e^z − 1)/z", "∫ e^(z u) du, u from 0 to 1", self._below)
-        (exponent,) = self._links(block, z="power_law_growth")
+        (exponent,) = block.links(z="power_law_growth")
         summands = []
         block.heads("place u", "weight w", "w e^(z u)")
         for place_, weight_ in zip(TAPER_PLACES.tolist(), TAPER_WEIGHTS.tolist(), strict=True):
@@ -200,8 +160,8 @@ class Steps:
             f"Greatest shear in the hub fillet: {PASSES} passes of {STATIONS} stations",
             "Thickness t as for the hub fillet; each pass around the best station before",
         )
-        torque, fillet_radius, outer, inner, *profile = self._links(
-            block, T="torque", R_h="hub_fillet_radius", r_co="disk_outer_radius", **_PROFILE
+        torque, fillet_radius, outer, inner, *profile = block.links(
+            T="torque", R_h="hub_fillet_radius", r_co="disk_outer_radius", **_PROFILE
         )
         fillet = block.entry("R = R_h, at most r_co − r_ci", least(fillet_radius, outer - inner))
         low, high = block.entry("from place", live(0.0)), block.entry("to place", live(1.0))

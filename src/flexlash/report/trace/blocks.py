@@ -1,0 +1,58 @@
+"""Pieces of the sheet Trace steps: named cells and tables, without a number where the inputs make no part."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from xlsxwriter.utility import xl_rowcol_to_cell
+
+from flexlash.report.live import Live, fill, put
+from flexlash.report.styles import Book
+from flexlash.report.trace.ranges import elsewhere
+from flexlash.report.trace.trace_page import SHEET, Page
+
+__all__ = ["Block"]
+
+_ENTRY = 2
+"""Column of a block that holds its single numbers; their names reach over the columns before."""
+
+
+class Block:
+    """A piece of the sheet: named cells and tables one below the other."""
+
+    def __init__(self, page: Page, sheet: Any, *, left: int, row: int, heads: tuple[str, str]) -> None:
+        self.page, self.sheet, self.left, self.row = page, sheet, left, row + 1
+        self.book: Book = page.book
+        sheet.write_string(row, left, heads[0], self.book.format("label"))
+        sheet.write_string(row + 1, left, heads[1], self.book.format("quiet"))
+
+    def links(self, **keys: str) -> list[Live]:
+        """Write inputs, each linked to its line of Trace."""
+        return [self.entry(name, elsewhere(SHEET, self.page[key])) for name, key in keys.items()]
+
+    def entry(self, name: str, value: Live) -> Live:
+        """Write a named number and return the reference to it."""
+        self.row += 1
+        self.sheet.write_string(self.row, self.left, name, self.book.format("text"))
+        return self._put(_ENTRY, value)
+
+    def heads(self, *headings: str) -> None:
+        """Begin a table."""
+        self.row += 1
+        for place, heading in enumerate(headings):
+            self.sheet.write_string(self.row, self.left + place, heading, self.book.format("header"))
+
+    def cell(self, place: int, value: Live | float) -> Live:
+        """Write a cell of the current row of a table and return the reference to it."""
+        if isinstance(value, Live):
+            return self._put(place, value)
+        return fill(self.sheet, self.row, self.left + place, value, self.book.format("text", "general"))
+
+    def column(self, place: int, count: int) -> str:
+        """Return the range of the last rows of a table."""
+        ends = (self.row - count + 1, self.row)
+        return ":".join(xl_rowcol_to_cell(row, self.left + place, row_abs=True, col_abs=True) for row in ends)
+
+    def _put(self, place: int, value: Live) -> Live:
+        style = self.book.format("text", "general")
+        return put(self.sheet, self.row, self.left + place, self.page.of_part(value, sheet=SHEET), style)
