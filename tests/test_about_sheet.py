@@ -5,17 +5,20 @@ from __future__ import annotations
 import openpyxl
 import pytest
 
+from filled import SOUND, filled
 from flexlash.pipeline import run
-from flexlash.report.about_sheet import SHEETS
+from flexlash.report.about_sheet import SHEETS, TABS
 from flexlash.report.verdict import RULES
 from flexlash.result_columns import RESULTS
 
 
-@pytest.fixture
-def book(table, sound, tmp_path):
+@pytest.fixture(scope="module")
+def book(tmp_path_factory):
     """Return a report."""
-    run(table([sound]), tmp_path / "report.xlsx", samples=256)
-    return openpyxl.load_workbook(tmp_path / "report.xlsx")
+    folder = tmp_path_factory.mktemp("about")
+    (folder / "submission.xlsx").write_bytes(filled([SOUND]))
+    run(folder / "submission.xlsx", folder / "report.xlsx", samples=256)
+    return openpyxl.load_workbook(folder / "report.xlsx")
 
 
 def _section(sheet, title):
@@ -33,7 +36,10 @@ def test_every_sheet_is_listed_with_its_line(book):
     """The index names every visible sheet in order, says in a line what it is for, and leads to it."""
     visible = [sheet.title for sheet in book.worksheets if sheet.sheet_state == "visible"]
     links = {name: f"'{name}'!A1" if " " in name else f"{name}!A1" for name in visible}
-    assert _section(book["About"], "Sheets") == [(name, SHEETS[name], links[name]) for name in visible]
+    rows = _section(book["About"], "Sheets")
+    assert rows[:-1] == [(name, SHEETS[name], links[name]) for name in visible]
+    assert rows[-1] == (f"•  {TABS}", None, None)
+    assert all(SHEETS[name] for name in visible)
 
 
 def test_every_column_of_results_is_defined(book):

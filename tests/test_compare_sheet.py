@@ -98,7 +98,9 @@ def test_the_worst_of_many_have_boxes(many):
     assert points_of(chart, cells) == pytest.approx(dict(enumerate(numbers)), rel=1e-15)
     assert numbers == sorted(numbers, reverse=True)
     assert "Compared!$I$" not in chart
-    assert _texts(many).startswith("Variants side by side The 40 worst of 60 computed variants, worst first.")
+    assert _texts(many).startswith(
+        "Variants side by side The 40 worst of 60 computed variants, worst first (Ranking lists 60)."
+    )
 
 
 def test_a_single_variant_has_its_box(table, sound, tmp_path):

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+import io
+
 import openpyxl
 import pytest
 
+from filled import SOUND, filled
 from flexlash.pipeline import run
 from flexlash.report.links import finding_list, finding_rows
 from flexlash.report.results_sheet import AS_SUBMITTED, FIRST_ROW, column_place
 from flexlash.result_columns import RESULTS
 
 
-@pytest.fixture
-def report(workbook, sound, tmp_path):
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
     """Return the outcome and the report of a workbook with three rows, two extra columns and a percentage."""
     rows = [
-        {**sound, "notes": "first"},
-        {**sound, "variant": "strained", "torque_Nm": 12000.0},
-        {**sound, "variant": "empty", "torque_Nm": None},
+        {**SOUND, "notes": "first"},
+        {**SOUND, "variant": "strained", "torque_Nm": 12000.0},
+        {**SOUND, "variant": "empty", "torque_Nm": None},
     ]
-    path = workbook(rows)
-    book = openpyxl.load_workbook(path)
+    folder = tmp_path_factory.mktemp("results")
+    path = folder / "submission.xlsx"
+    book = openpyxl.load_workbook(io.BytesIO(filled(rows)))
     sheet = book["Variants"]
     header = next(row[0].row for row in sheet.iter_rows() if row[0].value == "Variant" and row[1].value)
     right = sheet.max_column
@@ -34,8 +38,8 @@ def report(workbook, sound, tmp_path):
                 sheet.cell(row, place).data_type = "s"
     sheet.cell(header + 1, right + 2).number_format = "0%"
     book.save(path)
-    outcome = run(path, tmp_path / "report.xlsx", samples=256)
-    return outcome, openpyxl.load_workbook(tmp_path / "report.xlsx")
+    outcome = run(path, folder / "report.xlsx", samples=256)
+    return outcome, openpyxl.load_workbook(folder / "report.xlsx")
 
 
 def test_other_columns_of_the_submission_pass_through(report):
@@ -127,3 +131,36 @@ def test_shares_are_drawn_as_bars(report):
     bars = [area for area, kinds in formats.items() if kinds == ["dataBar"]]
     assert len(bars) == 3
     assert [kinds for kinds in formats.values() if len(kinds) == 3] == [["cellIs"] * 3]
+
+
+def test_the_limit_is_as_entered(table, sound, tmp_path):
+    """A limit of 3.8 stands as 3.8 in the frame and in every sheet, not as 3.7999999999999994."""
+    outcome = run(table([{**sound, "backlash_limit_arcmin": 3.8}]), tmp_path / "report.xlsx", samples=256)
+    assert outcome.results["backlash_limit_arcmin"].to_list() == [3.8]
+    book = openpyxl.load_workbook(tmp_path / "report.xlsx")
+    numbers = [cell.value for sheet in book for row in sheet.iter_rows() for cell in row if cell.data_type == "n"]
+    near = [number for number in numbers if isinstance(number, float) and abs(number - 3.8) < 1e-9]
+    assert len(near) >= 4
+    assert set(near) == {3.8}
+
+
+def test_a_printed_page_begins_where_another_matter_does(report):
+    """Results are printed over several pages, each with the variants' names and columns that belong together."""
+    sheet = report[1]["Results"]
+    begun = [sheet.cell(2, one.id + 1).value for one in sheet.col_breaks.brk]
+    assert begun[:2] == ["mean_arcmin", "first_order_sd_arcmin"]
+    assert sheet.print_title_cols == "$A:$A"
+    assert sheet.print_title_rows == "$1:$2"
+    assert sheet.page_setup.scale == 65
+
+
+def test_long_notes_are_wrapped(table, sound, tmp_path):
+    """A long note is wrapped in a row that is high enough; a row without one has the usual height."""
+    rows = [{**sound, "notes": "word " * 60}, {**sound, "variant": "b", "notes": "short"}]
+    run(table(rows), tmp_path / "report.xlsx", samples=256)
+    sheet = openpyxl.load_workbook(tmp_path / "report.xlsx")["Results"]
+    cell = sheet.cell(FIRST_ROW + 1, column_place("notes") + 1)
+    assert cell.alignment.wrap_text
+    assert sheet.column_dimensions[cell.column_letter].width == pytest.approx(90, abs=1)
+    assert sheet.row_dimensions[FIRST_ROW + 1].height >= 4 * 15
+    assert sheet.row_dimensions[FIRST_ROW + 2].height is None

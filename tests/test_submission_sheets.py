@@ -86,3 +86,27 @@ def test_a_name_that_is_a_number_stays_a_number(workbook, sound, tmp_path):
     """A variant whose name was typed as a number is repeated as a number."""
     _, book = _report(workbook([{**sound, "variant": 12}]), tmp_path)
     assert 12 in [cell.value for cell in book["Submission"]["A"]]
+
+
+def test_nothing_is_cut(workbook, sound, tmp_path):
+    """Columns are as wide as their texts below the header; longer ones are wrapped in rows high enough."""
+    _, book = _report(workbook([{**sound, "notes": "word " * 40}]), tmp_path)
+    for name in ("Submission", "Materials", "Tolerances", "Settings"):
+        sheet = book[name]
+        header = int(sheet.print_title_rows.rpartition("$")[2])
+        for row in sheet.iter_rows(min_row=header + 1):
+            for cell in row:
+                if isinstance(cell.value, str):
+                    dimension = next(
+                        one for one in sheet.column_dimensions.values() if one.min <= cell.column <= one.max
+                    )
+                    height = sheet.row_dimensions[cell.row].height or 15
+                    assert 0.9 * len(cell.value) <= dimension.width * height / 15, (name, cell.coordinate)
+
+
+def test_titles_of_our_template_look_like_titles(workbook, table, sound, tmp_path):
+    """The first cell of a sheet of our template is a title; that of a table is a header."""
+    _, book = _report(workbook([sound]), tmp_path)
+    assert {book[name]["A1"].font.sz for name in ("Submission", "Materials", "Tolerances", "Settings")} == {18}
+    _, book = _report(table([sound]), tmp_path)
+    assert book["Submission"]["A1"].font.sz == 11

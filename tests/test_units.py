@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from flexlash.units import ARCMIN, ARCSEC, RPM, find_unit
+from flexlash.units import ARCMIN, ARCSEC, RPM, as_entered, find_unit
 
 SIZES = [
     ("length", "m", 1.0),
@@ -167,3 +167,17 @@ def test_a_quantity_that_nobody_measures_is_a_fault_of_the_program():
     """Asking for a quantity that does not exist fails loudly."""
     with pytest.raises(LookupError):
         find_unit("mm", "colour")
+
+
+@pytest.mark.parametrize("entry", [3.8, 0.1, 37.3, 3.75, 1e-9, 780000.0, 2 / 3])
+@pytest.mark.parametrize("unit", [ARCMIN, 1e-3, 0.0254, 1.0])
+def test_an_entry_comes_back_as_it_was_made(entry, unit):
+    """A number converted to SI and back is the one that was entered, or, with more digits than 15, its size is kept."""
+    back = as_entered(entry * unit, unit)
+    assert back == entry or (entry == 2 / 3 and back == pytest.approx(entry, rel=1e-15))
+
+
+def test_a_computed_size_keeps_all_digits():
+    """A size that fifteen digits do not give is not rounded."""
+    size = 0.1 + 0.2
+    assert as_entered(size, 1.0) == size

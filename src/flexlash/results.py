@@ -10,7 +10,7 @@ import polars as pl
 
 from flexlash.result_columns import result_columns
 from flexlash.tolerance.variation import Variation
-from flexlash.units import ARCMIN, RPM
+from flexlash.units import ARCMIN, RPM, as_entered
 from flexlash.variant import Variant
 
 __all__ = ["result_record", "results_frame"]
@@ -30,6 +30,9 @@ _STEMS = {column.key: (column.dimension, column.si_unit.si) for column in _COLUM
 }
 """Result key → its SI number's name and the size of the printed unit."""
 
+_ENTERED = frozenset({"backlash_limit_arcmin", "hub_shear_radius_mm"})
+"""Results that repeat an entry, the radius where it is the disk's own."""
+
 
 def result_record(
     variant: Variant, nominal: Mapping[str, float | str | None], variation: Variation | None
@@ -47,7 +50,9 @@ def result_record(
     for column in _COLUMNS:
         stem, size = _STEMS.get(column.key, (column.key, 1.0))
         value = numbers.get(stem)
-        record[column.key] = value / size if isinstance(value, float) else value
+        if isinstance(value, float):
+            value = as_entered(value, size) if column.key in _ENTERED else value / size
+        record[column.key] = value
     return record
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-__all__ = ["ARCMIN", "ARCSEC", "RPM", "Unit", "find_unit"]
+__all__ = ["ARCMIN", "ARCSEC", "RPM", "Unit", "as_entered", "find_unit"]
 
 ARCMIN = math.pi / 180 / 60
 ARCSEC = ARCMIN / 60
@@ -123,6 +123,16 @@ _UNITS = {
     quantity: {name: Unit(name=name, quantity=quantity, si=si) for name, si in units.items()}
     for quantity, units in _TABLE.items()
 }
+
+
+def as_entered(size: float, unit: float) -> float:
+    """Return a size in a unit as it was entered: with fifteen digits where these give the same size, else with all.
+
+    >>> 3.8 * ARCMIN / ARCMIN, as_entered(3.8 * ARCMIN, ARCMIN)
+    (3.7999999999999994, 3.8)
+    """
+    short = float(f"{size / unit:.15g}")
+    return short if short * unit == size else size / unit
 
 
 def _plain(text: str) -> str:

@@ -19,7 +19,7 @@ from flexlash.tolerance.line_nets import LINE_REPLICATES
 from flexlash.tolerance.line_spread import MOST_LINES, OF_PROBABILITY, OF_SD
 from flexlash.tolerance.sampling import REPLICATES
 
-__all__ = ["ERRATA", "LEFT_OUT", "MODEL", "PROOF", "SHEETS", "write_about"]
+__all__ = ["ERRATA", "LEFT_OUT", "MODEL", "PROOF", "SHEETS", "TABS", "write_about"]
 
 SHEETS = {
     "Summary": "One page: what was computed, what fails, by how much, why and what to tighten.",
@@ -46,6 +46,8 @@ SHEETS = {
     "Inputs": "What was entered and what the program found, behind Trace.",
 }
 """What each sheet is for, in one line."""
+
+TABS = "Sheets with orange tabs have yellow cells to change; sheets with grey tabs hold stored numbers."
 
 MODEL = (
     "Backlash here is the lag of the output when the torque reverses: twice the torsional wind-up U of the flexspline.",
@@ -168,6 +170,10 @@ def _digits() -> Iterator[str]:
         "A share of units below 0.001 ppb is called practically none, and practically all the other way round; the "
         "columns of Results have the bounds."
     )
+    yield (
+        "Standard errors are shown with two digits. A share of units within 1 ppm of none or all is shown with at most "
+        "four decimals of per cent; its cell and the column in ppm hold the rest."
+    )
     yield "The columns marked + above can be folded away: standard errors, radians, arc seconds and bounds."
     yield f"Columns of the submission that flexlash does not know stand at the right end, marked “{AS_SUBMITTED}”."
 
@@ -192,7 +198,7 @@ def write_about(book: Book, outcome: Outcome, later: Sequence[str] = ()) -> None
     present = [one.get_name() for one in book.workbook.worksheets()] + list(later)
     sections: tuple[tuple[str, list[tuple[str, str]]], ...] = (
         ("Provenance and settings", list(_identity(outcome).items())),
-        ("Sheets", [(name, SHEETS.get(name, "")) for name in present]),
+        ("Sheets", [*((name, SHEETS.get(name, "")) for name in present), ("", TABS)]),
         ("Verdict", [("", text) for text in _verdict()]),
         ("Digits and columns", [("", text) for text in _digits()]),
         ("Spread", [("", text) for text in _statistics(outcome)]),

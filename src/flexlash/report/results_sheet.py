@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING, Any
 from flexlash.columns import Column
 from flexlash.outcome import Outcome
 from flexlash.report.links import FIRST_ROW, finding_rows, name_cell, result_rows, write_link
+from flexlash.report.paper import print_readably
 from flexlash.report.raw_cells import write_raw
-from flexlash.report.styles import PALETTE, Book, decimals_of, percent_of
+from flexlash.report.result_formats import number_formats, usual_format
+from flexlash.report.styles import PALETTE, Book
+from flexlash.report.wrapping import LINE_HEIGHT, lines_of
 from flexlash.result_columns import RESULTS, result_columns
 
 if TYPE_CHECKING:
@@ -36,25 +39,37 @@ SHARE_DECIMALS = 4
 
 _ESTIMATED_SHARES = frozenset({"main_contributor_share", "interaction_share"})
 _PLACES = {column.key: place for place, column in enumerate(RESULTS)}
-_UNITS = {"rad": "rad", "arcmin": "arcmin", "arcsec": "arcsec", "MPa": "stress", "ppm": "count"}
 _DETAILS = ("_low", "_high", "_shear_radius_mm", "_range", "_points")
 """Ends of keys whose columns can be folded away, beside standard errors, radians, seconds and plain draws."""
 
 _BARS = {"probability_over_limit": "orange", "disk_share": "sky", "main_contributor_share": "sky"}
-_WIDTHS = {"variant": 24.0, "main_contributor": 20.0, "findings": 40.0, "notes": 30.0, "spread_note": 30.0}
+_NUMBER, _WORDS, _PASSED = 11.0, 14.0, 16.0
+_WIDTHS = {"status": 11.0, "main_contributor": 20.0, "first_order_valid": 11.0}
+_NAMES = (16, 32)
+_TEXTS = (16, 90)
+"""Least and greatest width of the variants' names, and of columns whose longer texts are wrapped."""
+
+_WRAPPED = ("spread_note", "notes", "findings")
+
+_NEW_PAGE = (
+    "mean_arcmin",
+    "first_order_sd_arcmin",
+    "von_mises_MPa",
+    "mean_standard_error_arcmin",
+    "interaction_share",
+    "random_mean_arcmin",
+    "elasticity_windup_rad",
+)
+"""Columns with which a printed page begins: what belongs together is on one."""
+
+_KEY_HEIGHT = 36
+_REMARKS = {"main_contributor": "Named by its key in the template's sheet Tolerances; About lists the keys in words."}
+"""What the comments of some columns say besides."""
 
 
 def column_place(key: str) -> int:
     """Return the place of a Results column, from 0."""
     return _PLACES[key]
-
-
-def _number_format(column: Column) -> str:
-    if column.key.startswith("stiffness"):
-        return "stiffness"
-    if "share" in column.key or "probability" in column.key:
-        return "share"
-    return _UNITS.get(column.unit, "plain")
 
 
 def _is_detail(column: Column) -> bool:
@@ -70,23 +85,35 @@ def write_results(book: Book, outcome: Outcome) -> None:
     sheet = book.sheet("Results")
     results = outcome.results
     columns = [column for column in result_columns(cross_check=True, elasticity=True) if column.key in results.columns]
-    for place, column in enumerate(columns):
-        number = _number_format(column) if column.is_number else ""
+    widths = [_width(results, column) for column in columns]
+    for place, (column, width) in enumerate(zip(columns, widths, strict=True)):
         options = {"level": 1} if _is_detail(column) else {}
-        sheet.set_column(place, place, _WIDTHS.get(column.key, 16.0), book.format("text", number), options)
-        _write_heading(book, sheet, place, (column.label, column.key, column.help))
+        number = usual_format(column) if column.is_number else ""
+        sheet.set_column(place, place, width, book.format("text", number), options)
+        text = f"{column.help} {_REMARKS.get(column.key, '')}".strip()
+        _write_heading(book, sheet, place, (column.label, column.key, text))
     _write_cells(book, sheet, results, columns)
     _write_links(book, sheet, outcome, columns)
     right = _write_passed(book, sheet, outcome, len(columns))
     last = FIRST_ROW + max(results.height, 1) - 1
-    sheet.set_row(0, 48)
-    sheet.set_row(1, 32)
+    lines = max(lines_of(column.label, width) for column, width in zip(columns, widths, strict=True))
+    sheet.set_row(0, LINE_HEIGHT * lines)
+    sheet.set_row(1, _KEY_HEIGHT)
     sheet.freeze_panes(FIRST_ROW, 1)
     sheet.autofilter(1, 0, last, right - 1)
     sheet.repeat_rows(0, 1)
-    sheet.repeat_columns(0)
-    sheet.fit_to_pages(4, 0)
+    breaks = [place for place, column in enumerate(columns) if column.key in _NEW_PAGE]
+    print_readably(sheet, [*widths, *[_PASSED] * (right - len(columns))], breaks=breaks)
     _write_conditions(book, sheet, columns, last)
+
+
+def _width(results: pl.DataFrame, column: Column) -> float:
+    """Return the width of a column."""
+    if column.key not in ("variant", *_WRAPPED):
+        return _WIDTHS.get(column.key, _NUMBER if column.is_number else _WORDS)
+    least, most = _TEXTS if column.key in _WRAPPED else _NAMES
+    longest = results[column.key].str.len_chars().max()
+    return min(max(int(str(longest or 0)) + 2, least), most)
 
 
 def _write_heading(book: Book, sheet: Any, place: int, texts: tuple[str, str, str]) -> None:
@@ -101,10 +128,13 @@ def _write_cells(book: Book, sheet: Any, results: pl.DataFrame, columns: Sequenc
     """Write the table row by row, in which order XlsxWriter is quickest."""
     lists = [stored_values(results, column) for column in columns]
     styles = [_styles(book, results, column) for column in columns]
+    heights = _heights(results, columns)
     write_number, write_string = sheet.write_number, sheet.write_string
     for row, (values, formats) in enumerate(
         zip(zip(*lists, strict=True), zip(*styles, strict=True), strict=True), start=FIRST_ROW
     ):
+        if row in heights:
+            sheet.set_row(row, heights[row])
         for place, value in enumerate(values):
             if value is None:
                 continue
@@ -112,6 +142,16 @@ def _write_cells(book: Book, sheet: Any, results: pl.DataFrame, columns: Sequenc
                 write_string(row, place, value, formats[place])
             else:
                 write_number(row, place, value, formats[place])
+
+
+def _heights(results: pl.DataFrame, columns: Sequence[Column]) -> dict[int, float]:
+    """Return the heights of rows with a text that is longer than its column is wide."""
+    lines: dict[int, int] = {}
+    for column in columns:
+        for row, text in enumerate(results[column.key].to_list() if column.key in _WRAPPED else ()):
+            if text is not None and len(text) > _TEXTS[1] - 2:
+                lines[row] = max(lines.get(row, 1), lines_of(text, _TEXTS[1]))
+    return {FIRST_ROW + row: LINE_HEIGHT * count for row, count in lines.items()}
 
 
 def stored_values(results: pl.DataFrame, column: Column) -> list[Any]:
@@ -125,27 +165,10 @@ def stored_values(results: pl.DataFrame, column: Column) -> list[Any]:
 
 
 def _styles(book: Book, results: pl.DataFrame, column: Column) -> list[Any]:
-    """Return a format for each cell of a column, its digits limited by the number's standard error if it has one."""
-    usual = book.format("text", _number_format(column) if column.is_number else "")
-    return _styles_by_error(book, results, column) or [usual] * results.height
-
-
-def _styles_by_error(book: Book, results: pl.DataFrame, column: Column) -> list[Any]:
-    """Return a format for each number of a column whose digits its standard error limits; none for other columns."""
-    stem, _, unit = column.key.rpartition("_")
-    if column.key.startswith(("probability", "ppm")):
-        stem = column.key.removesuffix("_low").removesuffix("_high")
-        ends = zip(results[f"{stem}_low"].to_list(), results[f"{stem}_high"].to_list(), strict=True)
-        halves = [None if low is None else (high - low) / 2 for low, high in ends]
-        if column.key.startswith("ppm"):
-            return [book.format("text", decimals_of(half, "count")) for half in halves]
-        return [book.format("text", percent_of(half)) for half in halves]
-    error = next(
-        (key for key in (f"{stem}_standard_error_{unit}", f"{column.key}_standard_error") if key in results), ""
-    )
-    if not error:
-        return []
-    return [book.format("text", decimals_of(one, "arcmin" if unit else "plain")) for one in results[error].to_list()]
+    """Return a format for each cell of a column."""
+    if column.is_number:
+        return number_formats(book, results, column)
+    return [book.format("indented wrap" if column.key in _WRAPPED else "indented")] * results.height
 
 
 def _write_links(book: Book, sheet: Any, outcome: Outcome, columns: Sequence[Column]) -> None:
@@ -167,7 +190,7 @@ def _write_passed(book: Book, sheet: Any, outcome: Outcome, place: int) -> int:
     table = outcome.validated.table if outcome.validated else None
     rows = result_rows(outcome)
     for column, header in sorted(table.heading.extra.items()) if table is not None else ():
-        sheet.set_column(place, place, 16.0)
+        sheet.set_column(place, place, _PASSED)
         text = f"Column {header} of the submission as read; nothing is computed from it."
         _write_heading(book, sheet, place, (header, AS_SUBMITTED, text))
         for number, row in rows.items():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from flexlash.findings import shown
+from flexlash.report.labels import distinct_labels
 from flexlash.report.selection import Drawn
 from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.units import ARCMIN
@@ -27,8 +27,16 @@ _BESIDE = (
     ("two_term_backlash_arcmin", "Two-term formula [arcmin]", "arcmin"),
     ("cylinder_only_backlash_arcmin", "Cylinder only [arcmin]", "arcmin"),
 )
-_CHART_ROWS = 23
-_HEADER = 4 + _CHART_ROWS
+_FEW = 12
+"""Most variants whose table fits below the chart on one page."""
+
+_CHART_TOP, _CHART_WIDTH = 3, 1000
+_CHART_ROWS = {True: 23, False: 32}
+"""Rows that the chart of few variants takes, and that of more."""
+
+_ROW_HEIGHT = 20
+_SIZES = {True: 80, False: 90}
+"""Size of print in per cent with few variants, and with more."""
 
 
 def write_sections(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
@@ -41,15 +49,20 @@ def write_sections(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
     )
     if len(drawn) < computed:
         note += f" The {len(drawn)} worst of {computed} variants."
+    if len(drawn) > _CHARTED:
+        note += f" The chart has the {_CHARTED} worst."
     sheet.write_string(1, 0, note, book.format("quiet"))
     headings = [*(f"{name} [arcmin]" for _, name, _ in _SEGMENTS), *(heading for _, heading, _ in _BESIDE)]
     sheet.set_column(0, 0, 28)
     sheet.set_column(1, len(headings), 13)
+    few = len(drawn) <= _FEW
+    header = _CHART_TOP + _CHART_ROWS[few] + 1
     for place, heading in enumerate(("Variant", *headings)):
-        sheet.write_string(_HEADER, place, heading, book.format("header"))
-    sheet.set_row(_HEADER, 48)
-    for row, one in enumerate(drawn, start=_HEADER + 1):
-        sheet.write_string(row, 0, shown(one.row["variant"], longest=_NAME), book.format("text"))
+        sheet.write_string(header, place, heading, book.format("header"))
+    sheet.set_row(header, 48)
+    labels = distinct_labels([one.row["variant"] for one in drawn], _NAME)
+    for row, (one, label) in enumerate(zip(drawn, labels, strict=True), start=header + 1):
+        sheet.write_string(row, 0, label, book.format("text"))
         for place, (segment, _, _) in enumerate(_SEGMENTS, start=1):
             angle = one.computed.nominal.get(f"{segment}_windup")
             if isinstance(angle, float):
@@ -57,24 +70,28 @@ def write_sections(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
         for place, (key, _, number) in enumerate(_BESIDE, start=1 + len(_SEGMENTS)):
             sheet.write_number(row, place, one.row[key], book.format("text", number))
     if drawn:
-        _draw(book, sheet, min(len(drawn), _CHARTED))
+        _draw(book, sheet, header, min(len(drawn), _CHARTED))
     sheet.freeze_panes(0, 1)
-    sheet.repeat_rows(_HEADER)
+    sheet.repeat_rows(header)
+    sheet.set_print_scale(_SIZES[few])
+    if not few:
+        sheet.set_h_pagebreaks([header])
 
 
-def _draw(book: Book, sheet: Any, count: int) -> None:
+def _draw(book: Book, sheet: Any, header: int, count: int) -> None:
     """Draw the segments of the worst variants as stacked bars."""
     chart = book.chart("bar", "Backlash by segment, worst variants first [arcmin]", subtype="stacked")
-    last = _HEADER + count
+    last = header + count
     for place, (_, name, colour) in enumerate(_SEGMENTS, start=1):
         chart.add_series({
             "name": name,
-            "categories": ["Sections", _HEADER + 1, 0, last, 0],
-            "values": ["Sections", _HEADER + 1, place, last, place],
+            "categories": ["Sections", header + 1, 0, last, 0],
+            "values": ["Sections", header + 1, place, last, place],
             "fill": {"color": colour},
             "border": {"color": "#FFFFFF", "width": 0.5},
             "gap": 40,
         })  # fmt: skip
-    chart.set_y_axis({"reverse": True, "num_font": {"size": 9}})
+    chart.set_y_axis({"reverse": True, "interval_unit": 1, "num_font": {"size": 9}})
     chart.set_x_axis({"num_format": "0.0", "major_gridlines": GRID})
-    book.insert(sheet, 3, 0, chart, size=(1000, 450), text="Backlash of each segment of the worst variants")
+    size = (_CHART_WIDTH, _ROW_HEIGHT * _CHART_ROWS[count <= _FEW] - _ROW_HEIGHT // 2)
+    book.insert(sheet, _CHART_TOP, 0, chart, size=size, text="Backlash of each segment of the worst variants")

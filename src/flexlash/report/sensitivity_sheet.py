@@ -8,10 +8,12 @@ from typing import Any
 from flexlash.columns import DIMENSIONS
 from flexlash.findings import shown
 from flexlash.outcome import Outcome
+from flexlash.report.paper import SMALL, fits, print_readably
 from flexlash.report.results_sheet import SHARE_DECIMALS
 from flexlash.report.selection import Drawn
 from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.summary import dimension_words
+from flexlash.tolerance.variation import Variation
 from flexlash.units import ARCMIN
 
 __all__ = ["write_sensitivity"]
@@ -19,7 +21,10 @@ __all__ = ["write_sensitivity"]
 _NAME = 30
 _TORNADO_ROWS = len(DIMENSIONS)
 _HEADER = 5 + max(_TORNADO_ROWS, 20)
-_CHART = (780, 410)
+_CHART_PLACE, _CHART_WIDTH, _CHART_HEIGHT = 6, 780, 410
+_NAME_WIDTH, _WIDTH, _GAP = 28.0, 9.7, 3.0
+_PIXELS = 73
+"""Width of a share's column."""
 
 
 def write_sensitivity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
@@ -27,15 +32,24 @@ def write_sensitivity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> N
     sheet = book.sheet("Sensitivity")
     sheet.write_string(0, 0, "What causes the spread", book.format("title"))
     sheet.set_row(0, 28)
-    sheet.set_column(0, 0, 28)
-    sheet.set_column(1, 2 * len(DIMENSIONS) + 2, 12)
+    sheet.set_column(0, 0, _NAME_WIDTH)
+    sheet.set_column(1, 2 * len(DIMENSIONS) + 2, _WIDTH)
+    rows = [(one.variant.name, one.variation) for one in outcome.computed.values() if one.variation is not None]
+    names = [name for name in DIMENSIONS if any(name in variation.shares for _, variation in rows)]
+    widths = [_NAME_WIDTH, *[_WIDTH] * len(names), _GAP, *[_WIDTH] * len(names)]
+    totals = len(names) + 2
     if drawn:
-        _write_tornado(book, sheet, drawn[0])
-    _write_shares(book, sheet, outcome)
+        apart = not fits(widths, SMALL)
+        width = min(_CHART_WIDTH, _PIXELS * (totals - 1 - _CHART_PLACE)) if apart else _CHART_WIDTH
+        _write_tornado(book, sheet, drawn[0], width)
+    _write_shares(book, sheet, rows, names)
+    sheet.set_column(totals - 1, totals - 1, _GAP)
+    print_readably(sheet, widths, breaks=[totals], least=SMALL)
+    sheet.repeat_rows(_HEADER)
     sheet.freeze_panes(0, 1)
 
 
-def _write_tornado(book: Book, sheet: Any, worst: Drawn) -> None:
+def _write_tornado(book: Book, sheet: Any, worst: Drawn, width: int) -> None:
     """Write and draw how far each dimension moves the backlash between its limits, the others in the middle."""
     variation = worst.computed.variation
     if variation is None or not variation.swings:
@@ -54,11 +68,13 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn) -> None:
         sheet.write_number(row, 2, high / ARCMIN, book.format("text", "arcmin"))
         sheet.write_number(row, 3, variation.shares[dimension], book.format("text", "share"))
         sheet.write_number(row, 4, variation.totals[dimension], book.format("text", "share"))
-    _draw_tornado(book, sheet, name, 3 + len(swings), sum(swings[0][1]) / 2 / ARCMIN)
+    chart = _tornado(book, name, 3 + len(swings), sum(swings[0][1]) / 2 / ARCMIN)
+    size, text = (width, _CHART_HEIGHT), f"Tornado chart of the worst variant, {name}"
+    book.insert(sheet, 3, _CHART_PLACE, chart, size=size, text=text)
 
 
-def _draw_tornado(book: Book, sheet: Any, name: str, last: int, middle: float) -> None:
-    """Draw the tornado beside its table; both bars of a dimension start at the middle."""
+def _tornado(book: Book, name: str, last: int, middle: float) -> Any:
+    """Return the tornado; both bars of a dimension start at the middle."""
     chart = book.chart("bar", f"Tornado of {name} [arcmin]")
     for place, label, colour in (
         (1, "at the lower limit", PALETTE["sky"]),
@@ -76,13 +92,11 @@ def _draw_tornado(book: Book, sheet: Any, name: str, last: int, middle: float) -
     # Every bar has its label: at its own choice Excel leaves out each second one of many.
     labels = {"label_position": "low", "interval_unit": 1, "num_font": {"size": 9}}
     chart.set_y_axis({"reverse": True, "crossing": "min", **labels})
-    book.insert(sheet, 3, 6, chart, size=_CHART, text=f"Tornado chart of the worst variant, {name}")
+    return chart
 
 
-def _write_shares(book: Book, sheet: Any, outcome: Outcome) -> None:
+def _write_shares(book: Book, sheet: Any, rows: Sequence[tuple[str, Variation]], names: Sequence[str]) -> None:
     """Write the shares of variance of every computed variant, one column per dimension that varies, to be filtered."""
-    rows = [(one.variant.name, one.variation) for one in outcome.computed.values() if one.variation is not None]
-    names = [name for name in DIMENSIONS if any(name in variation.shares for _, variation in rows)]
     right = len(names) + 1
     text = (
         "Share of each dimension in the variance of the backlash (first-order Sobol' index); what is missing to "
@@ -93,7 +107,6 @@ def _write_shares(book: Book, sheet: Any, outcome: Outcome) -> None:
     for place, name in enumerate(names, start=1):
         sheet.write_string(_HEADER, place, dimension_words(name), book.format("header"))
         sheet.write_string(_HEADER, place + right, f"{dimension_words(name)}, total", book.format("header"))
-    sheet.set_column(right, right, 3)
     sheet.set_row(_HEADER, 48)
     plain, share = book.format("text"), book.format("text", "share")
     for row, (variant, variation) in enumerate(rows, start=_HEADER + 1):

@@ -9,6 +9,7 @@ from xlsxwriter.utility import xl_col_to_name
 
 from flexlash.report.live import Live, when
 from flexlash.report.styles import Book
+from flexlash.report.wrapping import LINE_HEIGHT, lines_of, merged_width
 
 __all__ = ["FIRST_ROW", "Stored"]
 
@@ -17,6 +18,14 @@ FIRST_ROW = 2
 
 _HEADING = 9
 """Characters of a heading on one line."""
+
+_NAME, _NUMBER, _LONGEST = 24.0, 9.3, 40.0
+"""Widths of names and numbers, and of the longest texts."""
+
+_NOT_PRINTED = "Stored numbers, not meant for print: only the first rows and columns are printed."
+_PAGE = 110.0
+_PRINTED = 12
+"""Width of the columns and number of variants that are printed."""
 
 Row = Mapping[str, "str | float | None"]
 
@@ -59,12 +68,11 @@ class Stored:
 
     def write(self, book: Book, note: str) -> None:
         """Write the sheet."""
-        sheet = book.sheet(self.name)
-        sheet.write_string(0, 0, note, book.format("quiet"))
+        sheet = book.sheet(self.name, tab="stored")
+        self._write_note(book, sheet, f"{note} {_NOT_PRINTED}")
         for place, heading in enumerate(self.headings):
             sheet.write_string(1, place, heading, book.format("header"))
         sheet.set_row(1, 15.5 * max((1 + len(heading) // _HEADING for heading in self.headings), default=1))
-        sheet.set_column(0, 1, 24)
         text, number = book.format("text"), book.format("text", "general")
         for row, values in enumerate(self.rows, start=FIRST_ROW):
             for place, value in enumerate(values.values()):
@@ -73,5 +81,22 @@ class Stored:
                 elif value is not None:
                     sheet.write_number(row, place, value, number)
         sheet.freeze_panes(FIRST_ROW, 1)
-        sheet.repeat_rows(0, 1)
-        sheet.print_area(0, 0, max(FIRST_ROW, FIRST_ROW + len(self.rows) - 1), min(11, max(len(self.headings) - 1, 0)))
+
+    def _write_note(self, book: Book, sheet: Any, note: str) -> None:
+        """Write a note across the columns that are printed, and set their widths."""
+        widths: list[float] = []
+        while sum(widths) < _PAGE:
+            widths.append(self._width(len(widths)))
+        for place in range(max(len(widths), len(self.headings))):
+            sheet.set_column(place, place, self._width(place))
+        last = len(widths) - 1
+        sheet.merge_range(0, 0, 0, last, note, book.format("wrap"))
+        sheet.set_row(0, LINE_HEIGHT * lines_of(note, merged_width(widths)))
+        sheet.print_area(0, 0, FIRST_ROW + min(max(len(self.rows), 1), _PRINTED) - 1, last)
+
+    def _width(self, place: int) -> float:
+        """Return the width of a column: of its longest text, if it has one."""
+        heading = self.headings[place] if place < len(self.headings) else ""
+        texts = [len(value) for row in self.rows if isinstance(value := row.get(heading), str)]
+        least = _NAME if place < 1 else _NUMBER
+        return min(max([least, *texts]), _LONGEST)

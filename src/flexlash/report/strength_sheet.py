@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from flexlash.findings import shown
+from flexlash.report.labels import distinct_labels
+from flexlash.report.paper import SMALL, print_readably
 from flexlash.report.selection import Drawn
 from flexlash.report.styles import Book
 
 __all__ = ["write_strength"]
 
 _NAME = 30
+_NAME_WIDTH, _WIDTH = 28.0, 10.5
 _MEGAPASCAL = 1e6
 _COLUMNS = (
     ("wall_shear_MPa", "Wall shear [MPa]", "stress"),
@@ -54,13 +56,15 @@ def write_strength(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
     if len(drawn) < computed:
         text = f"The {len(drawn)} worst of {computed} variants; all are in Results."
         sheet.write_string(_HEADER - 1, 0, text, book.format("quiet"))
-    sheet.set_column(0, 0, 28)
-    sheet.set_column(1, len(_COLUMNS), 12)
+    sheet.set_column(0, 0, _NAME_WIDTH)
+    sheet.set_column(1, len(_COLUMNS), _WIDTH)
+    print_readably(sheet, [_NAME_WIDTH, *[_WIDTH] * len(_COLUMNS)], least=SMALL)
     for place, heading in enumerate(("Variant", *(heading for _, heading, _ in _COLUMNS))):
         sheet.write_string(_HEADER, place, heading, book.format("header"))
     sheet.set_row(_HEADER, 48)
-    for row, one in enumerate(drawn, start=_HEADER + 1):
-        sheet.write_string(row, 0, shown(one.row["variant"], longest=_NAME), book.format("text"))
+    labels = distinct_labels([one.row["variant"] for one in drawn], _NAME)
+    for row, (one, label) in enumerate(zip(drawn, labels, strict=True), start=_HEADER + 1):
+        sheet.write_string(row, 0, label, book.format("text"))
         for place, (key, _, number) in enumerate(_COLUMNS, start=1):
             value = one.row[key] if key in one.row else one.computed.nominal.get(key)
             if isinstance(value, float) and key.endswith("von_mises"):

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeGuard
 
 from xlsxwriter.utility import xl_cell_to_rowcol
 
 from flexlash.columns import ENTRY_SHEETS
 from flexlash.outcome import Outcome
 from flexlash.report.links import finding_list, result_rows, write_link
+from flexlash.report.paper import print_readably
 from flexlash.report.raw_cells import raw_text, write_raw
 from flexlash.report.styles import Book
+from flexlash.report.wrapping import LINE_HEIGHT, lines_of
 from flexlash.submission.headers import STATUS_HEADER, plain
 from flexlash.submission.reading.read import RawSheet, Unstored
 from flexlash.submission.tables import BUILT_IN_SHEETS, built_in_sheet
+from flexlash.submission.templating.template import TITLES
 
 __all__ = ["MOST_COMMENTS", "title_of", "write_submission"]
 
@@ -24,6 +27,10 @@ MOST_COMMENTS = 2000
 
 _COMMENT_WIDTH, _COMMENT_LINE, _PER_LINE = 320, 18, 48
 _MOST_LINES = 14
+_NAME, _LEAST, _MOST = 16.0, 11.0, 90.0
+"""Least widths of the first column and the others, and the greatest; longer texts are wrapped."""
+
+_TEMPLATE_TITLES = frozenset(title for title, _ in TITLES.values())
 _TITLES = {plain(name): "Submission" if name == "Variants" else name for name in ENTRY_SHEETS}
 
 
@@ -99,8 +106,10 @@ def _write_mirror(book: Book, mirror: _Mirror) -> None:
     places = [(row, place) for row, cells in raw.rows.items() for place in cells if place not in ignored]
     bottom = max((row for row, _ in places), default=1)
     last = max((place for _, place in places), default=1)
-    sheet.set_column(0, last, 14)
-    sheet.set_column(0, 0, 24)
+    widths = _widths(mirror, last)
+    for place, width in enumerate(widths):
+        sheet.set_column(place, place, width)
+    print_readably(sheet, widths)
     sheet.ignore_errors({"number_stored_as_text": f"A1:XFD{bottom}"})
     if header:
         sheet.set_row(header - 1, 48)
@@ -108,10 +117,14 @@ def _write_mirror(book: Book, mirror: _Mirror) -> None:
         sheet.repeat_rows(header - 1)
         sheet.autofilter(header - 1, 0, bottom - 1, last - 1)
     for row, cells in raw.rows.items():
+        if row > header:
+            _set_height(
+                sheet, row, [(cells[place], width) for place, width in enumerate(widths, start=1) if place in cells]
+            )
         for place, value in cells.items():
             if place not in ignored and not (isinstance(value, Unstored) and row < header):
                 guilt = mirror.guilty.get((row - 1, place - 1))
-                style = guilt.level if guilt else "header" if row == header else "text"
+                style = guilt.level if guilt else _style(mirror, row, place, value)
                 if place - 1 == mirror.linked and row in mirror.targets and isinstance(value, str):
                     link = book.format(style if guilt else "link")
                     write_link(
@@ -120,6 +133,38 @@ def _write_mirror(book: Book, mirror: _Mirror) -> None:
                 else:
                     write_raw(book, sheet, (row - 1, place - 1), value, style)
     _write_guilt(book, sheet, mirror)
+
+
+def _widths(mirror: _Mirror, last: int) -> list[float]:
+    """Return the widths of so many columns, each as wide as its longest text below the header."""
+    widths = [_NAME, *[_LEAST] * (last - 1)]
+    for row, cells in mirror.raw.rows.items():
+        if row > mirror.header:
+            for place, value in cells.items():
+                if isinstance(value, str) and place <= last:
+                    widths[place - 1] = min(max(widths[place - 1], len(value) + 2.0), _MOST)
+    return widths
+
+
+def _set_height(sheet: Any, row: int, cells: Sequence[tuple[object, float]]) -> None:
+    """Make a row high enough for its wrapped texts."""
+    lines = max((lines_of(value, width) for value, width in cells if _is_wrapped(value)), default=1)
+    if lines > 1:
+        sheet.set_row(row - 1, LINE_HEIGHT * lines)
+
+
+def _is_wrapped(value: object) -> TypeGuard[str]:
+    """Whether a value is a text longer than the widest column."""
+    return isinstance(value, str) and len(value) > _MOST - 2
+
+
+def _style(mirror: _Mirror, row: int, place: int, value: object) -> str:
+    """Return the format of a cell without fault; what stands above the header of our template looks as there."""
+    if row == mirror.header:
+        return "header"
+    if row < mirror.header and mirror.raw.rows.get(1, {}).get(1) in _TEMPLATE_TITLES:
+        return "title" if row == 1 and place == 1 else "label" if row == mirror.header - 1 else "quiet"
+    return "wrap" if _is_wrapped(value) else "text"
 
 
 def _write_guilt(book: Book, sheet: Any, mirror: _Mirror) -> None:

@@ -58,7 +58,7 @@ def write_compare(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
     count, total = min(len(drawn), BOXES), len(outcome.computed)
     which = f"All {total} computed variants, worst first" if total > 1 else "The only computed variant"
     if count < total:
-        which = f"The {count} worst of {total:,} computed variants, worst first"
+        which = f"The {count} worst of {total:,} computed variants, worst first (Ranking lists {len(drawn)})"
     for row, note in enumerate((f"{which}. {_NOTES[0]}", _NOTES[1]), start=1):
         sheet.write_string(row, 0, note, book.format("quiet"))
     for place, target, text in _LINKS:

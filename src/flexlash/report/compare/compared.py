@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexlash.arrays import Array
-from flexlash.findings import shown
+from flexlash.report.labels import distinct_labels
 from flexlash.report.selection import Drawn
 from flexlash.report.stored import Row, Stored
 from flexlash.tolerance.curves import CURVE_SCORES
@@ -34,10 +34,11 @@ def share_heading(kind: str) -> str:
 
 def compared_variants(drawn: Sequence[Drawn]) -> Stored:
     """Return the data sheet of the drawn variants."""
-    return Stored("Compared", [_figures(one) for one in drawn])
+    labels = distinct_labels([one.row["variant"] for one in drawn], _LABEL)
+    return Stored("Compared", [_figures(one, label) for one, label in zip(drawn, labels, strict=True)])
 
 
-def _figures(one: Drawn) -> Row:
+def _figures(one: Drawn, label: str) -> Row:
     """Return a variant's row: what Ranking shows of it, the parts of its box, its points in the disk share chart."""
     row, kind = one.row, one.computed.variant.flexspline_type
     low, median, high = (row[f"{key}_arcmin"] for key in ("p2_5", "p50", "p97_5"))
@@ -49,7 +50,7 @@ def _figures(one: Drawn) -> Row:
     lower, upper = min(max(lower, low), median), max(min(upper, high), median)
     return {
         "Variant": row["variant"],
-        "Label": shown(row["variant"], longest=_LABEL),
+        "Label": label,
         "P2.5": low,
         "P25": lower,
         "P50": median,

@@ -10,6 +10,7 @@ from flexlash.outcome import Outcome
 from flexlash.report.axes import axis_over
 from flexlash.report.compare.causes import Cause, cause_sentences, causes_of, left_out, mean_share, ranked_dimensions
 from flexlash.report.compare.compared import CONNECTED, share_heading
+from flexlash.report.labels import distinct_labels
 from flexlash.report.selection import Drawn
 from flexlash.report.stored import Stored
 from flexlash.report.styles import GRID, PALETTE, Book
@@ -17,14 +18,14 @@ from flexlash.summary import dimension_words
 
 __all__ = ["MAPPED", "write_contributions"]
 
-MAPPED = 40
+MAPPED = 30
 """Most variants that the heat map can hold and still be read."""
 
 _LABEL_WIDTH = 160
 _RIGHT_WIDTHS = (65, 70, 170, 90)
 """Widths [px] of the dimensions' names and of the columns over all variants."""
 
-_NARROW, _WIDE = 31, 70
+_NARROW, _WIDE = 30, 70
 """Least and greatest width [px] of a variant's column."""
 
 _SPARE = 64
@@ -80,7 +81,7 @@ def _write_heat(book: Book, sheet: Any, causes: Sequence[Cause], drawn: Sequence
     mapped = drawn[:MAPPED]
     right = 1 + len(mapped)
     sheet.write_string(top, 0, "Share of variance", book.format("header"))
-    labels = [shown(one.row["variant"], longest=_NAME) for one in mapped]
+    labels = distinct_labels([one.row["variant"] for one in mapped], _NAME)
     for place, label in enumerate(labels, start=1):
         sheet.write_string(top, place, label, book.format("turned"))
     every = f"of all {len(causes):,}"

@@ -7,8 +7,8 @@ from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
-from flexlash.findings import shown
 from flexlash.outcome import Outcome
+from flexlash.report.labels import distinct_labels
 from flexlash.report.links import result_rows, write_link
 from flexlash.report.live import Live, fill, place_of_name, put, when
 from flexlash.report.selection import Drawn
@@ -24,7 +24,7 @@ HEADER = 6
 FIRST_ROW = 7
 """Rows, from 0, of the base variant, of the headings and of the worst variant."""
 
-_WORDS = (("Rank", 8), ("Variant", 31), ("Verdict", 9), ("Units over the limit", 34))
+_WORDS = (("Rank", 6), ("Variant", 27), ("Verdict", 8), ("Units over the limit", 31))
 _FIGURES = {
     "P2.5": "p2_5_standard_error_arcmin",
     "P25": "p50_standard_error_arcmin",
@@ -41,7 +41,8 @@ _FIGURES = {
 DIFFERENCES = ("P50", "P97.5", "sd")
 """Figures of which the difference to the base variant is given."""
 
-_NAME = 30
+_NAME = 28
+_FIGURE_WIDTH, _CAUSE_WIDTH = 8.1, 20
 _CAUSE = len(_WORDS) + len(_FIGURES)
 _SHAPE = _CAUSE + 2
 _FIRST_DIFFERENCE = _SHAPE + 2
@@ -59,7 +60,7 @@ def column_of(heading: str) -> int:
 
 def write_ranking(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared: Stored) -> None:
     """Write the Ranking sheet; the base is the first variant submitted, if it is drawn."""
-    sheet = book.sheet("Ranking")
+    sheet = book.sheet("Ranking", tab="entry")
     sheet.write_string(0, 0, "Ranking, worst first, and difference to a base variant", book.format("title"))
     sheet.set_row(0, 28)
     count, total = len(drawn), len(outcome.computed)
@@ -77,8 +78,9 @@ def write_ranking(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
         first = min(range(count), key=lambda place: drawn[place].computed.variant.row)
         base = _write_base(book, sheet, compared, first)
         places = result_rows(outcome)
+        labels = distinct_labels([one.row["variant"] for one in drawn], _NAME)
         for rank, one in enumerate(drawn):
-            _write_words(book, sheet, rank, one, places[one.computed.variant.row])
+            _write_words(book, sheet, rank, one, (labels[rank], places[one.computed.variant.row]))
             _write_figures(book, sheet, rank, one, compared)
             _write_differences(book, sheet, rank, (one, compared), base)
         _colour(book, sheet, FIRST_ROW + count - 1)
@@ -101,9 +103,8 @@ def _write_headings(book: Book, sheet: Any) -> None:
     sheet.set_row(HEADER, 48)
     for place, (_, width) in enumerate(_WORDS):
         sheet.set_column(place, place, width)
-    sheet.set_column(len(_WORDS), _CAUSE - 1, 8.7)
-    sheet.set_column(_CAUSE, _CAUSE, 21)
-    sheet.set_column(_CAUSE + 1, _COLUMNS - 1, 8.7)
+    sheet.set_column(len(_WORDS), _COLUMNS - 1, _FIGURE_WIDTH)
+    sheet.set_column(_CAUSE, _CAUSE, _CAUSE_WIDTH)
     for first, last, text in (
         (len(_WORDS), _CAUSE - 1, "Backlash over the tolerances"),
         (_CAUSE, _CAUSE + 1, "Cause"),
@@ -139,12 +140,12 @@ def _write_base(book: Book, sheet: Any, compared: Stored, first: int) -> dict[st
     return cells
 
 
-def _write_words(book: Book, sheet: Any, rank: int, one: Drawn, result: int) -> None:
-    """Write what is said of a variant in words; its name leads to its row of Results."""
+def _write_words(book: Book, sheet: Any, rank: int, one: Drawn, link: tuple[str, int]) -> None:
+    """Write what is said of a variant in words; its label leads to its row of Results."""
     row, verdict = FIRST_ROW + rank, light(one.row)
     sheet.write_number(row, 0, rank + 1, book.format("small figure", "0"))
-    name = shown(one.row["variant"], longest=_NAME)
-    write_link(sheet, row, 1, f"Results!A{result + 1}", name, style=book.format("link"))
+    label, result = link
+    write_link(sheet, row, 1, f"Results!A{result + 1}", label, style=book.format("link"))
     sheet.write_string(row, 2, verdict, book.format(COLOURS[verdict]))
     if one.row["probability_over_limit"] is not None:
         sheet.write_string(row, 3, share_words(one.row), book.format("indented"))

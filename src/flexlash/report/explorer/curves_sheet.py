@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from flexlash.arrays import Array
-from flexlash.findings import shown
+from flexlash.report.labels import distinct_labels
 from flexlash.report.selection import Drawn
 from flexlash.report.stored import Stored
 from flexlash.summary import dimension_words, share_words
@@ -57,14 +57,15 @@ def error_heading(score: float) -> str:
 
 def stored_curves(drawn: Sequence[Drawn]) -> Stored:
     """Return the data sheet of the drawn variants, worst first."""
-    return Stored("Curves", [dict(_entries(one)) for one in drawn])
+    labels = distinct_labels([one.row["variant"] for one in drawn], _LABEL)
+    return Stored("Curves", [dict(_entries(one, label)) for one, label in zip(drawn, labels, strict=True)])
 
 
-def _entries(one: Drawn) -> Iterator[tuple[str, str | float | None]]:
+def _entries(one: Drawn, label: str) -> Iterator[tuple[str, str | float | None]]:
     """Yield a variant's headings and values in order."""
     row, curve = one.row, one.curve
     yield "Variant", row["variant"]
-    yield "Label", shown(row["variant"], longest=_LABEL)
+    yield "Label", label
     yield "Over limit", None if row["backlash_limit_arcmin"] is None else share_words(row)
     yield "P2.5", row["p2_5_arcmin"]
     yield "P2.5 to P97.5", row["p97_5_arcmin"] - row["p2_5_arcmin"]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from flexlash.assessment import Computed
 from flexlash.columns import DIMENSIONS, MATERIALS, SETTINGS, VARIANTS, Column
 from flexlash.report.stored import Stored
-from flexlash.units import ARCMIN
+from flexlash.units import ARCMIN, as_entered
 from flexlash.variant import Variant
 
 __all__ = ["ENTERED", "INPUTS_NOTE", "PROGRAM", "stored_inputs"]
@@ -100,9 +100,5 @@ def _sizes(variant: Variant, lost_motion_percent: float) -> dict[str, float | No
 
 
 def _printed(size: float | None, column: Column) -> float | None:
-    """Return a size as it was entered: with fifteen digits where these give the same size, else with all."""
-    if size is None:
-        return None
-    unit = column.si_unit.si
-    short = float(f"{size / unit:.15g}")
-    return short if short * unit == size else size / unit
+    """Return a size as it was entered, or None for a blank."""
+    return None if size is None else as_entered(size, column.si_unit.si)
