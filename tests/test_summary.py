@@ -1,4 +1,4 @@
-"""The outcome in words: shares never a bare 0 or 100 %, no more digits than are known, what a reader must know."""
+"""The outcome in words: what was computed, what a reader must know of it, what to do next."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ import re
 
 import polars as pl
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from flexlash.findings import Finding, cell_ranges
 from flexlash.pipeline import check, run
@@ -15,107 +13,11 @@ from flexlash.summary import (
     finding_lines,
     over_limit_lines,
     points_words,
-    rounded,
-    share_words,
     spread_notes,
     summary_lines,
     to_fix_words,
     worst_first,
 )
-from flexlash.tolerance.capability import clopper_pearson
-
-thorough = settings(deadline=None, max_examples=300, derandomize=True)
-
-
-def words_of(value, low, high):
-    """Return the words of a share with its interval."""
-    keys = ("probability_over_limit", "probability_over_limit_low", "probability_over_limit_high")
-    return share_words(dict(zip(keys, (value, low, high), strict=True)))
-
-
-SHARES = {
-    "exact: none": ((0.0, 0.0, 0.0), "none"),
-    "exact: all": ((1.0, 1.0, 1.0), "all"),
-    "none seen": ((0.0, 0.0, 1.1e-4), "at most 110 ppm"),
-    "none seen of few": ((0.0, 0.0, 0.0143), "at most 1.43 %"),
-    "none seen of very many": ((0.0, 0.0, 4.2e-8), "at most 42 ppb"),
-    "none told": ((0.0, 0.0, 1e-15), "practically none"),
-    "all seen": ((1.0, 0.9999, 1.0), "all but at most 100 ppm"),
-    "all seen of few": ((1.0, 0.98, 1.0), "all but at most 2 %"),
-    "all told": ((1.0, 1 - 1e-15, 1.0), "practically all"),
-    "per cent": ((0.412, 0.407, 0.417), "41.2 % (40.7 to 41.7 %)"),
-    "per cent, better known": ((0.41234, 0.4122, 0.4125), "41.23 % (41.22 to 41.25 %)"),
-    "most": ((0.985, 0.98, 0.99), "98.5 % (98.0 to 99.0 %)"),
-    "ppm": ((2e-4, 1e-4, 4e-4), "200 ppm (100 to 400 ppm)"),
-    "ppm, better known": ((1.234e-6, 1.2e-6, 1.27e-6), "1.23 ppm (1.20 to 1.27 ppm)"),
-    "ppb": ((3e-9, 2e-9, 5e-9), "3 ppb (2 to 5 ppb)"),
-    "part of a ppb": ((1.01e-11, 0.96e-11, 1.07e-11), "0.0101 ppb (0.0096 to 0.0107 ppb)"),
-    "less than is told": ((1e-14, 1e-15, 1e-13), "practically none"),
-    "all but ppm": ((1 - 2e-5, 1 - 4e-5, 1 - 1e-5), "all but 20 ppm (10 to 40 ppm)"),
-    "all but less than is told": ((1 - 1e-14, 1 - 1e-13, 1.0), "practically all"),
-}
-
-
-@pytest.mark.parametrize("case", SHARES)
-def test_a_share_in_words(case):
-    """A share is told in per cent, ppm or ppb with its interval and with no more digits than that justifies."""
-    numbers, words = SHARES[case]
-    assert words_of(*numbers) == words
-
-
-@pytest.mark.parametrize(
-    ("share", "digits"), [(0.0465, r"4\.\d+ %"), (0.8446, r"84\.\d+ %"), (3.2e-5, r"3[12]\.?\d* ppm")]
-)
-def test_a_share_that_is_known_exactly_is_told(share, digits):
-    """A share whose interval is a point, as where one dimension scatters alone, is told and not called all or none."""
-    assert re.match(digits, words_of(share, share, share))
-
-
-def _first_number(words):
-    return float(re.search(r"[\d.]+", words)[0])
-
-
-@pytest.mark.parametrize("total", [2**power for power in range(4, 23)])
-def test_a_counted_share_is_never_a_bare_zero_or_hundred(total):
-    """Whatever count of whatever number of points, its words begin with neither 0 nor 100 %."""
-    few = range(min(total, 40) + 1)
-    for seen in (*few, *(total - count for count in few), total // 3):
-        words = words_of(seen / total, *clopper_pearson(seen, total))
-        assert _first_number(words) > 0
-        assert not re.match(r"100(\.0*)? %", words)
-        assert re.search(r"\d (%|ppm|ppb)", words)
-
-
-@thorough
-@given(power=st.floats(-14, -0.31), relative=st.floats(1e-4, 0.5), mirrored=st.booleans())
-def test_the_words_of_a_share_are_right(power, relative, mirrored):
-    """A share of any size, told by its words, lies within its own interval of the share itself."""
-    share = 10.0**power
-    low, high = share * (1 - relative), share * (1 + relative)
-    words = words_of(1 - share, 1 - high, 1 - low) if mirrored else words_of(share, low, high)
-    if words.startswith("practically"):
-        assert words == ("practically all" if mirrored else "practically none")
-        assert high < 1.001e-12
-        return
-    factor = {"%": 1e-2, "ppm": 1e-6, "ppb": 1e-9}[words.removesuffix(")").split()[-1]]
-    told = _first_number(words) * factor
-    if mirrored and not words.startswith("all but"):
-        assert abs(1 - told - share) <= max(relative * share, 1e-4) + 1e-15  # four digits are told at most
-        assert share >= 0.999e-3
-    else:
-        assert words.startswith("all but") == mirrored
-        # Rounding of 1 − share itself leaves 1.1e-16.
-        assert abs(told - share) <= relative * share + 3e-16
-
-
-def test_numbers_in_words_have_no_more_digits_than_their_error():
-    """A number is rounded at the first digit of its standard error, and to five digits where it has none."""
-    assert rounded(3.684217, 0.0021) == "3.684"
-    assert rounded(3.684217, 0.0099) == "3.684"
-    assert rounded(3.684217, 0.01) == "3.68"
-    assert rounded(3.684217, 3.0) == rounded(3.684217, 30.0) == "4"
-    assert rounded(3.684217, 0.0) == rounded(3.684217, float("nan")) == "3.6842"
-    assert rounded(3.684217, 1e-12) == "3.68421700"
 
 
 def test_cells_are_drawn_together():
@@ -142,12 +44,12 @@ def three(table, sound):
 
 
 def test_points_in_words(three, table, sound):
-    """Lines or points per variant are told with thousands apart, as a range where variants differ."""
+    """Lines or points per variant are told in one way of writing thousands, as a range where variants differ."""
     assert points_words(three) == "64 lines"
-    assert points_words(_replaced(three, spread_points=[64.0, 16384.0, 1024.0])) == "64 to 16,384 lines"
+    assert points_words(_replaced(three, spread_points=[64.0, 16384.0, 1024.0])) == "64 to 16384 lines"
     assert points_words(_replaced(three, spread_points=[None, 128.0, None])) == "128 lines"
     assert points_words(_replaced(three, spread_points=[None, None, None])) == "no points"
-    assert points_words(run(table([sound]), method="sobol")) == "32,768 points"
+    assert points_words(run(table([sound]), method="sobol")) == "32768 points"
     assert points_words(run(table([sound]), method="random", samples=100)) == "128 points"
 
 
@@ -170,10 +72,10 @@ def test_nothing_is_said_of_a_spread_as_expected(table, sound):
 def test_notes_name_the_first_row_and_count_the_others(three):
     """A note on the spread is told for the first row that has one, with the number of others that have one too."""
     one = list(spread_notes(_replaced(three, spread_note=[None, "why", None])))
-    assert one[0] == "Spread of v1: why."
+    assert one[0] == "Spread of “v1”: why."
     two = list(spread_notes(_replaced(three, spread_note=["because", "why", None])))
-    assert two[0] == "Spread of v0: because and 1 more, see Results."
-    assert "Spread of v0: because and 1 more, see Results." in list(summary_lines(three, "x.csv", ran=True))
+    assert two[0] == "Spread of “v0”: because and 1 more, see Results."
+    assert "Spread of “v0”: because and 1 more, see Results." in list(summary_lines(three, "x.csv", ran=True))
 
 
 def test_cross_check_is_told(three):
@@ -213,6 +115,18 @@ def test_over_limit_lines_name_the_worst(table, sound):
     assert [line.split(":")[0] for line in lines[1:]] == ["  v0", "  v1", "  v2"]
     for line in lines[1:]:
         assert re.search(r": \d\d\.\d+ % \(\d\d\.\d+ to \d\d\.\d+ %\) of units are over 3\.6[678]′\.$", line)
+
+
+def test_all_units_over_their_limit_are_no_part_of_them(table, sound, tmp_path):
+    """Where no unit, or hardly one, is within the limit the line says that all units are over, not all of units."""
+    outcome = run(table([{**sound, "backlash_limit_arcmin": 3.0}]), samples=64)
+    assert list(over_limit_lines(outcome))[1] == "  B3-160: practically all units are over 3′."
+    tolerances = tmp_path / "tolerances.csv"
+    tolerances.write_text(
+        "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n", encoding="utf-8"
+    )
+    outcome = run(table([{**sound, "backlash_limit_arcmin": 3.6}]), tolerances=tolerances)
+    assert list(over_limit_lines(outcome))[1] == "  B3-160: all units are over 3.6′."
 
 
 def test_a_check_says_nothing_of_the_spread(table, sound):

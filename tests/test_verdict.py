@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 
 from flexlash.pipeline import run
-from flexlash.report.verdict import COLOURS, NO_VERDICT, RULES, light, verdict_counts
+from flexlash.report.verdict import COLOURS, NO_VERDICT, RULES, firm, light, straddled, verdict_counts
+
+SHARES = {"green": 0.0, "amber": 0.01, "red": 0.5, NO_VERDICT: None}
 
 
 @pytest.mark.parametrize(
@@ -13,7 +15,10 @@ from flexlash.report.verdict import COLOURS, NO_VERDICT, RULES, light, verdict_c
 )
 def test_verdict_follows_its_rule(limit, verdict):
     """Green, amber and red follow P97.5 and P99.865 against the limit; a percentile at the limit keeps it."""
-    assert light({"p97_5_arcmin": 2.0, "p99_865_arcmin": 3.0, "backlash_limit_arcmin": limit}) == verdict
+    share = SHARES[verdict]
+    row = {"p97_5_arcmin": 2.0, "p99_865_arcmin": 3.0, "backlash_limit_arcmin": limit}
+    row |= {f"probability_over_limit_{end}": share for end in ("low", "high")}
+    assert light(row) == verdict
     assert verdict in COLOURS
     assert (verdict in RULES) == (limit is not None)
 
@@ -25,3 +30,40 @@ def test_verdicts_are_counted(table, sound):
     outcome = run(table([*rows, {**sound, "variant": "bad", "torque_Nm": ""}]))
     assert verdict_counts(outcome) == {"red": 1, "amber": 1, "green": 2, NO_VERDICT: 1}
     assert verdict_counts(run(table([{**sound, "torque_Nm": ""}]))) == {}
+
+
+INTERVALS = {
+    "green, known well": ("green", 1e-4, 2e-4, "green", []),
+    "green, up to its bound": ("green", 0.0, 0.00134, "green", []),
+    "green, maybe amber": ("green", 1e-3, 2e-3, "green?", [0.00135]),
+    "green, maybe even red": ("green", 0.0, 0.056, "green?", [0.00135, 0.025]),
+    "amber, known well": ("amber", 2e-3, 0.02, "amber", []),
+    "amber, maybe green": ("amber", 1e-3, 0.02, "amber?", [0.00135]),
+    "amber, maybe red": ("amber", 2e-3, 0.03, "amber?", [0.025]),
+    "red, known well": ("red", 0.03, 0.04, "red", []),
+    "red, maybe amber": ("red", 0.02, 0.04, "red?", [0.025]),
+    "red, of which all were seen": ("red", 0.944, 1.0, "red", []),
+    "nothing scatters": ("red", 1.0, 1.0, "red", []),
+    "at its bound, exactly": ("green", 0.00135, 0.00135, "green", []),
+}
+
+
+@pytest.mark.parametrize("case", INTERVALS)
+def test_a_verdict_that_more_points_may_change_has_a_mark(case):
+    """Where the 95 % interval of the share lies on both sides of a bound the verdict has a ? and keeps its colour."""
+    verdict, low, high, told, bounds = INTERVALS[case]
+    tails = {"green": (1.0, 1.0), "amber": (1.0, 3.0), "red": (3.0, 3.0)}[verdict]
+    row = {"backlash_limit_arcmin": 2.0, "p97_5_arcmin": tails[0], "p99_865_arcmin": tails[1]}
+    row |= {"probability_over_limit_low": low, "probability_over_limit_high": high}
+    assert light(row) == told
+    assert straddled(row) == bounds
+    assert firm(told) == verdict
+    assert COLOURS[told] == COLOURS[verdict]
+
+
+def test_few_points_settle_no_green(table, sound):
+    """Of 64 draws none over the limit is no proof of 0.135 %, whereas 64 lines are; counts keep both apart."""
+    rows = [{**sound, "variant": f"v{place}", "backlash_limit_arcmin": limit} for place, limit in enumerate((5, 3, ""))]
+    few = verdict_counts(run(table(rows), method="random", samples=64))
+    assert few == {"green?": 1, "red": 1, NO_VERDICT: 1}
+    assert verdict_counts(run(table(rows))) == {"green": 1, "red": 1, NO_VERDICT: 1}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -10,16 +9,20 @@ from typing import Any
 
 from flexlash.columns import DIMENSIONS
 from flexlash.findings import CATALOGUE, Finding, cell_ranges, shown
+from flexlash.number_words import ALL_UNITS, angle_words, rounded, share_words
 from flexlash.outcome import Outcome
 from flexlash.submission.mending.repair import Repair
 
 __all__ = [
     "angle_words",
+    "are",
     "counted",
     "dimension_words",
     "finding_lines",
     "listed",
+    "points_range",
     "points_words",
+    "quoted",
     "repair_lines",
     "rounded",
     "share_words",
@@ -136,6 +139,16 @@ def counted(count: int, what: str) -> str:
     return f"{count} {what}{'' if count == 1 else 's'}"
 
 
+def are(count: int) -> str:
+    """Return the verb for so many."""
+    return "is" if count == 1 else "are"
+
+
+def quoted(name: str) -> str:
+    """Return a name as it stands in a sentence."""
+    return f"“{name}”"
+
+
 def listed(words: Sequence[str], most: int) -> str:
     """Return the first few of a list as a sentence names them, and how many more there are.
 
@@ -156,17 +169,25 @@ def over_limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
     over = [row for row in rows if row["p97_5_arcmin"] > row["backlash_limit_arcmin"]]
     yield f"P97.5 is over the backlash limit for {len(over)} of {len(rows)} variants with a limit."
     for row in over[:most]:
-        yield f"  {row['variant']}: {share_words(row)} of units are over {row['backlash_limit_arcmin']:g}′."
+        words = share_words(row)
+        units = f"{words} units" if words in ALL_UNITS else f"{words} of units"
+        yield f"  {row['variant']}: {units} are over {row['backlash_limit_arcmin']:g}′."
 
 
 def points_words(outcome: Outcome) -> str:
     """Return how many lines or points stand behind the spread of a variant."""
-    counts = [int(count) for count in outcome.results["spread_points"].drop_nulls().to_list()]
-    if not counts:
-        return "no points"
-    what = "lines" if outcome.settings.method == "line" else "points"
-    least, most = min(counts), max(counts)
-    return f"{least:,} {what}" if least == most else f"{least:,} to {most:,} {what}"
+    counts = outcome.results["spread_points"].drop_nulls().to_list()
+    return points_range(counts, "lines" if outcome.settings.method == "line" else "points") if counts else "no points"
+
+
+def points_range(counts: Sequence[float], what: str) -> str:
+    """Return how many lines or points there are, from the fewest to the most.
+
+    >>> points_range([64.0, 16384.0], "lines"), points_range([64.0], "points")
+    ('64 to 16384 lines', '64 points')
+    """
+    least, most = int(min(counts)), int(max(counts))
+    return f"{least} {what}" if least == most else f"{least} to {most} {what}"
 
 
 def spread_notes(outcome: Outcome) -> Iterator[str]:
@@ -176,7 +197,7 @@ def spread_notes(outcome: Outcome) -> Iterator[str]:
     if noted.height:
         first = noted.row(0, named=True)
         more = f" and {noted.height - 1} more, see Results" if noted.height > 1 else ""
-        yield f"Spread of {shown(first['variant'], longest=_NAME)}: {first['spread_note']}{more}."
+        yield f"Spread of {quoted(shown(first['variant'], longest=_NAME))}: {first['spread_note']}{more}."
     if "cross_check" in results.columns:
         checked = results.filter(results["cross_check"].is_not_null())
         agreeing = (checked["cross_check"] == "agrees").sum()
@@ -199,89 +220,3 @@ def worst_first(outcome: Outcome) -> list[dict[str, Any]]:
         return share, row["p99_865_arcmin"] / (limit or 1.0)
 
     return sorted(rows, key=badness, reverse=True)
-
-
-def share_words(row: dict[str, Any]) -> str:
-    """Return the probability over limit of a Results row with its interval, never as a bare 0 or 100 %.
-
-    >>> share_words({"probability_over_limit": 0.0, "probability_over_limit_low": 0.0,
-    ...              "probability_over_limit_high": 1.1e-4})
-    'at most 110 ppm'
-    >>> share_words({"probability_over_limit": 0.412, "probability_over_limit_low": 0.407,
-    ...              "probability_over_limit_high": 0.417})
-    '41.2 % (40.7 to 41.7 %)'
-    """
-    value, low, high = (row[f"probability_over_limit{end}"] for end in ("", "_low", "_high"))
-    if low == high and value in (0, 1):
-        return "all" if value else "none"
-    if value == 0:
-        return _at_most(high)
-    if value == 1:
-        return _ALL if 1 - low < _LEAST else f"all but {_at_most(1 - low)}"
-    if 1 - value < _RARE:
-        return _ALL if 1 - low < _LEAST else f"all but {_interval(1 - value, 1 - high, 1 - low)}"
-    return _interval(value, low, high)
-
-
-_UNITS = ((1.0, 100.0, " %"), (1e-3, 1e6, " ppm"), (1e-7, 1e9, " ppb"))
-"""Shares below the first number are told in the unit, which is the factor times the share."""
-
-_RARE = 1e-3
-_FINEST = 1e-4
-"""Part of a share that is not told in words, however well it is known."""
-
-_LEAST = 1e-12
-_NONE, _ALL = "practically none", "practically all"
-"""What is said of shares below the least that is told, 0.001 ppb."""
-
-
-def _unit(share: float) -> tuple[float, str]:
-    """Return factor and name of the unit in which a share is told."""
-    return [(factor, name) for most, factor, name in _UNITS if share < most or most == 1][-1]
-
-
-def _interval(value: float, low: float, high: float) -> str:
-    """Return a share with its interval, in the unit of its upper end."""
-    if high < _LEAST:
-        return _at_most(high)
-    factor, unit = _unit(high)
-    if low == high:
-        return _share(value)
-    half = max(min((high - low) / 2, value, 1 - value), value * _FINEST) * factor
-    words = [rounded(end * factor, half) for end in (value, low, high)]
-    if words[1] == words[2]:
-        return f"{words[0]}{unit}"
-    return f"{words[0]}{unit} ({words[1]} to {words[2]}{unit})"
-
-
-def _at_most(share: float) -> str:
-    """Return the bound of a share of which none was seen."""
-    return _NONE if share < _LEAST else f"at most {_share(share)}"
-
-
-def _share(share: float) -> str:
-    """Return one bound in per cent, ppm or ppb."""
-    factor, unit = _unit(share)
-    return f"{share * factor:.3g}{unit}"
-
-
-def rounded(value: float, error: float) -> str:
-    """Return a number with no more digits than its standard error justifies.
-
-    >>> rounded(3.684217, 0.0021), rounded(3.684217, 0.0), rounded(41.23, 0.3)
-    ('3.684', '3.6842', '41.2')
-    """
-    if not error > 0:
-        return f"{value:.5g}"
-    digits = max(0, min(8, -math.floor(math.log10(error))))
-    return f"{value:.{digits}f}"
-
-
-def angle_words(value: float, error: float | None = None) -> str:
-    """Return an angle [arcmin] in four digits, or fewer where its standard error is greater.
-
-    >>> angle_words(6.261963, 1e-6), angle_words(6.261963, 0.02), angle_words(0.0123456)
-    ('6.262′', '6.26′', '0.01235′')
-    """
-    glance = 10.0 ** (math.floor(math.log10(value)) - 3) if value > 0 else 0.0
-    return f"{rounded(value, max(error or 0.0, glance))}′"

@@ -1,4 +1,4 @@
-"""The verdict on a variant, its rule, and how many variants have which."""
+"""The verdict on a variant, its rule, whether it is settled, and how many variants have which."""
 
 from __future__ import annotations
 
@@ -7,10 +7,13 @@ from typing import Any
 
 from flexlash.outcome import Outcome
 
-__all__ = ["COLOURS", "NO_VERDICT", "RULES", "light", "verdict_counts"]
+__all__ = ["BOUNDS", "COLOURS", "NO_VERDICT", "RULES", "UNSETTLED", "firm", "light", "straddled", "verdict_counts"]
 
 NO_VERDICT = "–"
 """What stands in the place of a verdict where there is no limit."""
+
+UNSETTLED = "?"
+"""What follows a verdict that further points may change."""
 
 RULES = {
     "red": "fewer than 97.5 % of units within the limit",
@@ -19,24 +22,51 @@ RULES = {
 }
 """The rule of each verdict, in words."""
 
-COLOURS = {"red": "error", "amber": "warning", "green": "ok", NO_VERDICT: "text"}
-"""The cell format of each verdict."""
+_FORMATS = {"red": "error", "amber": "warning", "green": "ok"}
+
+COLOURS = {**_FORMATS, **{f"{verdict}{UNSETTLED}": look for verdict, look in _FORMATS.items()}, NO_VERDICT: "text"}
+"""The cell format of each verdict, settled or not."""
+
+BOUNDS = {"green": 0.00135, "amber": 0.025}
+"""Greatest share of units over the limit that each verdict allows; red allows any."""
+
+_KEYS = (
+    "backlash_limit_arcmin",
+    "p97_5_arcmin",
+    "p99_865_arcmin",
+    "probability_over_limit_low",
+    "probability_over_limit_high",
+)
 
 
 def light(row: dict[str, Any]) -> str:
-    """Return a Results row's verdict: green, amber, red, or a dash without a limit."""
-    return _verdict(row["backlash_limit_arcmin"], row["p97_5_arcmin"], row["p99_865_arcmin"])
+    """Return a Results row's verdict: green, amber or red, with ? where it is not settled; a dash without a limit."""
+    return _verdict(*(row[key] for key in _KEYS))
+
+
+def firm(verdict: str) -> str:
+    """Return a verdict without its ?."""
+    return verdict.removesuffix(UNSETTLED)
+
+
+def straddled(row: dict[str, Any]) -> list[float]:
+    """Return the shares at which the verdict changes that the 95 % interval of a row's share has on both sides."""
+    low, high = row["probability_over_limit_low"], row["probability_over_limit_high"]
+    return [] if low is None or high is None else _straddled(low, high)
 
 
 def verdict_counts(outcome: Outcome) -> Counter[str]:
-    """Return how many computed variants have each verdict."""
-    columns = (outcome.results[f"{key}_arcmin"].to_list() for key in ("backlash_limit", "p97_5", "p99_865"))
+    """Return how many computed variants have each verdict; those with ? are counted apart."""
+    columns = (outcome.results[key].to_list() for key in _KEYS)
     return Counter(_verdict(*numbers) for numbers in zip(*columns, strict=True) if numbers[1] is not None)
 
 
-def _verdict(limit: float | None, tail: float, far_tail: float) -> str:
-    if limit is None:
+def _verdict(limit: float | None, tail: float, far_tail: float, low: float | None, high: float | None) -> str:
+    if limit is None or low is None or high is None:
         return NO_VERDICT
-    if far_tail <= limit:
-        return "green"
-    return "amber" if tail <= limit else "red"
+    found = "green" if far_tail <= limit else "amber" if tail <= limit else "red"
+    return f"{found}{UNSETTLED}" if _straddled(low, high) else found
+
+
+def _straddled(low: float, high: float) -> list[float]:
+    return [share for share in BOUNDS.values() if low <= share < high]

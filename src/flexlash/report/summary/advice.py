@@ -3,25 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from typing import Any, TypeAlias
+from collections.abc import Iterator
+from typing import Any
 
 from flexlash.columns import DIMENSIONS
-from flexlash.findings import shown, spelled_out
-from flexlash.outcome import Outcome
+from flexlash.findings import spelled_out
+from flexlash.number_words import angle_words, share_words
 from flexlash.remedies import Halving, Remedy
-from flexlash.report.verdict import verdict_counts
-from flexlash.summary import angle_words, dimension_words, listed, share_words
+from flexlash.report.summary.told import Row, Told
+from flexlash.report.verdict import BOUNDS, straddled
+from flexlash.summary import counted, dimension_words
 
 __all__ = ["stiffening", "tightening"]
-
-Row: TypeAlias = dict[str, Any]
-
-_NAME = 30
-"""Most characters of a name in a sentence."""
-
-_NAMED = 3
-"""Most variants that a sentence names."""
 
 _LEVERS = 2
 """Most dimensions named by which a variant gets stiffer."""
@@ -29,49 +22,70 @@ _LEVERS = 2
 _RARE = 1e-3
 """Shares nearer to none or all than this are told in ppm."""
 
+_WORTH = 0.1
+"""Part of the way to green that half a tolerance must bring to be worth its mention."""
+
 _LEAST_SLOPE = 0.1
 """Per cent of backlash for one per cent of a dimension below which that dimension is no lever."""
 
 
-def tightening(outcome: Outcome, failing: Sequence[Row]) -> Iterator[str]:
+def tightening(told: Told) -> Iterator[str]:
     """Yield which tolerance to halve and what that brings, or why no tolerance helps, or that none needs to."""
-    if not failing:
-        if verdict_counts(outcome)["green"]:
-            yield "Nothing: no variant with a limit needs a tighter tolerance or a stiffer part."
+    if not told.failing:
+        if told.judged:
+            yield from _nothing(told)
         return
-    hopeless = [row for row in failing if row["p50_arcmin"] > row["backlash_limit_arcmin"]]
+    hopeless = [row for row in told.failing if row["p50_arcmin"] > row["backlash_limit_arcmin"]]
     if hopeless:
-        names = listed([shown(row["variant"], longest=_NAME) for row in hopeless], _NAMED)
+        names = told.names([row["variant"] for row in hopeless])
         whose = "its backlash is" if len(hopeless) == 1 else "their backlash is"
         yield f"Tighter tolerances cannot help {names}: {whose} over the limit for half of the units or more."
-    for remedy in outcome.remedies:
+    for remedy in told.outcome.remedies:
         if remedy.halvings:
-            yield from _halvings(remedy, _row(remedy, failing))
+            yield _halvings(told, remedy)
 
 
-def stiffening(outcome: Outcome, failing: Sequence[Row]) -> Iterator[str]:
+def stiffening(told: Told) -> Iterator[str]:
     """Yield how the worst red variants become stiffer, and by which wall they would keep their limit."""
-    for remedy in outcome.remedies:
+    remedies = told.outcome.remedies
+    for remedy in remedies:
         if remedy.thickening is not None or not remedy.halvings:
-            yield from _levers(remedy, _row(remedy, failing))
+            yield from _levers(told, remedy)
             yield from _thickening(remedy)
-    if any(remedy.thickening and remedy.thickening.wanted for remedy in outcome.remedies):
+    if any(remedy.thickening and remedy.thickening.wanted for remedy in remedies):
         yield "How the wave generator bends a thicker wall is not judged here."
 
 
-def _row(remedy: Remedy, failing: Sequence[Row]) -> Row:
+def _nothing(told: Told) -> Iterator[str]:
+    """Yield that nothing is to be changed, as far as that is settled."""
+    unsettled = sum(bool(straddled(row)) for row in told.judged)
+    if unsettled:
+        yield f"Nothing so far: no variant is found to fail, but {counted(unsettled, 'verdict')} may change."
+    else:
+        yield "Nothing: no variant with a limit needs a tighter tolerance or a stiffer part."
+
+
+def _row(told: Told, remedy: Remedy) -> Row:
     """Return the Results row that a remedy is for."""
-    return next(row for row in failing if row["variant"] == remedy.variant)
+    return next(row for row in told.failing if row["variant"] == remedy.variant)
 
 
-def _halvings(remedy: Remedy, row: Row) -> Iterator[str]:
-    """Yield what half the tolerance of one dimension, or of all, would leave over the limit."""
-    first, *others = remedy.halvings
-    name = shown(remedy.variant, longest=_NAME)
-    yield (
-        f"Halving the tolerance of {_halved(first)} would bring the units of {name} over the limit from "
-        f"{_share(row)} to {_share(first.over)}"
-        + "".join(f"; of {_halved(other)}, to {_share(other.over)}" for other in others)
+def _halvings(told: Told, remedy: Remedy) -> str:
+    """Return what half the tolerance of one dimension, or of all, would leave over the limit."""
+    name, row = told.named(remedy.variant), _row(told, remedy)
+    now, every = row["probability_over_limit"], remedy.halvings[-1]
+    least = _WORTH * (now - BOUNDS["green"])
+    worth = [one for one in remedy.halvings if now - one.over["probability_over_limit"] >= least]
+    if not worth:
+        what = "all of them" if len(every.limits) > 1 else "that of the only one that scatters"
+        return (
+            f"Tighter tolerances hardly help {name}: halving {what} only brings the units over the limit from "
+            f"{_share(row)} to {_share(every.over)}."
+        )
+    return (
+        f"Halving the tolerance of {_halved(worth[0])} would bring the units of {name} over the limit from "
+        f"{_share(row)} to {_share(worth[0].over)}"
+        + "".join(f"; of {_halved(other)}, to {_share(other.over)}" for other in worth[1:])
         + "."
     )
 
@@ -94,9 +108,9 @@ def _halved(halving: Halving) -> str:
     return f"{dimension_words(name)} (to {limits.middle / size:.6g} ± {half}{unit})"
 
 
-def _levers(remedy: Remedy, row: Row) -> Iterator[str]:
+def _levers(told: Told, remedy: Remedy) -> Iterator[str]:
     """Yield what makes a variant stiffer, most first."""
-    name = shown(remedy.variant, longest=_NAME)
+    name, row = told.named(remedy.variant), _row(told, remedy)
     median = angle_words(row["p50_arcmin"], row["p50_standard_error_arcmin"])
     levers = [lever for lever in remedy.levers if abs(lever.slope) >= _LEAST_SLOPE][:_LEVERS]
     if levers:

@@ -3,71 +3,44 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, TypeAlias
+from collections.abc import Iterator
 
 from flexlash.assessment import Computed
-from flexlash.findings import CATALOGUE, shown, spelled_out
+from flexlash.findings import CATALOGUE, spelled_out
+from flexlash.number_words import angle_words
 from flexlash.outcome import Outcome
 from flexlash.report.summary.advice import stiffening, tightening
-from flexlash.report.verdict import light, verdict_counts
-from flexlash.summary import angle_words, counted, dimension_words, listed, share_words, spread_notes, worst_first
+from flexlash.report.summary.judged import failing, sureness
+from flexlash.report.summary.told import NAMED, Row, Told, rough, told_of
+from flexlash.summary import counted, dimension_words, listed, points_range, spread_notes
 
 __all__ = ["FINDINGS", "sentences"]
 
 FINDINGS = "Findings"
 """The topic of the sentence that leads to the sheet of this name."""
 
-_NAME = 30
-"""Most characters of a name in a sentence."""
-
-_NAMED = 3
-"""Most variants that a sentence names."""
+_DIGITS = 3
+"""Digits in which a reserve is told; what is equal in them is alike."""
 
 _CAUSES = 3
 """Most dimensions that are named as the cause of a spread."""
 
+_WHOLE = 100
+
 _LEAST_CAUSE = 0.01
 """Share of the variance below which a dimension is not named."""
-
-Row: TypeAlias = dict[str, Any]
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Told:
-    """An outcome with what several sentences ask of it."""
-
-    outcome: Outcome
-    rows: Sequence[Row]
-
-    @cached_property
-    def computed(self) -> dict[str, Computed]:
-        """The computed variants by name."""
-        return {one.variant.name: one for one in self.outcome.computed.values()}
-
-    @cached_property
-    def failing(self) -> list[Row]:
-        """The variants whose verdict is red or amber, worst first."""
-        return [row for row in self.rows if light(row) in {"red", "amber"}]
-
-    @cached_property
-    def judged(self) -> list[Row]:
-        """The variants with a limit, worst first."""
-        return [row for row in self.rows if row["backlash_limit_arcmin"] is not None]
 
 
 def sentences(outcome: Outcome) -> Iterator[tuple[str, str]]:
     """Yield topic and sentences: what a design review wants to know, rounded by the standard error."""
-    told = _Told(outcome=outcome, rows=worst_first(outcome))
+    told = told_of(outcome)
     topics = {
-        "Computed": _computed(outcome),
-        "Which fail": _failing(told),
-        "How sure": _sureness(told),
+        "Computed": _computed(told),
+        "Which fail": failing(told),
+        "How sure": sureness(told),
         "Why": _causes(told),
-        "What to tighten": tightening(outcome, told.failing),
-        "What to stiffen": stiffening(outcome, told.failing),
+        "What to tighten": tightening(told),
+        "What to stiffen": stiffening(told),
         "Cylinder-only formula": _classical(told),
         "Strength": _strength(told),
         "Of the calculation": _calculation(outcome),
@@ -79,113 +52,56 @@ def sentences(outcome: Outcome) -> Iterator[tuple[str, str]]:
             yield topic, text
 
 
-def _short(row: Row) -> str:
-    return shown(row["variant"], longest=_NAME)
-
-
-def _computed(outcome: Outcome) -> Iterator[str]:
+def _computed(told: Told) -> Iterator[str]:
     """Yield how many variants were computed, and the first of those that were not, with its reason."""
+    outcome = told.outcome
     counts = outcome.counts
     rows, computed = counts["rows"], counts["computed"]
     yield f"{computed} of {counted(rows, 'variant')} {'was' if computed == 1 else 'were'} computed."
     lost = outcome.results.filter(outcome.results["status"] == "error")["variant"].to_list()
     if lost:
-        yield f"Not computed: {listed([shown(name or '(no name)', longest=_NAME) for name in lost], _NAMED)}."
+        yield f"Not computed: {listed([told.named(name) if name else '(no name)' for name in lost], NAMED)}."
         first = next((found for found in outcome.findings if found.level == "error"), None)
         if first:
             yield f"The first fault: {first.message}"
 
 
-def _failing(told: _Told) -> Iterator[str]:
-    """Yield which variants fail, by how much; where none does, which is nearest to its limit."""
-    if not told.rows:
-        return
-    counts = verdict_counts(told.outcome)
-    if not told.judged:
-        worst = told.rows[0]
-        greatest = ", the greatest backlash of all" if len(told.rows) > 1 else ""
-        yield "No limit was given, so nothing is judged."
-        yield f"97.5 % of the units of {_short(worst)} stay below {_tail(worst, 'p97_5')}{greatest}."
-        return
-    with_limit = counted(len(told.judged), "variant")
-    for verdict in ("red", "amber"):
-        rows = [row for row in told.failing if light(row) == verdict]
-        if rows:
-            are = "is" if len(rows) == 1 else "are"
-            named = listed([_excess(row, first=place == 0) for place, row in enumerate(rows)], _NAMED)
-            yield f"{len(rows)} of {with_limit} with a limit {are} {verdict}: {named}."
-    if not told.failing:
-        which = "all" if len(told.judged) > 1 else "the"
-        yield f"None: {which} {with_limit} with a limit {_are(len(told.judged))} green."
-        nearest = max(told.judged, key=lambda row: row["p99_865_arcmin"] / row["backlash_limit_arcmin"])
-        yield f"Nearest to its limit is {_excess(nearest, first=True)}."
-    elif counts["green"]:
-        yield f"{counts['green']} {_are(counts['green'])} green."
-    without = len(told.rows) - len(told.judged)
-    if without:
-        yield f"{without} {'has' if without == 1 else 'have'} no limit."
-
-
-def _are(count: int) -> str:
-    return "is" if count == 1 else "are"
-
-
-def _tail(row: Row, key: str) -> str:
-    """Return a percentile in words, with no more digits than are known or needed."""
-    return angle_words(row[f"{key}_arcmin"], row[f"{key}_standard_error_arcmin"])
-
-
-def _excess(row: Row, *, first: bool) -> str:
-    """Return a variant with the percentile that its verdict hangs on and its distance from the limit."""
-    red = light(row) == "red"
-    key, share = ("p97_5", "97.5 %") if red else ("p99_865", "99.865 %")
-    limit, value = row["backlash_limit_arcmin"], row[f"{key}_arcmin"]
-    part = f"{spelled_out(100 * abs(value / limit - 1), 2)} % {'over' if value > limit else 'under'}"
-    if first:
-        return f"{_short(row)} ({share} of its units stay below {_tail(row, key)}, {part} its limit of {limit:g}′)"
-    return f"{_short(row)} ({_tail(row, key)}, {part} {limit:g}′)"
-
-
-def _sureness(told: _Told) -> Iterator[str]:
-    """Yield the share over the limit of the worst variants with its interval, and the bounds of the worst one."""
-    if not told.rows:
-        return
-    shares = [(_short(row), share_words(row)) for row in (told.failing or told.judged[:1])[:_NAMED]]
-    if shares:
-        yield f"Units over the limit: {listed([f'{name} {words}' for name, words in shares], _NAMED)}."
-        if any("(" in words for _, words in shares):
-            yield "In brackets the 95 % interval of the calculation, for the tolerances as entered."
-    worst = told.rows[0]
-    low, high = worst["worst_case_low_arcmin"], worst["worst_case_high_arcmin"]
-    if low < high:
-        low, high = angle_words(low), angle_words(high)
-        yield f"With every dimension at a limit the backlash of {_short(worst)} lies between {low} and {high}."
-
-
-def _causes(told: _Told) -> Iterator[str]:
+def _causes(told: Told) -> Iterator[str]:
     """Yield what the spread of the worst variant comes from, and what dominates all of them."""
     if not told.rows:
         return
     worst = told.rows[0]
+    name = told.named(worst["variant"])
     variation = told.computed[worst["variant"]].variation
     shares = variation.shares if variation else {}
     if not shares:
-        yield f"Nothing scatters in {_short(worst)}: no tolerance applies to its dimensions, so all units are alike."
-    ranked = sorted(shares, key=lambda name: (-shares[name], name))
-    named = ranked[:1] + [name for name in ranked[1:_CAUSES] if shares[name] >= _LEAST_CAUSE]
+        yield f"Nothing scatters in {name}: no tolerance applies to its dimensions, so all units are alike."
+    ranked = sorted(shares, key=lambda cause: (-shares[cause], cause))
+    named = ranked[:1] + [cause for cause in ranked[1:_CAUSES] if shares[cause] >= _LEAST_CAUSE]
     if named:
-        parts = [f"{dimension_words(name)} {100 * shares[name]:.0f} %" for name in named]
-        yield f"The spread of {_short(worst)} comes from {listed(parts, _CAUSES)} (shares of its variance)."
-    main = Counter(name for name in told.outcome.results["main_contributor"].to_list() if name is not None)
+        yield f"The spread of {name} comes from {_parts(worst, {cause: shares[cause] for cause in named})}."
+    main = Counter(cause for cause in told.outcome.results["main_contributor"].to_list() if cause is not None)
     if main.total() > 1:
-        order = sorted(main, key=lambda name: (-main[name], name))
-        parts = [f"{dimension_words(name)} in {main[name]}" for name in order]
+        order = sorted(main, key=lambda cause: (-main[cause], cause))
+        parts = [f"{dimension_words(cause)} in {main[cause]}" for cause in order]
         where = f"all {main.total()} variants" if len(main) == 1 else f"{main.total()} variants"
         what = dimension_words(order[0]) if len(main) == 1 else listed(parts, _CAUSES)
         yield f"Main contributor of {where}: {what}."
 
 
-def _classical(told: _Told) -> Iterator[str]:
+def _parts(row: Row, shares: dict[str, float]) -> str:
+    """Return shares of a variance in words; a sum beyond 100 % is explained."""
+    about = "about " if rough(row) else ""
+    told = {cause: f"{100 * share:.0f}" for cause, share in shares.items()}
+    words = listed([f"{dimension_words(cause)} {about}{share} %" for cause, share in told.items()], _CAUSES)
+    note = "shares of its variance"
+    if sum(map(float, told.values())) > _WHOLE:
+        points = points_range([row["spread_points"]], "lines" if row["spread_method"] == "line" else "points")
+        note += f", estimated from {points}: their errors make the sum more than 100 %" if about else ", rounded"
+    return f"{words} ({note})"
+
+
+def _classical(told: Told) -> Iterator[str]:
     """Yield what the classical formula would have said of the worst cup or hat, and its range over all of them."""
     worst = next((row for row in told.rows if _has_disk(told.computed[row["variant"]])), None)
     if worst is None:
@@ -193,7 +109,7 @@ def _classical(told: _Told) -> Iterator[str]:
     classical, own = worst["cylinder_only_backlash_arcmin"], worst["backlash_arcmin"]
     said, meant = angle_words(classical), angle_words(own)
     yield (
-        f"The classical formula, without the disk, would have said {said} for {_short(worst)} "
+        f"The classical formula, without the disk, would have said {said} for {told.named(worst['variant'])} "
         f"instead of {meant}: {_off(classical / own)}."
     )
     ratios = [
@@ -217,24 +133,26 @@ def _off(ratio: float) -> str:
     return f"{100 * abs(ratio - 1):.0f} % too {'low' if ratio <= 1 else 'high'}"
 
 
-def _strength(told: _Told) -> Iterator[str]:
+def _strength(told: Told) -> Iterator[str]:
     """Yield how far the variant nearest to yield is from it, and what else the verdict does not show."""
-    reserves = {
-        row["variant"]: row["elastic_limit_torque_Nm"] / told.computed[row["variant"]].variant.dimensions["torque"]
-        for row in told.rows
-        if row["elastic_limit_torque_Nm"] is not None
-    }
+    reserves: dict[tuple[float, str], list[str]] = {}
+    for row in told.rows:
+        if row["elastic_limit_torque_Nm"] is not None:
+            one = told.computed[row["variant"]]
+            times = float(spelled_out(row["elastic_limit_torque_Nm"] / one.variant.dimensions["torque"], _DIGITS))
+            reserves.setdefault((times, str(one.nominal["governing_section"])), []).append(row["variant"])
     if reserves:
-        name = min(reserves, key=lambda variant: reserves[variant])
+        times, section = least = min(reserves)
+        alike = len(reserves[least])
+        which = f", one of {alike} alike, is" if alike > 1 else " is"
         yield (
-            f"Nearest to yield is {shown(name, longest=_NAME)}: its {told.computed[name].nominal['governing_section']} "
-            f"yields at {spelled_out(reserves[name], 3)} times the torque, corners not counted."
+            f"Nearest to yield{which} {told.named(reserves[least][0])}: its {section} yields at "
+            f"{spelled_out(times, _DIGITS)} times the torque, corners not counted."
         )
     for code in ("W402", "W411", "W412", "W415", "W417"):
         names = dict.fromkeys(found.variant for found in told.outcome.findings if found.code == code)
         if names:
-            flagged = listed([shown(name, longest=_NAME) for name in names], _NAMED)
-            yield f"{CATALOGUE[code].title.capitalize()}: {flagged} ({code})."
+            yield f"{CATALOGUE[code].title.capitalize()}: {told.names(list(names))} ({code})."
 
 
 def _calculation(outcome: Outcome) -> Iterator[str]:
@@ -275,4 +193,4 @@ def _findings(outcome: Outcome) -> Iterator[str]:
         titles = Counter(CATALOGUE[found.code].title for found in outcome.findings if found.level == level)
         if titles:
             parts = [f"{title} ({count})" for title, count in titles.most_common()]
-            yield f"{counted(titles.total(), level)}: {listed(parts, _NAMED)}."
+            yield f"{counted(titles.total(), level)}: {listed(parts, NAMED)}."

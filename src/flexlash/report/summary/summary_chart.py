@@ -9,7 +9,7 @@ from typing import Any
 from flexlash.report.selection import Drawn
 from flexlash.report.stored import Stored
 from flexlash.report.styles import GRID, PALETTE, Book
-from flexlash.report.verdict import light
+from flexlash.report.verdict import firm, light
 
 __all__ = ["chart_words", "variants_chart"]
 
@@ -66,7 +66,7 @@ def _bars(shown: Sequence[Drawn]) -> dict[str, Any]:
     def look(colour: str) -> dict[str, Any]:
         return {"fill": {"color": PALETTE[colour]}, "border": {"color": PALETTE[colour]}}
 
-    return {**look("sky"), "points": [look(_COLOURS.get(light(one.row), "sky")) for one in shown]}
+    return {**look("sky"), "points": [look(_COLOURS.get(firm(light(one.row)), "sky")) for one in shown]}
 
 
 def _marker(shape: str, colour: str, size: int) -> dict[str, Any]:

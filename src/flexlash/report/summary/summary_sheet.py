@@ -3,28 +3,29 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
 from flexlash.findings import shown
+from flexlash.number_words import glance, share_words
 from flexlash.outcome import Outcome
 from flexlash.report.links import result_rows, write_link
 from flexlash.report.selection import Drawn
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book, decimals_of
+from flexlash.report.summary.distances import distance, distance_format
 from flexlash.report.summary.sentences import FINDINGS, sentences
 from flexlash.report.summary.summary_chart import chart_words, variants_chart
-from flexlash.report.verdict import COLOURS, NO_VERDICT, RULES, light, verdict_counts
+from flexlash.report.summary.told import labels_of, rough
+from flexlash.report.verdict import COLOURS, NO_VERDICT, RULES, UNSETTLED, light, verdict_counts
 from flexlash.report.wrapping import LINE_HEIGHT, fitted, lines_of, merged_width
-from flexlash.summary import counted, dimension_words, points_words, share_words
+from flexlash.summary import counted, dimension_words, points_words
 
 __all__ = ["light", "sentences", "write_summary"]
 
 _LISTED = 12
 """Most variants in the table."""
-
-_NAME = 30
-"""Most characters of a name in the table."""
 
 _COLUMNS = (
     ("Variant", 26),
@@ -33,7 +34,7 @@ _COLUMNS = (
     ("P50 [arcmin]", 9),
     ("P97.5 [arcmin]", 9),
     ("Limit [arcmin]", 9),
-    ("P97.5 over limit by", 9),
+    ("P97.5 over limit by [arcmin]", 9),
     ("Units over the limit", 29),
     ("Main contributor", 23),
 )
@@ -48,14 +49,10 @@ _CHART = (230.0, 340.0)
 """Least and greatest height [pt] of the chart."""
 
 _CHART_WIDTH = sum(7 * width + 5 for width in _WIDTHS)
-_DIGITS = 4
-"""Digits in which an angle is shown at a glance."""
+_LINES = 5
+"""Lines below the chart: provenance, and one to sign above which there is room to write."""
 
-_FINE = 1e-3
-"""Difference from the limit below which it is told in finer steps."""
-
-_LINES = 3
-"""Lines of provenance below the chart."""
+_SIGNED = "Reviewed by ______________________________   Date ____________________"
 
 
 def write_summary(book: Book, outcome: Outcome, drawn: Sequence[Drawn], curves: Stored) -> None:
@@ -69,6 +66,7 @@ def write_summary(book: Book, outcome: Outcome, drawn: Sequence[Drawn], curves: 
         page.table(drawn)
         page.chart(drawn, curves)
     page.provenance()
+    page.signature()
     page.sheet.print_area(0, 0, page.row - 1, len(_COLUMNS) - 1)
     page.sheet.activate()
 
@@ -111,13 +109,13 @@ class _Page:
     def key_figures(self) -> None:
         """Write how many were computed, have which verdict by which rule, and how much was found."""
         counts, verdicts = self.outcome.counts, verdict_counts(self.outcome)
-        judged = sum(verdicts[verdict] for verdict in RULES)
+        judged = sum(verdicts.values()) - verdicts[NO_VERDICT]
         found = "error" if counts["errors"] else "warning"
         without = f", {verdicts[NO_VERDICT]} without a limit" if verdicts[NO_VERDICT] else ""
         others = f"and {counted(counts['warnings'], 'warning')}; " if counts["errors"] and counts["warnings"] else ""
         figures = [
             (f"{counts['computed']} of {counts['rows']}", f"variants computed{without}", ""),
-            *((f"{verdicts[one] if judged else NO_VERDICT} {one}", rule, one) for one, rule in RULES.items()),
+            *(_verdict_figure(one, verdicts) if judged else (f"{NO_VERDICT} {one}", RULES[one], "") for one in RULES),
             (
                 counted(counts[f"{found}s"], found),
                 f"{others}see Findings" if counts["errors"] or counts["warnings"] else "and no errors",
@@ -125,12 +123,14 @@ class _Page:
             ),
         ]
         for (value, _, verdict), (first, last) in zip(figures, _FIGURES, strict=True):
-            style = f"big {COLOURS[verdict]}" if verdict and verdicts[verdict] else "big"
+            style = f"big {COLOURS[verdict]}" if verdict else "big"
             self._across(first, last, value, self.book.format(style))
         self._end_row(30)
+        lines = 2
         for (_, caption, _), (first, last) in zip(figures, _FIGURES, strict=True):
             self._across(first, last, caption, self.book.format("caption"))
-        self._end_row(2 * LINE_HEIGHT)
+            lines = max(lines, lines_of(caption, merged_width(_WIDTHS[first : last + 1])))
+        self._end_row(lines * LINE_HEIGHT)
         self._end_row(8)
 
     def sentence(self, topic: str, text: str) -> None:
@@ -147,20 +147,31 @@ class _Page:
         self._end_row(8)
         for place, (heading, _) in enumerate(_COLUMNS):
             self.sheet.write_string(self.row, place, heading, self.book.format("header"))
-        self._end_row(2 * LINE_HEIGHT + 2)
-        targets = result_rows(self.outcome)
+        self._end_row(3 * LINE_HEIGHT + 2)
+        targets, labels = result_rows(self.outcome), labels_of(self.outcome)
         for one in drawn[:_LISTED]:
-            self._variant(one.row, targets[one.computed.variant.row])
+            name = _fitted(labels[one.row["variant"]], merged_width(_WIDTHS[:1]))
+            self._variant(one.row, name, targets[one.computed.variant.row])
         more = f"The {_LISTED} worst of {len(self.outcome.computed)} are listed; all are in Results. "
         note = "Worst first: by share over the limit. The verdict judges the backlash alone."
         if len(drawn) > _LISTED:
             note = more + note
         self.sheet.write_string(self.row, 0, note, self.book.format("quiet"))
         self._end_row()
+        self._further()
 
-    def _variant(self, row: dict[str, Any], target: int) -> None:
+    def _further(self) -> None:
+        """Write where a variant can be looked into, with links to these sheets."""
+        link = self.book.format("link")
+        self.sheet.write_string(self.row, 0, "Pick a variant in", self.book.format("figure"))
+        write_link(self.sheet, self.row, 1, "Explorer!A1", "Explorer", style=link)
+        write_link(self.sheet, self.row, 2, "Trace!A1", "or Trace", style=link)
+        self.sheet.write_string(self.row, 3, "to look into it further.", self.book.format("text"))
+        self._end_row()
+
+    def _variant(self, row: dict[str, Any], name: str, target: int) -> None:
         """Write a variant's row of the table."""
-        name, verdict = fitted(shown(row["variant"], longest=_NAME), merged_width(_WIDTHS[:1])), light(row)
+        verdict = light(row)
         link = self.book.format("link")
         write_link(self.sheet, self.row, 0, f"Results!A{target + 1}", name, style=link)
         self.sheet.write_string(self.row, 1, verdict, self.book.format(COLOURS[verdict]))
@@ -170,13 +181,14 @@ class _Page:
                 self.sheet.write_number(self.row, place, value, self.book.format("text", _glance(value, error)))
         lines = 1
         if row["backlash_limit_arcmin"] is not None:
-            excess = row["p97_5_arcmin"] / row["backlash_limit_arcmin"] - 1
-            self.sheet.write_number(self.row, 6, excess, self.book.format("text", _signed_percent(excess)))
+            style = self.book.format("text", distance_format(row, "p97_5"))
+            self.sheet.write_number(self.row, 6, distance(row, "p97_5"), style)
             share = share_words(row)
             lines = lines_of(share, merged_width(_WIDTHS[7:8]) - 1)
             self.sheet.write_string(self.row, 7, share, self.book.format("indented wrap"))
         if row["main_contributor"]:
-            cause = f"{dimension_words(row['main_contributor'])} ({100 * row['main_contributor_share']:.0f} %)"
+            about = "≈" if rough(row) else ""
+            cause = f"{dimension_words(row['main_contributor'])} ({about}{100 * row['main_contributor_share']:.0f} %)"
             lines = max(lines, lines_of(cause, merged_width(_WIDTHS[8:])))
             self.sheet.write_string(self.row, 8, cause, self.book.format("wrap"))
         self._end_row(LINE_HEIGHT * lines)
@@ -209,14 +221,36 @@ class _Page:
             self.sheet.write_string(self.row, 0, fact, self.book.format("quiet"))
             self._end_row()
 
+    def signature(self) -> None:
+        """Write the line on which a review is signed, blank, with room above it."""
+        self._end_row()
+        self.sheet.write_string(self.row, 0, _SIGNED, self.book.format("text"))
+        self._end_row()
+
+
+def _verdict_figure(verdict: str, counts: Counter[str]) -> tuple[str, str, str]:
+    """Return how many have a verdict, its rule and what colours it; with ? where some of them are not settled."""
+    doubtful = counts[f"{verdict}{UNSETTLED}"]
+    count = counts[verdict] + doubtful
+    word = f"{verdict}{UNSETTLED}" if doubtful else verdict
+    doubt = f"; {doubtful} not settled" if doubtful else ""
+    return f"{count} {word}", f"{RULES[verdict]}{doubt}", word if count else ""
+
+
+def _fitted(label: str, width: float) -> str:
+    """Return a name on one line of a cell so many digits wide, its start and its end where it is longer."""
+    if fitted(label, width) == label:
+        return label
+    start, cut, end = label.partition("…")
+    if cut and not end:
+        return fitted(label, width)
+    if not cut:
+        start, end = label[: len(label) // 2], label[len(label) // 2 :]
+    while fitted(f"{start}…{end}", width) != f"{start}…{end}":
+        start, end = (start[:-1], end) if len(start) > len(end) else (start, end[1:])
+    return f"{start}…{end}"
+
 
 def _glance(value: float, error: float | None) -> str:
     """Return the number format of an angle in four digits, or fewer where its standard error is greater."""
-    least = 10.0 ** (math.floor(math.log10(value)) + 1 - _DIGITS) if value > 0 else None
-    return decimals_of(max(error or 0.0, least or 0.0), "plain")
-
-
-def _signed_percent(part: float) -> str:
-    """Return the number format of a difference with its sign, fine enough that it is not a zero."""
-    places = "0.0" if abs(part) >= _FINE else "0.000"
-    return f"+{places}%;-{places}%;0.0%"
+    return decimals_of(max(error or 0.0, glance(value)), "plain")
