@@ -402,3 +402,11 @@ def test_long_names_stay_apart(told):
     assert first != second
     assert first.endswith("wall 1.6 mm")
     assert second.endswith("wall 1.8 mm")
+
+
+def test_long_names_that_were_not_computed_stay_apart(told):
+    """Names of rows with errors are told apart, too."""
+    names = [f"a name that is the same for thirty letters, wall {wall}" for wall in ("1.6 mm", "1.8 mm")]
+    said = told({}, *({"variant": name, "torque_Nm": ""} for name in names))["Computed"]
+    first, second = re.findall(r"“([^”]+)”", said)
+    assert first != second

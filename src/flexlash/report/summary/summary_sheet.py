@@ -148,7 +148,7 @@ class _Page:
         for place, (heading, _) in enumerate(_COLUMNS):
             self.sheet.write_string(self.row, place, heading, self.book.format("header"))
         self._end_row(3 * LINE_HEIGHT + 2)
-        targets, labels = result_rows(self.outcome), labels_of(self.outcome)
+        targets, labels = result_rows(self.outcome), labels_of(self.outcome, [one.row["variant"] for one in drawn])
         for one in drawn[:_LISTED]:
             name = _fitted(labels[one.row["variant"]], merged_width(_WIDTHS[:1]))
             self._variant(one.row, name, targets[one.computed.variant.row])

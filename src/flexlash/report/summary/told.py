@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 from flexlash.assessment import Computed
 from flexlash.findings import shown
-from flexlash.outcome import Outcome
+from flexlash.outcome import DRAWN, Outcome
 from flexlash.report.labels import distinct_labels
 from flexlash.report.verdict import firm, light
 from flexlash.summary import listed, quoted, worst_first
@@ -63,12 +63,14 @@ class Told:
 
 def told_of(outcome: Outcome) -> Told:
     """Return what the sentences on an outcome ask of it."""
-    return Told(outcome=outcome, rows=worst_first(outcome), labels=labels_of(outcome))
+    rows = worst_first(outcome)
+    return Told(outcome=outcome, rows=rows, labels=labels_of(outcome, [row["variant"] for row in rows[:DRAWN]]))
 
 
-def labels_of(outcome: Outcome) -> dict[str, str]:
-    """Return a short name for every submitted one, distinct where the names are."""
-    names = list(dict.fromkeys(name for name in outcome.results["variant"].to_list() if name))
+def labels_of(outcome: Outcome, worst: Sequence[str]) -> dict[str, str]:
+    """Return a short name for each of the worst and of the first that were not computed, distinct where they are."""
+    lost = outcome.results.filter(outcome.results["status"] == "error")["variant"].to_list()[:NAMED]
+    names = list(dict.fromkeys([*worst, *filter(None, lost)]))
     return dict(zip(names, distinct_labels(names, _NAME), strict=True))
 
 
