@@ -58,21 +58,13 @@ ALLOWED = {
         "summary",
         "verification",
     },
-    "comparison": CORE | {"submission"},
+    "comparison": CORE | {"assessment", "submission"},
     "recreation": CORE | {"comparison", "handback", "outcome", "pipeline", "report", "submission", "targets"},
-    "commands": CORE | {"comparison", "pipeline", "recreation", "submission", "terminal"},
+    "commands": CORE
+    | {"comparison", "elasticity", "pipeline", "recreation", "report", "submission", "targets", "terminal"},
     "options": CORE | {"submission"},
     "terminal": CORE | {"options", "outcome", "submission", "summary"},
-    "cli": CORE
-    | {
-        "commands",
-        "elasticity",
-        "pipeline",
-        "report",
-        "submission",
-        "targets",
-        "terminal",
-    },
+    "cli": {"commands", "terminal"},
     "__main__": {"cli"},
     "__init__": {"outcome", "pipeline"},
 }

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from flexlash import elasticity
-from flexlash.cli import cli
+from flexlash.cli import cli, main
 from flexlash.pipeline import run
 from flexlash.submission.templating import template as template_module
 
@@ -49,8 +49,9 @@ def test_options_win_and_differences_are_counted(report, tmp_path):
     done = _call("run", "--from-report", report, "--seed", 8, "-o", tmp_path / "new.xlsx")
     assert "numbers of Results differ from report.xlsx" in done.stdout.splitlines()[-1]
     lines = _call("diff", report, tmp_path / "new.xlsx").stdout.splitlines()
-    assert lines[0] == "Settings, seed: 0 → 8, used by all 2 variants"
-    assert lines[-1] == "2 of 2 variants differ: B3-160, b (2 in inputs, 2 in results)."
+    assert lines[0] == "0 of 2 variants differ beyond the error of the calculation, 2 within it."
+    assert lines[1] == "Settings, seed: 0 → 8, used by all 2 variants"
+    assert lines[-1] == "No difference beyond the error of the calculation."
 
 
 def test_json_says_how_many_numbers_were_compared(report):
@@ -97,6 +98,7 @@ def test_diff_ends_with_what_matters_and_with_0(report, table, sound):
     done = _call("diff", report, table([sound | {"wall_thickness_mm": 1.7}]))
     assert done.exit_code == 0
     assert done.stdout.splitlines() == [
+        "1 of 1 variants differs, 0 are equal.",
         "Settings, samples: 64 → –, used by B3-160",
         "B3-160",
         "    Wall thickness Δ: 1.6 → 1.7 mm (+6.25 %)",
@@ -128,3 +130,32 @@ def test_files_that_cannot_be_compared(what, as_json, report, tmp_path):
     assert not as_json or "error" in json.loads(done.stdout)
     missing = _call("diff", tmp_path / "x", tmp_path / "gone")
     assert missing.exit_code == 5
+
+
+FOLDERS = (
+    ["run", "."], ["run", "--from-report", "."], ["run", "/"], ["run", ""], ["check", "."],
+    ["check", "--annotate", "/"], ["check", "--apply-fixes", "."], ["template", "--upgrade", "."],
+    ["template", "--upgrade", "/"],
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("arguments", FOLDERS, ids=" ".join)
+def test_folders_are_no_files(arguments, tmp_path, monkeypatch, capsys):
+    """Every command that is given a folder says so, ends with 5 and writes nothing."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sys.argv", ["flexlash", *arguments])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    assert stop.value.code == 5
+    assert "this is a folder; give the files in it" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_library_that_is_missing_is_no_matter_of_elasticity(report, monkeypatch):
+    """Only the elasticity check's own libraries are told with the way without them."""
+
+    def missing(*_, **__):
+        raise ModuleNotFoundError("No module named 'other'")
+
+    monkeypatch.setattr("flexlash.commands.recreate.recreate", missing)
+    assert isinstance(_call("run", "--from-report", report).exception, ModuleNotFoundError)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 
 import pytest
 
+from flexlash import __version__
 from flexlash.comparison.difference import Change, changed_results, difference
 from flexlash.comparison.difference import equal as is_equal
 from flexlash.comparison.sides import side_of
-from flexlash.pipeline import run
+from flexlash.pipeline import check, run
 from flexlash.submission.reading.limits import ReadingLimits
 
 LIMITS = ReadingLimits()
@@ -69,6 +71,17 @@ def test_a_row_that_cannot_be_computed_any_more_says_why(table, sound):
     found = _between(table([sound], "a.csv"), table([sound | {"wall_thickness_mm": "1,6 mm"}], "b.csv"))
     (one,) = found.variants
     assert (one.entered, _told(one.results)) == ([], [("status", "yes", "no, E202 G2")])
+
+
+def test_a_row_that_its_tolerances_stop_says_why(workbook, sound):
+    """Limits that make no part stop a row as well, though each of its cells is sound."""
+    wide = {"tolerance_class": "wide", "dimension": "wall_thickness", "lower_deviation": -2, "upper_deviation": 2}
+    rows = [sound | {"tolerance_class": "wide"}]
+    narrow = workbook(rows, "a.xlsx", tolerances=[wide | {"lower_deviation": -0.1, "upper_deviation": 0.1}])
+    (one,) = _between(narrow, workbook(rows, "b.xlsx", tolerances=[wide])).variants
+    (told,) = one.results
+    assert (told.old, told.new[:4]) == ("yes", "no, ")
+    assert check(workbook(rows, "b.xlsx", tolerances=[wide])).counts["computed"] == 0
 
 
 def test_tolerances_of_dimensions_that_a_variant_lacks_do_not_matter(workbook, sound):
@@ -162,6 +175,25 @@ def test_results_are_told_verdict_first(reports, sound):
     assert back.limit == "within"
 
 
+def test_another_seed_alone_changes_within_the_error(reports, sound):
+    """Where only the seed is another, results are within their errors; where a wall is another, they are not."""
+    rows = [sound, sound | {"variant": "b", "torque_Nm": 700.0}]
+    old = reports("a", rows)
+    found = _between(old, reports("b", rows, seed=9))
+    assert [name.text for name in found.within_error] == ["B3-160", "b"]
+    assert all(one.results for one in found.variants)
+    assert (found.differing, found.is_none) == ([], False)
+    changed = _between(old, reports("c", [sound | {"wall_thickness_mm": 1.601}, rows[1]], seed=9))
+    assert [one.name.text for one in changed.differing] == ["B3-160"]
+
+
+def test_a_row_that_is_missing_from_results_is_a_difference(reports, sound):
+    """A variant whose row somebody took out of Results is told, never equal."""
+    old = side_of(reports("a", [sound]), LIMITS)
+    (one,) = difference(old, replace(old, results={})).variants
+    assert _told(one.results) == [("status", "there", "missing")]
+
+
 def test_tolerance_hides_small_differences(reports, sound):
     """Numbers that differ by less than the given part of themselves are equal; of inputs none is hidden."""
     old, new = reports("a", [sound]), reports("b", [sound], seed=9)
@@ -204,7 +236,9 @@ def test_json_holds_everything(reports, sound):
     old = reports("a", [sound, sound | {"variant": "gone"}])
     new = reports("b", [sound | {"torque_Nm": 880.0}], seed=1)
     found = _between(old, new).as_dictionary()
-    assert found["counts"] == {"common": 1, "differing": 1, "removed": 1, "added": 0}
+    counts = {"common": 1, "differing": 1, "within_error": 0, "equal": 0, "removed": 1, "added": 0}
+    assert found["counts"] == counts
+    assert (found["new"]["version"], found["new"]["options"]["seed"]) == (__version__, 1)
     assert (found["old"]["file"], found["old"]["kind"], found["new"]["submission"]) == ("a.xlsx", "report", "b.csv")
     assert found["removed"] == ["gone"]
     (one,) = found["variants"]

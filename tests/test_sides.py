@@ -6,7 +6,7 @@ import openpyxl
 import pytest
 
 import regenerate
-from flexlash.comparison.sides import Name, result_rows, side_of
+from flexlash.comparison.sides import Name, by_variant, result_rows, side_of
 from flexlash.pipeline import run
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import Percentage, RawSheet
@@ -16,10 +16,16 @@ LIMITS = ReadingLimits()
 STUDY = regenerate.ROOT / "data" / "b3-160-study.xlsx"
 
 
-def test_a_report_and_its_submission_say_the_same(tmp_path):
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """Return the study's outcome and the path of its report."""
+    path = tmp_path_factory.mktemp("study") / "r.xlsx"
+    return run(STUDY, path, samples=64), path
+
+
+def test_a_report_and_its_submission_say_the_same(study):
     """Read back from the report, entries, materials, tolerances and settings are those of the submission."""
-    run(STUDY, tmp_path / "r.xlsx", samples=64)
-    report, submission = side_of(tmp_path / "r.xlsx", LIMITS), side_of(STUDY, LIMITS)
+    report, submission = side_of(study[1], LIMITS), side_of(STUDY, LIMITS)
     assert (report.is_report, submission.is_report) == (True, False)
     assert report.entries() == submission.entries()
     for name in report.records:
@@ -28,10 +34,10 @@ def test_a_report_and_its_submission_say_the_same(tmp_path):
     assert report.settings == submission.settings | {"samples": 64}
 
 
-def test_results_of_a_report_are_those_of_its_run(tmp_path):
+def test_results_of_a_report_are_those_of_its_run(study):
     """Every number of Results comes back by key, to the digits that the sheet keeps of it."""
-    outcome = run(STUDY, tmp_path / "r.xlsx", samples=64)
-    found = side_of(tmp_path / "r.xlsx", LIMITS).results
+    outcome, path = study
+    found = side_of(path, LIMITS).results
     assert [name.text for name in found] == outcome.results["variant"].to_list()
     for name, row in zip(found, outcome.results.iter_rows(named=True), strict=True):
         assert found[name].keys() == row.keys()
@@ -118,17 +124,43 @@ def test_cells_of_results_are_taken_by_their_column():
     }
 
 
-def test_a_table_that_is_none_is_refused(tmp_path):
+def test_a_table_that_is_none_is_refused(study, tmp_path):
     """A text without the template's headers is refused, and so is a report whose inputs were taken out."""
     (tmp_path / "letter.csv").write_text("Dear Sir,\nthe gear, it broke\n", encoding="utf-8")
     with pytest.raises(Refusal) as refusal:
         side_of(tmp_path / "letter.csv", LIMITS)
     assert refusal.value.code == "E109"
-    run(STUDY, tmp_path / "r.xlsx", samples=64)
-    with (tmp_path / "r.xlsx").open("rb") as file:
+    with study[1].open("rb") as file:
         book = openpyxl.load_workbook(file)
     del book["Carried"]
     book.save(tmp_path / "without.xlsx")
     with pytest.raises(Refusal) as refusal:
         side_of(tmp_path / "without.xlsx", LIMITS)
     assert refusal.value.code == "E121"
+
+
+BACK = {
+    "as it was": (["a", "b"], ["a", "b"]),
+    "escapes come back as letters": (["a_x0041_", "_x005F_x000D_", "x005F_"], ["aA", "\r", ""]),
+    "escapes come back as they were": (["a_x0041_", "_x005F_x000D_", "x005F_"],) * 2,
+    "sorted since": (["a", "b", "A"], ["b", "A", "a"]),
+    "equal names": (["a", "a", "aA", "a_x0041_"], ["a", "a", "aA", "aA"]),
+}
+
+
+@pytest.mark.parametrize("what", BACK)
+def test_rows_of_results_find_their_variants(what):
+    """Rows belong to the variant of their name, though a sheet may give back some names changed."""
+    names, read = BACK[what]
+    places = [read.index(name) if sorted(names) == sorted(read) else place for place, name in enumerate(names)]
+    rows = {Name(text=text, place=read[:at].count(text) + 1): {"at": at} for at, text in enumerate(read)}
+    wanted = [Name(text=text, place=names[:at].count(text) + 1) for at, text in enumerate(names)]
+    found = by_variant(rows, wanted)
+    expected = list(range(len(names))) if what == "equal names" else places
+    assert [found[name]["at"] for name in wanted] == expected
+
+
+def test_rows_of_no_variant_keep_their_name():
+    """A row whose name somebody changed belongs to no variant."""
+    rows = {Name(text="mine"): {"at": 0}}
+    assert by_variant(rows, [Name(text="a")]) == rows

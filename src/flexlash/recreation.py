@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexlash.comparison.difference import changed_results
-from flexlash.comparison.sides import Name, frame_rows, result_rows
+from flexlash.comparison.sides import Name, by_variant, frame_rows, result_rows
 from flexlash.handback import sealed, unclaimed
 from flexlash.outcome import Outcome
 from flexlash.pipeline import run
@@ -60,7 +60,8 @@ def recreate(report: Path, output: Path | None, taken: set[Path], **options: Any
     upgrade = refilled(outcome.submission, limits)
     data = sealed(upgrade.data)
     outcome.outputs.insert(0, write_bytes(data, unclaimed(filled, data)))
-    numbers, different = _compared(result_rows(reading.results), frame_rows(_as_stored(outcome.results)))
+    anew_rows = frame_rows(_as_stored(outcome.results))
+    numbers, different = _compared(by_variant(result_rows(reading.results), anew_rows), anew_rows)
     return Recreation(outcome=outcome, remarks=upgrade.remarks, numbers=numbers, different=different)
 
 

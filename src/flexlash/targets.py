@@ -32,7 +32,7 @@ def template_target(output: Path | None, old: Path | None, *, force: bool) -> Pa
     """Return where a template goes; raise ValueError where it would replace a file that may be filled."""
     from flexlash.submission.versions import TEMPLATE_VERSION
 
-    default = old.with_name(f"{old.stem}-v{TEMPLATE_VERSION}.xlsx") if old else Path("flexlash-template.xlsx")
+    default = old.parent / f"{old.stem}-v{TEMPLATE_VERSION}.xlsx" if old else Path("flexlash-template.xlsx")
     target = output or default
     if old and target.exists() and old.exists() and target.samefile(old):
         raise ValueError("-o is the old file, which flexlash never overwrites.")
@@ -74,7 +74,8 @@ def _targets(
 ) -> list[Path]:
     names = [f"{path.stem}{suffix}{path.suffix if own_ending else '.xlsx'}" for path in submissions]
     if output is None:
-        targets = [path.with_name(name) for path, name in zip(submissions, names, strict=True)]
+        # Not with_name: `.` and `/` have no name; reading them says that they are folders.
+        targets = [path.parent / name for path, name in zip(submissions, names, strict=True)]
     elif output.is_dir() or not output.suffix or str(output).endswith(("/", "\\")):
         output.mkdir(parents=True, exist_ok=True)
         targets = [output / name for name in names]

@@ -27,6 +27,7 @@ __all__ = [
     "named",
     "one_submission",
     "progress",
+    "reason",
     "tell",
     "tell_refused",
     "worst",
@@ -56,11 +57,19 @@ def one_submission(path: Path, codes: list[int], *, as_json: bool) -> Iterator[N
         raise
     except OSError as fault:
         place = named(fault.filename or path)
-        why = fault.strerror or str(fault)
+        why = reason(fault, path)
         click.secho(f"{place} could not be opened or written: {why}", fg="red", err=True)
         if as_json:
             click.echo(json.dumps({"submission": str(path), "error": f"{place}: {why}"}, ensure_ascii=False))
         codes.append(NO_FILE)
+
+
+def reason(fault: OSError, path: Path | None = None) -> str:
+    """Return why a file, or the path that the fault names, could not be opened or written."""
+    place = fault.filename or path
+    if isinstance(place, str | Path) and Path(place).is_dir():
+        return "this is a folder; give the files in it"
+    return fault.strerror or str(fault)
 
 
 def tell_refused(found: Finding, file: str) -> None:

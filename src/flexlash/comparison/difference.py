@@ -9,6 +9,7 @@ from typing import Any
 
 from flexlash.column import Column
 from flexlash.columns import SETTINGS, VARIANTS
+from flexlash.comparison.calculation_error import POINTS, is_within_error
 from flexlash.comparison.sides import Name, Side, Used
 from flexlash.result_columns import result_columns
 from flexlash.submission.spellings import plain
@@ -66,6 +67,9 @@ class Differing:
     limit: str = ""
     """Whether P97.5 is `over` the limit now, or `within` it, where it was not before."""
 
+    within_error: bool = False
+    """Whether only the points of the calculation are others, and the results the same within its error."""
+
     def as_dictionary(self) -> dict[str, Any]:
         """Return it as JSON holds it."""
         parts = {"entered": self.entered, "used": self.used, "results": self.results}
@@ -73,6 +77,7 @@ class Differing:
             "variant": self.name.text,
             **{part: [change.as_dictionary() for change in changes] for part, changes in parts.items()},
             "limit": self.limit,
+            "within_error": self.within_error,
         }
 
 
@@ -98,6 +103,16 @@ class Difference:
         return not (self.variants or self.removed or self.added)
 
     @property
+    def differing(self) -> list[Differing]:
+        """The variants that differ by more than the error of the calculation."""
+        return [one for one in self.variants if not one.within_error]
+
+    @property
+    def within_error(self) -> list[Name]:
+        """The variants that differ only within the error of the calculation."""
+        return [one.name for one in self.variants if one.within_error]
+
+    @property
     def shared(self) -> dict[Change, list[Name]]:
         """Return every change of a table or setting with the variants that use it."""
         found: dict[Change, list[Name]] = {}
@@ -114,7 +129,9 @@ class Difference:
             "results_compared": self.has_results,
             "counts": {
                 "common": self.common,
-                "differing": len(self.variants),
+                "differing": len(self.differing),
+                "within_error": len(self.within_error),
+                "equal": self.common - len(self.variants),
                 "removed": len(self.removed),
                 "added": len(self.added),
             },
@@ -130,15 +147,16 @@ def difference(old: Side, new: Side, tolerance: float = ROUNDING) -> Difference:
     common = [name for name in after if name in before]
     found = []
     for name in common:
-        one = Differing(
-            name=name,
-            entered=list(_entered(before[name], after[name])),
-            used=list(_used(old, new, name)),
-            results=_results(old, new, name, tolerance),
-            limit=_limit(old, new, name),
-        )
-        if one.entered or one.used or one.results:
-            found.append(one)
+        entered = list(_entered(before[name], after[name]))
+        used = list(_used(old, new, name))
+        results = _results(old, new, name, tolerance)
+        if entered or used or results:
+            limit = _limit(old, new, name)
+            only_points = bool(used) and not entered and not limit and all(change.key in POINTS for change in used)
+            within = only_points and _is_within(old, new, name, results)
+            found.append(
+                Differing(name=name, entered=entered, used=used, results=results, limit=limit, within_error=within)
+            )
     return Difference(
         old=old,
         new=new,
@@ -201,7 +219,22 @@ def _results(old: Side, new: Side, name: Name, tolerance: float) -> list[Change]
         words = [f"no, {one}" if one else "yes" for one in pair]
         told = Change(sheet="Variants", key="status", label="Computable", old=words[0], new=words[1])
         return [told] if bool(pair[0]) != bool(pair[1]) else []
-    return changed_results(old.results.get(name, {}), new.results.get(name, {}), tolerance)
+    before, after = old.results.get(name), new.results.get(name)
+    if before is None or after is None:
+        words = ["missing" if row is None else "there" for row in (before, after)]
+        told = Change(sheet="Results", key="status", label="Row of Results", old=words[0], new=words[1])
+        return [] if before is after else [told]
+    return changed_results(before, after, tolerance)
+
+
+def _is_within(old: Side, new: Side, name: Name, results: list[Change]) -> bool:
+    """Whether the Results of a variant are the same within the error of the calculation."""
+    if old.results is None or new.results is None:
+        return False
+    rows = old.results.get(name), new.results.get(name)
+    if rows[0] is None or rows[1] is None:
+        return rows[0] is rows[1]
+    return is_within_error((change.key for change in results), rows[0], rows[1])
 
 
 def changed_results(old: Mapping[str, Any], new: Mapping[str, Any], tolerance: float = ROUNDING) -> list[Change]:

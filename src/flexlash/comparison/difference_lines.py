@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from flexlash.columns import DIMENSIONS
+from flexlash.comparison.calculation_error import AGREEING
 from flexlash.comparison.difference import FIRST, Change, Difference, Differing
 from flexlash.comparison.sides import Name
 from flexlash.findings import shown
+from flexlash.submission.reading.carried import SWITCHES
 
 __all__ = ["comparison_line", "difference_lines"]
 
@@ -25,20 +27,62 @@ _BLANK = "–"
 
 def difference_lines(found: Difference, *, every: bool = False) -> Iterator[str]:
     """Yield a difference line by line; `every` tells all columns of Results and all variants."""
+    if found.variants:
+        yield _count(found)
+    yield from _made_otherwise(found)
     for change, names in found.shared.items():
         yield f"{_owner(change)}, {_words(change)}, used by {_who(names, found.common)}"
-    ordered = sorted(found.variants, key=_importance, reverse=True)
+    if found.within_error:
+        who = _who(found.within_error, found.common)
+        yield f"Within the error of the calculation ({AGREEING:g} combined standard errors): {who}"
+    yield from _told_one_by_one(found, every=every)
+    for file, names in zip(_files(found), (found.removed, found.added), strict=True):
+        if names:
+            yield f"Only in {file}: {_named(names, None if every else _TOLD)}"
+    yield _verdict(found)
+
+
+def _count(found: Difference) -> str:
+    """Return how many variants differ, and how many do not."""
+    differing, within = len(found.differing), len(found.within_error)
+    equal = found.common - differing - within
+    parts = [f"{differing} of {found.common} variants {'differs' if differing == 1 else 'differ'}"]
+    if within:
+        parts = [f"{parts[0]} beyond the error of the calculation", f"{within} within it"]
+    if equal or not within:
+        parts.append(f"{equal} {'is' if equal == 1 else 'are'} equal")
+    return f"{', '.join(parts)}."
+
+
+def _made_otherwise(found: Difference) -> Iterator[str]:
+    """Yield what is known of how two reports were made that their cells do not show."""
+    if not found.has_results:
+        return
+    old, new = found.old, found.new
+    files = _files(found)
+    if old.version != new.version:
+        yield f"{files[0]} was made by flexlash {shown(old.version)}, {files[1]} by flexlash {shown(new.version)}."
+    for name in SWITCHES:
+        switched = [bool((side.submission.run_with or {}).get(name)) for side in (old, new)]
+        if switched[0] != switched[1]:
+            yield f"Only {files[switched.index(True)]} was made with --{name.replace('_', '-')}."
+
+
+def _files(found: Difference) -> tuple[str, str]:
+    """Return what both files are called; files of one name are told apart as in the command."""
+    old, new = (shown(side.file, _NAME * 2) for side in (found.old, found.new))
+    return (f"{old} (A)", f"{new} (B)") if old == new else (old, new)
+
+
+def _told_one_by_one(found: Difference, *, every: bool) -> Iterator[str]:
+    """Yield the variants that differ, the most important first."""
+    ordered = sorted(found.variants if every else found.differing, key=_importance, reverse=True)
     own = [one for one in ordered if one.entered or one.results]
     for one in own if every else own[:_TOLD]:
         yield _listed(one.name)
         yield from (f"    {line}" for line in _variant_lines(one, every=every))
     if len(own) > _TOLD and not every:
         yield f"… and {len(own) - _TOLD} more variants (--all tells every one)"
-    for words, names in (("Only in", found.removed), ("Only in", found.added)):
-        if names:
-            side = found.old if names is found.removed else found.new
-            yield f"{words} {shown(side.file, _NAME * 2)}: {_named(names, None if every else _TOLD)}"
-    yield _verdict(found)
 
 
 def _importance(one: Differing) -> tuple[bool, float]:
@@ -132,20 +176,24 @@ def _verdict(found: Difference) -> str:
     if found.is_none:
         return "No difference in inputs or results." if found.has_results else "No difference in inputs."
     beside = [f"{len(names)} {word}" for word, names in (("removed", found.removed), ("added", found.added)) if names]
-    if not found.variants:
-        return f"None of {found.common} common variants differs; {', '.join(beside)}."
-    verb = "differs" if len(found.variants) == 1 else "differ"
-    names = _named([one.name for one in sorted(found.variants, key=_importance, reverse=True)])
+    differing = sorted(found.differing, key=_importance, reverse=True)
+    if not differing:
+        beyond = " beyond the error of the calculation" if found.within_error else ""
+        if not beside:
+            return f"No difference{beyond}."
+        return f"None of {found.common} common variants differs{beyond}; {', '.join(beside)}."
+    verb = "differs" if len(differing) == 1 else "differ"
+    names = _named([one.name for one in differing])
     what = [
         f"{count} in {word}"
         for word, count in (
-            ("inputs", sum(bool(one.entered or one.used) for one in found.variants)),
-            ("results", sum(bool(one.results) for one in found.variants) if found.has_results else 0),
+            ("inputs", sum(bool(one.entered or one.used) for one in differing)),
+            ("results", sum(bool(one.results) for one in differing) if found.has_results else 0),
         )
         if count
     ]
     tail = ", ".join([*what, *beside])
-    return f"{len(found.variants)} of {found.common} variants {verb}: {names} ({tail})."
+    return f"{len(differing)} of {found.common} variants {verb}: {names} ({tail})."
 
 
 def comparison_line(different: int, numbers: int, report: str) -> str:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+import re
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flexlash.assessment import assess
 from flexlash.columns import DIMENSIONS, MATERIALS, columns_of
 from flexlash.findings import shown
 from flexlash.result_columns import result_columns
@@ -17,6 +19,7 @@ from flexlash.submission.reading.raw import RawSheet, Submission
 from flexlash.submission.reading.read import Reading, ReportReading
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.spellings import plain
+from flexlash.submission.stops import stopped_by
 from flexlash.submission.tabulate import Table
 from flexlash.submission.validate import Validated, validate
 from flexlash.variant import ToleranceRow
@@ -24,9 +27,14 @@ from flexlash.variant import ToleranceRow
 if TYPE_CHECKING:
     import polars as pl
 
-__all__ = ["Name", "Side", "Used", "Value", "frame_rows", "result_rows", "side_of"]
+__all__ = ["Name", "Side", "Used", "Value", "by_variant", "frame_rows", "result_rows", "side_of"]
 
 _TOP = 15
+_NAMED = 3
+"""Most errors elsewhere that are named for a row."""
+
+_ESCAPED = re.compile("_x([0-9A-Fa-f]{4})_")
+_ESCAPE = "x005F_"
 _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
@@ -59,11 +67,15 @@ class Used:
 
 @dataclass(frozen=True, kw_only=True)
 class Side:
-    """A report or submission as it is compared; `results` are a report's by variant, None for a submission."""
+    """A report or submission as it is compared.
+
+    `results` are a report's by variant, None for a submission; `version` is that of the flexlash that made the report.
+    """
 
     file: str
     submission: Submission
     validated: Validated
+    version: str = ""
     results: Mapping[Name, Mapping[str, Any]] | None = None
 
     @property
@@ -73,8 +85,10 @@ class Side:
 
     def as_dictionary(self) -> dict[str, Any]:
         """Return what it is, as JSON holds it."""
-        kind = "report" if self.is_report else "submission"
-        return {"file": self.file, "kind": kind, "submission": self.submission.name, "sha256": self.submission.sha256}
+        facts: dict[str, Any] = {"file": self.file, "kind": "report" if self.is_report else "submission"}
+        facts |= {"submission": self.submission.name, "sha256": self.submission.sha256}
+        made = {"version": self.version, "options": dict(self.submission.run_with or {})}
+        return facts | made if self.is_report else facts
 
     @cached_property
     def records(self) -> Mapping[Name, Mapping[str, Any]]:
@@ -96,12 +110,27 @@ class Side:
     def hindrance(self, name: Name) -> str:
         """Return why a variant cannot be computed, an empty text where nothing is in its way."""
         row = self.records[name]["row"]
-        if row in self._rows:
+        if row in self._computed:
             return ""
+        return ", ".join(self._errors[row]) or "an error on another sheet"
+
+    @cached_property
+    def _computed(self) -> Collection[int]:
+        """The rows that can be computed: their limits and shape are looked at as well, which adds findings."""
+        return assess(self.validated, self.validated.settings).keys()
+
+    @cached_property
+    def _errors(self) -> Mapping[int, list[str]]:
+        """The errors of each row that cannot be computed; without one of its own, those elsewhere that stop it."""
+        found: dict[int, list[str]] = defaultdict(list)
         sheet = self.validated.table.sheet if self.validated.table else ""
-        errors = (found for found in self.validated.ledger.findings if found.level == "error")
-        mine = [found for found in errors if found.sheet == sheet and found.cell.lstrip(_LETTERS) == str(row)]
-        return ", ".join(f"{found.code} {found.cell}" for found in mine) or "an error on another sheet"
+        for one in self.validated.ledger.findings:
+            if one.level == "error" and one.sheet == sheet and one.cell:
+                found[int(one.cell.lstrip(_LETTERS))].append(f"{one.code} {one.cell}")
+        for row, errors in stopped_by(self.validated).items():
+            if row not in found:
+                found[row] = [f"{one.code} {one.place}" for one in errors[:_NAMED]]
+        return found
 
     @cached_property
     def _rows(self) -> Mapping[int, frozenset[str]]:
@@ -163,8 +192,31 @@ def side_of(path: Path, limits: ReadingLimits) -> Side:
     validated = validate(submission, limits)
     if validated.table is None:
         raise Refusal("E109", sheet="Variants", cell="A1")
-    results = result_rows(reading.results) if isinstance(reading, ReportReading) else None
-    return Side(file=path.name, submission=submission, validated=validated, results=results)
+    side = Side(file=path.name, submission=submission, validated=validated)
+    if not isinstance(reading, ReportReading):
+        return side
+    return replace(side, results=by_variant(result_rows(reading.results), side.records), version=reading.version)
+
+
+def by_variant(rows: Mapping[Name, Mapping[str, Any]], names: Iterable[Name]) -> dict[Name, Mapping[str, Any]]:
+    """Return rows that were read from a sheet by the names of the variants that they belong to.
+
+    Rows of none keep the name they have. A sheet may give `_x0041_` back as A, so that a name is not the key.
+    """
+    found = dict(zip(_named(_bare(name.text) for name in rows), rows.items(), strict=True))
+    wanted = list(names)
+    mine = {}
+    for name, bare in zip(wanted, _named(_bare(name.text) for name in wanted), strict=True):
+        if bare in found:
+            mine[name] = found.pop(bare)[1]
+    return mine | {name: row for name, row in found.values() if name not in mine}
+
+
+def _bare(text: str) -> str:
+    """Return a text without the escapes of a workbook, the same of what was written and of what was read back."""
+    while (shorter := _ESCAPED.sub(lambda match: chr(int(match[1], 16)), text.replace(_ESCAPE, ""))) != text:
+        text = shorter
+    return text
 
 
 def _named(names: Iterable[str]) -> list[Name]:

@@ -58,8 +58,9 @@ def carried_text(outcome: Outcome) -> str:
             )
         ),
     }
-    # Readers of workbooks take _x0041_ for a letter.
-    return json.dumps(carried, separators=(",", ":")).replace("_x", "_\\u0078")
+    # Readers of workbooks take _x0041_ for a letter, and some leave out x005F_ wherever it stands.
+    text = json.dumps(carried, separators=(",", ":"))
+    return text.replace("_x", "_\\u0078").replace("x005F_", "\\u0078005F_")
 
 
 def _sheets(sheets: Mapping[str, RawSheet], named: set[str]) -> list[RawSheet]:

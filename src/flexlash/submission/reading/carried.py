@@ -63,7 +63,7 @@ def _parsed(sheet: RawSheet) -> Any:
 def carried_submission(found: Any, limits: ReadingLimits) -> Submission:
     """Return the submission that a report carries; raise Refusal when it is none that could have been read."""
     try:
-        _require(type(found["form"]) is int, found["form"] >= 1)
+        _require(type(found["form"]) is int, found["form"] >= 1, isinstance(found["version"], str))
         if found["form"] > FORM:
             raise Refusal("E122", found=f"flexlash {shown(found['version'])} wrote them, which is later than this one")
         cells, head = from_wire(found["cells"]), found["submission"]

@@ -86,8 +86,12 @@ class Reading:
 
 
 class ReportReading(Reading):
-    """A report being read for the submission that it carries; `results` are its Results, None before they are read."""
+    """A report being read for the submission that it carries.
 
+    `results` are its Results, None before they are read; `version` is that of the flexlash that made it.
+    """
+
+    version: str = ""
     results: RawSheet | None = None
     carried: Submission | None = None
 
@@ -110,6 +114,7 @@ class ReportReading(Reading):
             try:
                 self.results = next(iter(from_wire(answer["results"]).sheets), None)
                 self.carried = carried_submission(answer["carried"], self.limits)
+                self.version = answer["carried"]["version"]
             except NONSENSE as fault:
                 raise Refusal("E118") from fault
         if self.carried is None:

@@ -1,0 +1,84 @@
+"""`flexlash run`: the tolerance spread of submissions, and the reports."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from flexlash.commands.arguments import JSON, LIMITS, MARKED, STRICT, SUBMISSIONS, planned, table_option
+from flexlash.targets import beside, report_targets
+from flexlash.terminal import one_submission, progress, tell, worst
+
+__all__ = ["run"]
+
+
+@click.command()
+@SUBMISSIONS
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="OUT",
+    help="Report (.xlsx), Results alone (.csv, .parquet, .json), or a folder. "
+    "Default: <name>-report.xlsx beside the submission.",
+)  # fmt: skip
+@click.option("--seed", type=click.IntRange(0, 2**32 - 1), help="Start of the random numbers.")
+@click.option("--method", type=click.Choice(["line", "sobol", "random"]), help="How the spread is sampled.")
+@click.option("--samples", type=click.IntRange(1, 2**22), help="Lines or points per variant.")
+@click.option(
+    "--cross-check/--no-cross-check", default=None,
+    help="Put plain Monte Carlo beside the spread and say whether they agree.",
+)  # fmt: skip
+@click.option("--elasticity/--no-elasticity", default=None, help="Check each variant by two-dimensional elasticity.")
+@click.option(
+    "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default="all cores", help="Processes."
+)
+@STRICT
+@LIMITS
+@JSON
+@click.option(
+    "--from-report", is_flag=True,
+    help="The files are reports: write the submission that each carries and compute it anew, with its own options.",
+)  # fmt: skip
+@click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")
+@click.option(
+    "--annotate/--no-annotate", default=True, show_default=True,
+    help="Write <name>-checked.xlsx, your file with the cells to mend marked, when there are errors or warnings.",
+)  # fmt: skip
+@MARKED
+@table_option("tolerances")
+@table_option("materials")
+def run(
+    submissions: tuple[Path, ...],
+    output: Path | None,
+    *,
+    annotate: bool,
+    from_report: bool,
+    as_json: bool,
+    quiet: bool,
+    **options: Any,
+) -> None:
+    """Validate, compute the tolerance spread, write the report."""
+    from flexlash.elasticity import MISSING, is_available
+    from flexlash.submission.reading.read import Reading
+
+    if options["elasticity"] and not is_available():
+        raise click.UsageError(MISSING)
+    targets = planned(report_targets, submissions, output)
+    if from_report:
+        from flexlash.commands.recreate import recreate_all
+
+        sys.exit(worst(recreate_all(submissions, output, as_json=as_json, quiet=quiet, **options)))
+    codes: list[int] = []
+    for path, target, copy in zip(submissions, targets, beside(submissions, targets), strict=True):
+        with one_submission(path, codes, as_json=as_json), progress(quiet=quiet or as_json) as advance:
+            reading = Reading(path, options["limits"])
+            from flexlash.pipeline import run as run_one
+
+            options["marked_copy"] = copy if annotate else None
+            outcome = run_one(reading, target, progress=advance, **options)
+            if not quiet or outcome.exit_code:
+                tell(outcome, path, as_json=as_json, ran=True)
+            codes += [] if outcome.skipped else [outcome.exit_code]
+    sys.exit(worst(codes))
