@@ -9,30 +9,34 @@ from typing import Any
 
 import pytest
 
-from flexlash.submission.templating.template import Filling, template_bytes
+from filled import SOUND, filled
+from flexlash.submission.reading.isolated import Asked, ask
 from here import AskedHere, ask_here
+
+_IN_A_PROCESS_OF_ITS_OWN = (
+    ("flexlash.submission.reading.read.Asked", Asked, AskedHere),
+    ("flexlash.handback.ask", ask, ask_here),
+)
+
+
+def _set(patch: pytest.MonkeyPatch, *, here: bool) -> None:
+    for name, apart, done_here in _IN_A_PROCESS_OF_ITS_OWN:
+        patch.setattr(name, done_here if here else apart)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _read_here_for_all(request):
+    """Read workbooks in this process also where a fixture serves a whole module."""
+    with pytest.MonkeyPatch.context() as patch:
+        if request.node.get_closest_marker("limited_process") is None:
+            _set(patch, here=True)
+        yield
 
 
 @pytest.fixture(autouse=True)
 def _read_here(request, monkeypatch):
     """Read workbooks in this process, unless a test is about the process that does so."""
-    if "limited_process" not in request.keywords:
-        monkeypatch.setattr("flexlash.submission.reading.read.Asked", AskedHere)
-        monkeypatch.setattr("flexlash.handback.ask", ask_here)
-
-
-SOUND: dict[str, Any] = {
-    "variant": "B3-160",
-    "flexspline_type": "cup",
-    "material": "20Cr2Ni4",
-    "torque_Nm": 800.0,
-    "cylinder_length_mm": 160.0,
-    "mean_radius_mm": 80.0,
-    "wall_thickness_mm": 1.6,
-    "disk_inner_radius_mm": 40.0,
-    "backlash_limit_arcmin": 3.75,
-}
-"""A Variants row without a fault."""
+    _set(monkeypatch, here="limited_process" not in request.keywords)
 
 
 @pytest.fixture
@@ -47,7 +51,7 @@ def workbook(tmp_path: Path) -> Callable[..., Path]:
 
     def write(rows: Sequence[Mapping[str, Any]], name: str = "submission.xlsx", **filling: Any) -> Path:
         path = tmp_path / name
-        path.write_bytes(template_bytes(Filling(variants=rows, **filling)))
+        path.write_bytes(filled(rows, **filling))
         return path
 
     return write

@@ -10,10 +10,13 @@ import pytest
 
 import regenerate
 from flexlash.pipeline import run
-from libreoffice import convert, needs_libreoffice
+from libreoffice import convert_all, needs_libreoffice
 
 PAPERS = {"A4": (9, 595, 842), "Letter": (1, 612, 792)}
+EXAMPLES = ("b3-160-study", "needs-fixing", "catalogue-sizes")
 ONE_PAGE = ("Summary", "Explorer", "Compare", "Contributions")
+LIGHT = bytes(range(200, 256))
+"""Greys that are not counted as print."""
 EDGE = 8
 """Pixels at 40 to the inch that no page may print on: within the margins of all sheets."""
 
@@ -29,12 +32,17 @@ def _on_paper(report, target, code):
     return target
 
 
-@pytest.fixture(scope="module", params=["b3-160-study", "needs-fixing", "catalogue-sizes"])
-def report(request, tmp_path_factory):
-    """Return the path of the report on an example."""
-    path = tmp_path_factory.mktemp("pages") / "report.xlsx"
-    run(regenerate.ROOT / "data" / f"{request.param}.xlsx", path)
-    return path
+@pytest.fixture(scope="module")
+def printed(tmp_path_factory):
+    """Return the report on each example and its pages on each paper, by example and paper."""
+    folder, asked = tmp_path_factory.mktemp("pages"), {}
+    for name in EXAMPLES:
+        report = folder / f"{name}.xlsx"
+        run(regenerate.ROOT / "data" / f"{name}.xlsx", report)
+        for paper, (code, *_) in PAPERS.items():
+            asked[name, paper] = report, _on_paper(report, folder / f"{name}-{paper}.xlsx", code)
+    documents = convert_all([path for _, path in asked.values()], "pdf", folder)
+    return {key: (report, pdf) for (key, (report, _)), pdf in zip(asked.items(), documents, strict=True)}
 
 
 def _greys(path):
@@ -46,20 +54,24 @@ def _greys(path):
     return width, height, [body[row * width : (row + 1) * width] for row in range(height)]
 
 
-def _footer(pdf, number, size):
-    """Return the words at the foot of a page."""
-    width, height = (round(side) for side in size)
-    area = ["-x", "0", "-y", str(height - 32), "-W", str(width), "-H", "32"]
-    command = ["pdftotext", "-f", str(number), "-l", str(number), *area, "-layout", str(pdf), "-"]
-    return " ".join(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split())
+def _footers(pdf, sizes):
+    """Return the words at the foot of each page."""
+    feet = {}
+    for width, height in set(sizes):
+        area = ["-x", "0", "-y", str(round(height) - 32), "-W", str(round(width)), "-H", "32"]
+        command = ["pdftotext", *area, "-layout", str(pdf), "-"]
+        texts = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split("\f")
+        feet[width, height] = [" ".join(text.split()) for text in texts]
+    return [feet[size][place] for place, size in enumerate(sizes)]
 
 
 @needs_libreoffice
 @pytest.mark.parametrize("paper", PAPERS)
-def test_every_page_is_whole(report, tmp_path, paper):
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_every_page_is_whole(printed, tmp_path, name, paper):
     """On either paper each page has its sheet's name, something on it and nothing on its edge; the glances take one."""
-    code, width, height = PAPERS[paper]
-    pdf = convert(_on_paper(report, tmp_path / f"{paper}.xlsx", code), "pdf", tmp_path)
+    _, width, height = PAPERS[paper]
+    report, pdf = printed[name, paper]
     subprocess.run(["pdftoppm", "-r", "40", "-gray", str(pdf), str(tmp_path / "page")], check=True)
     pictures = sorted(tmp_path.glob("page-*.pgm"))
     told = subprocess.run(["pdfinfo", "-l", "99", str(pdf)], check=True, capture_output=True, text=True).stdout
@@ -68,17 +80,16 @@ def test_every_page_is_whole(report, tmp_path, paper):
     shown = []
     with zipfile.ZipFile(report) as archive:
         names = re.findall(r'<sheet name="([^"]+)" sheetId="\d+" r:id', archive.read("xl/workbook.xml").decode())
-    for number, (picture, size) in enumerate(zip(pictures, sizes, strict=True), start=1):
-        footer = _footer(pdf, number, size)
-        name = footer.removesuffix(f"{number} / {len(pictures)} flexlash report").strip()
-        shown.append(name)
+    for number, (picture, footer) in enumerate(zip(pictures, _footers(pdf, sizes), strict=True), start=1):
+        sheet = footer.removesuffix(f"{number} / {len(pictures)} flexlash report").strip()
+        shown.append(sheet)
         across, _, rows = _greys(picture)
-        assert sum(grey < 200 for row in rows for grey in row) > 50, f"page {number} is empty"
+        assert sum(len(row.translate(None, LIGHT)) for row in rows) > 50, f"page {number} is empty"
         edge = [*rows[:EDGE], *rows[-EDGE:], *(row[:EDGE] + row[across - EDGE :] for row in rows)]
-        assert min(min(part) for part in edge) > 250, f"page {number} of {name} runs over its edge"
+        assert min(min(part) for part in edge) > 250, f"page {number} of {sheet} runs over its edge"
     assert shown == sorted(shown, key=names.index)
     assert set(shown) == set(names)
-    for name in ONE_PAGE:
-        assert shown.count(name) == 1, name
+    for sheet in ONE_PAGE:
+        assert shown.count(sheet) == 1, sheet
     assert shown.count("Results") == 4
     assert shown.count("Trace") == 2
