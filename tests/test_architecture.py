@@ -19,6 +19,7 @@ CORE = {
     "columns",
     "explanations",
     "findings",
+    "number_words",
     "result_columns",
     "tables",
     "units",

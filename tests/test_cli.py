@@ -114,10 +114,8 @@ def test_run_names_the_worst_variants(table, sound, capsys, main_in):
     assert main_in("run", table(rows)) == 0
     out = capsys.readouterr().out
     assert "P97.5 is over the backlash limit for 2 of 4 variants with a limit." in out
-    assert "  v0: practically all of units are over 3′." in out
-    assert re.search(
-        r"^  v1: all but 0\.0\d+ ppb \(0\.0\d+ to 0\.0\d+ ppb\) of units are over 3\.5′\.$", out, re.MULTILINE
-    )
+    assert "  v0: practically all units are over 3′." in out
+    assert "  v1: practically all units are over 3.5′." in out
 
 
 def test_run_with_one_scattering_dimension_tells_its_share(table, sound, tmp_path, capsys, main_in):

@@ -150,7 +150,8 @@ def test_formulas_move_with_their_row(study):
     """A difference refers to its own row relatively, so that a table sorted by the reader stays right."""
     sheet = _sheet(study[1])
     for number in (FIRST_ROW + 1, FIRST_ROW + 11):
-        assert sheet.cell(number, 18).value == f"=G{number}-$G${BASE_ROW + 1}"
+        base = f"$G${BASE_ROW + 1}"
+        assert sheet.cell(number, 18).value == f"=IF(ISNUMBER({base}),G{number}-{base},\"\")"
         assert sheet.cell(number, 12).value == f"=K{number}-I{number}"
 
 
@@ -198,6 +199,9 @@ def test_a_long_name_is_shortened_and_can_be_picked_whole(table, sound, tmp_path
     path = tmp_path / "report.xlsx"
     run(table(rows), path, method="random", samples=64)
     sheet = _sheet(path, data_only=True)
-    assert [sheet.cell(FIRST_ROW + rank, 2).value for rank in (1, 2)] == ["a variant with a name longer …"] * 2
+    assert [sheet.cell(FIRST_ROW + rank, 2).value for rank in (1, 2)] == [
+        "a variant with…han thirty, A",
+        "a variant with…han thirty, B",
+    ]
     assert sheet.cell(BASE_ROW + 1, 2).value == names[0]
     assert sheet.cell(BASE_ROW + 1, 3).value == 1

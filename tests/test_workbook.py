@@ -132,8 +132,10 @@ def test_texts_of_another_name_are_found():
     ],
 )
 def test_texts(text, value):
-    """Texts come with all their pieces, without their reading aid, and as text whatever they begin with."""
+    """Texts come with all their pieces, without their reading aid, as text whatever they begin with, shared or not."""
     assert _read(book_of(_row(f'<c r="A1" t="inlineStr">{text}</c>'))) == {1: {1: value}}
+    shared = f'<sst xmlns="{MAIN}"><si><t>other</t></si>{text.replace("is>", "si>")}</sst>'
+    assert _read(book_of(_row('<c r="A1" t="s"><v>1</v></c>'), **{STRINGS: shared})) == {1: {1: value}}
 
 
 @pytest.mark.parametrize("dimension", ["A1", "A1:A1", "C9:D9", "A1:XFD1048576", "nonsense", ""])

@@ -150,8 +150,8 @@ def _verdict() -> Iterator[str]:
     yield from (f"{colour.capitalize()}: {rule}." for colour, rule in RULES.items())
     yield (
         "By percentiles: green where P99.865 is at most the limit, else amber where P97.5 is, else red; "
-        f"{NO_VERDICT} where no limit was given. It judges the backlash alone, by the estimate as it stands; where the "
-        "limit lies within a few standard errors of the percentile, more samples may turn it."
+        f"{NO_VERDICT} where no limit was given. It judges the backlash alone, by the estimate as it stands; a ? says "
+        "that the 95 % interval of the share over the limit reaches another verdict, so that more samples may turn it."
     )
     yield "A variant with warnings has its verdict all the same: a part beyond yield can be green. See Findings."
 
@@ -167,8 +167,8 @@ def _digits() -> Iterator[str]:
         "is finer than they are known. Files in CSV, Parquet and JSON hold every digit of every number."
     )
     yield (
-        "A share of units below 0.001 ppb is called practically none, and practically all the other way round; the "
-        "columns of Results have the bounds."
+        "In words a share of units below 1 ppb is practically none, and practically all the other way round; up to "
+        "1 ppm it has two digits. The columns of Results have every digit, and the bounds."
     )
     yield (
         "Standard errors are shown with two digits. A share of units within 1 ppm of none or all is shown with at most "

@@ -10,7 +10,7 @@ from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 from flexlash.outcome import Outcome
 from flexlash.report.labels import distinct_labels
 from flexlash.report.links import result_rows, write_link
-from flexlash.report.live import Live, fill, place_of_name, put, when
+from flexlash.report.live import Live, fill, greatest, is_number, place_of_name, put, when
 from flexlash.report.selection import Drawn
 from flexlash.report.stored import Row, Stored
 from flexlash.report.styles import Book, decimals_of
@@ -130,14 +130,18 @@ def _write_base(book: Book, sheet: Any, compared: Stored, first: int) -> dict[st
     })  # fmt: skip
     place = place_of_name(picked, compared.cells("Variant"), names)
     place = put(sheet, BASE_ROW, 2, place, book.format("quiet"))
-    sheet.write_string(BASE_ROW, 3, "◄ its rank", book.format("quiet"))
-    cells = {
-        heading: put(sheet, BASE_ROW, column_of(heading), compared.pick(place, heading), book.format("base", number))
-        for heading, number in {**dict.fromkeys(_FIGURES, _FINEST), **_BASE_NUMBERS}.items()
-    }
-    put(sheet, BASE_ROW, _SHAPE, compared.pick(place, "Disk share"), book.format("base", "0%"))
-    put(sheet, BASE_ROW, _SHAPE + 1, compared.pick(place, "l/r"), book.format("base", "0.00"))
-    return cells
+    known = place > 0.0
+    told = when(known, "◄ its rank", "◄ not in the list: pick one")
+    put(sheet, BASE_ROW, 3, told, book.format("quiet"))
+
+    def write(heading: str, column: int, number: str) -> Live:
+        figure = compared.pick(greatest(place, 1.0), heading)
+        return put(sheet, BASE_ROW, column, when(known, figure, ""), book.format("base", number))
+
+    write("Disk share", _SHAPE, "0%")
+    write("l/r", _SHAPE + 1, "0.00")
+    figures = {**dict.fromkeys(_FIGURES, _FINEST), **_BASE_NUMBERS}
+    return {heading: write(heading, column_of(heading), number) for heading, number in figures.items()}
 
 
 def _write_words(book: Book, sheet: Any, rank: int, one: Drawn, link: tuple[str, int]) -> None:
@@ -190,10 +194,11 @@ def _write_differences(book: Book, sheet: Any, rank: int, of: tuple[Drawn, Store
     row = FIRST_ROW + rank
     for number, heading in enumerate(DIFFERENCES):
         place = _FIRST_DIFFERENCE + 2 * number
-        difference = _own(row, heading, compared.rows[rank]) - base[heading]
+        is_known = is_number(base[heading])
+        difference = when(is_known, _own(row, heading, compared.rows[rank]) - base[heading], "")
         put(sheet, row, place, difference, book.format("text", _signed(_decimals(one, heading))))
         relative = Live(xl_rowcol_to_cell(row, place), difference.value) / base[heading]
-        share = when(base[heading] > 0.0, relative, "")
+        share = when(is_known, when(base[heading] > 0.0, relative, ""), "")
         put(sheet, row, place + 1, share, book.format("text", _SIGNED_PERCENT))
 
 

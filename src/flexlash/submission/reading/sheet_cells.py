@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from typing import Any
 from xml.etree.ElementTree import iterparse
 
+from openpyxl.cell.text import Text
 from openpyxl.reader.excel import ExcelReader
-from openpyxl.reader.strings import read_string_table
 from openpyxl.styles.numbers import BUILTIN_FORMATS
 from openpyxl.styles.stylesheet import apply_stylesheet
 from openpyxl.worksheet._reader import WorkSheetParser
@@ -51,7 +51,7 @@ class SheetCells:
         reader.read_custom()
         self.workbook = reader.wb
         apply_stylesheet(reader.archive, self.workbook)
-        self.strings = read_string_table(_Part(strings)) if strings else []
+        self.strings = _texts(strings) if strings else []
         self.percentages = _percent_styles(self.workbook)
 
     def properties(self) -> dict[str, str]:
@@ -68,6 +68,17 @@ class SheetCells:
         """Return a cell's value; one that is shown as a percentage knows it."""
         is_number = cell["data_type"] == "n" and isinstance(cell["value"], int | float)
         return Percentage(cell["value"]) if is_number and cell["style_id"] in self.percentages else cell["value"]
+
+
+def _texts(part: bytes) -> list[str]:
+    """Return the texts that cells share; openpyxl's own reader drops x005F_, the escape of an underscore, too early."""
+    found = []
+    # The walk has refused document types; the guarded parser that openpyxl takes is slow.
+    for _, element in iterparse(_Part(part)):  # noqa: S314
+        if element.tag == f"{{{MAIN}}}si":
+            found.append(Text.from_tree(element).content)
+            element.clear()
+    return found
 
 
 def _percent_styles(workbook: Any) -> frozenset[int]:
