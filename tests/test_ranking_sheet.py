@@ -151,7 +151,7 @@ def test_formulas_move_with_their_row(study):
     sheet = _sheet(study[1])
     for number in (FIRST_ROW + 1, FIRST_ROW + 11):
         base = f"$G${BASE_ROW + 1}"
-        assert sheet.cell(number, 18).value == f"=IF(ISNUMBER({base}),G{number}-{base},\"\")"
+        assert sheet.cell(number, 18).value == f'=IF(ISNUMBER({base}),G{number}-{base},"")'
         assert sheet.cell(number, 12).value == f"=K{number}-I{number}"
 
 

@@ -8,9 +8,10 @@ from typing import Any
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
 from flexlash.outcome import Outcome
+from flexlash.report.functions import greatest, is_number, place_of_name
 from flexlash.report.labels import distinct_labels
 from flexlash.report.links import result_rows, write_link
-from flexlash.report.live import Live, fill, greatest, is_number, place_of_name, put, when
+from flexlash.report.live import Live, fill, put, when
 from flexlash.report.selection import Drawn
 from flexlash.report.stored import Row, Stored
 from flexlash.report.styles import Book, decimals_of

@@ -7,19 +7,8 @@ from typing import Any
 from flexlash.report.explorer.curves_sheet import CAUSES, SEGMENTS
 from flexlash.report.explorer.explorer_choice import Choice
 from flexlash.report.explorer.explorer_working import COLUMN, CURVE_ROW, Working
-from flexlash.report.live import (
-    Live,
-    both,
-    decimal_logarithm,
-    fixed,
-    greatest,
-    joined,
-    least,
-    live,
-    put,
-    when,
-    whole,
-)
+from flexlash.report.functions import all_of, decimal_logarithm, fixed, greatest, least, whole
+from flexlash.report.live import Live, joined, live, put, when
 from flexlash.report.styles import GRID, PALETTE, Book
 from flexlash.tolerance.curves import CURVE_SCORES, HISTOGRAM_BINS
 
@@ -72,7 +61,7 @@ def _drawn(working: Working) -> tuple[int, int]:
 
 def _in_picture(working: Working, limit: Live) -> Live:
     """Return whether the limit lies not much farther out than the drawn curve."""
-    return both(limit >= working.backlash[0], limit <= working.backlash[-1])
+    return all_of(limit >= working.backlash[0], limit <= working.backlash[-1])
 
 
 def _density(book: Book, sheet: Any, choice: Choice, limit: Live) -> Any:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from flexlash.report.live import Live, both, fill, greatest, is_number, joined, live, place_of_name, put, when
+from flexlash.report.functions import all_of, greatest, is_number, place_of_name
+from flexlash.report.live import Live, fill, joined, live, put, when
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book
 
@@ -48,14 +49,14 @@ class Choice:
         words = '"◄ arcmin or arcsec (1 arcmin = "0")";;"◄ arcmin or arcsec, nothing else"'
         factor = when(unit.equals("arcsec"), _SECONDS, when(unit.equals("arcmin"), 1.0, 0.0))
         factor = put(sheet, _FIRST_ROW + 1, 2, factor, book.format("hint", words))
-        self.known = both(place > 0.0, factor > 0.0)
+        self.known = all_of(place > 0.0, factor > 0.0)
         self._place, self._factor = greatest(place, 1.0), greatest(factor, 1.0)
         self.unit = when(factor > 0.0, unit, live(""))
         self._write_limit(sheet, hint, typed)
-        sound = when(is_number(wanted), both(wanted >= _RAREST, wanted <= _COMMONEST), Live("FALSE", value=False))
+        sound = when(is_number(wanted), all_of(wanted >= _RAREST, wanted <= _COMMONEST), Live("FALSE", value=False))
         told = when(sound, "◄ gives the limit for it, below", "◄ a share from 0.0001 % to 99.9999 %")
         put(sheet, _FIRST_ROW + 3, 2, told, hint)
-        self.wants = both(self.known, sound)
+        self.wants = all_of(self.known, sound)
         self.wanted = when(sound, wanted, USUAL_SHARE)
 
     def _write_limit(self, sheet: Any, hint: Any, typed: Live) -> None:

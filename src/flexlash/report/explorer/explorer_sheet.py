@@ -11,7 +11,8 @@ from typing import Any
 from flexlash.report.explorer.explorer_charts import write_charts
 from flexlash.report.explorer.explorer_choice import NONE, USUAL_SHARE, Choice
 from flexlash.report.explorer.explorer_working import Read, Working
-from flexlash.report.live import Live, both, greatest, joined, least, live, normal_score, normal_share, put, when
+from flexlash.report.functions import all_of, greatest, least, normal_score, normal_share
+from flexlash.report.live import Live, joined, live, put, when
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book
 
@@ -130,7 +131,7 @@ def _verdict(share: Live, low: Live, high: Live) -> Live:
 
 def _settled(share: Live, low: Live, high: Live) -> Live:
     """Return whether the whole interval of a share has the same verdict."""
-    amber = both(low > USUAL_SHARE, high <= _AMBER)
+    amber = all_of(low > USUAL_SHARE, high <= _AMBER)
     return when(share <= USUAL_SHARE, high <= USUAL_SHARE, when(share <= _AMBER, amber, low > _AMBER))
 
 

@@ -12,17 +12,18 @@ from typing import Any
 from xlsxwriter.utility import xl_range_abs
 
 from flexlash.columns import VARIANTS, Column
-from flexlash.report.live import Live, entry_of, fill, joined, live, put, when
-from flexlash.report.trace.inputs import ENTERED
-from flexlash.report.trace.ranges import (
+from flexlash.report.functions import (
     all_of,
     any_of,
     elsewhere,
+    entry_of,
     is_number,
     negation,
     number_in,
     place_of_first,
 )
+from flexlash.report.live import Live, fill, joined, live, put, when
+from flexlash.report.trace.inputs import ENTERED
 from flexlash.report.trace.trace_page import LEFT_OUT, SHEET, Page
 
 __all__ = ["ALWAYS", "RULES_WIDTH", "TYPES", "write_rules"]

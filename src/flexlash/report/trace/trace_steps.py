@@ -5,22 +5,24 @@ from __future__ import annotations
 from flexlash.mechanics.fillets import ARC_RULE, FINE_RULE, JUNCTION_RULE, WIDE
 from flexlash.mechanics.strength import PASSES, STATIONS
 from flexlash.mechanics.windup import NEARLY, TAPER_PLACES, TAPER_WEIGHTS
-from flexlash.report.live import (
-    Live,
-    Operand,
+from flexlash.report.functions import (
+    PI,
     cosine,
+    elsewhere,
     entry_of,
     exponential,
     greatest,
+    greatest_in,
     least,
-    live,
     logarithm,
+    magnitude,
+    place_of_greatest,
     sine,
-    when,
+    total,
 )
+from flexlash.report.live import Live, Operand, live, when
 from flexlash.report.trace.blocks import Block
 from flexlash.report.trace.part_rules import RULES_WIDTH, write_rules
-from flexlash.report.trace.ranges import PI, elsewhere, greatest_in, magnitude, place_of_greatest, total
 from flexlash.report.trace.trace_page import Page
 
 __all__ = ["STEPS", "Steps", "shear", "thickness_at"]
