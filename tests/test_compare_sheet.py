@@ -6,15 +6,21 @@ import re
 import subprocess
 import warnings
 import zipfile
+from functools import lru_cache
 
 import openpyxl
 import pytest
+import xlsxwriter
 
 import regenerate
 from flexlash.pipeline import run
-from flexlash.report.compare.compare_sheet import BOXES
+from flexlash.report.compare.compare_sheet import BOXES, write_compare
+from flexlash.report.compare.compared import COMPARED_NOTE, compared_variants
+from flexlash.report.compare.contributions_sheet import write_contributions
+from flexlash.report.compare.ranking_sheet import write_ranking
 from flexlash.report.selection import drawn_variants
-from libreoffice import convert, needs_libreoffice
+from flexlash.report.styles import Book
+from libreoffice import convert_all, needs_libreoffice
 from report_charts import chart_titled, points_of
 
 AROUND = "Spread around the median of each variant"
@@ -29,22 +35,26 @@ def study(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def many(tmp_path_factory):
-    """Return a report of more variants than boxes can be read."""
+    """Return the outcome and the report of more variants than boxes can be read."""
     folder = tmp_path_factory.mktemp("many")
     lines = [
         "variant,material,torque_Nm,cylinder_length_mm,mean_radius_mm,wall_thickness_mm,disk_inner_radius_mm",
         *(f"a rather long name of variant {number},20Cr2Ni4,{700 + number},160,80,1.6,40" for number in range(60)),
     ]
     (folder / "many.csv").write_text("\n".join(lines), encoding="utf-8")
-    run(folder / "many.csv", folder / "report.xlsx", method="random", samples=64)
-    return folder / "report.xlsx"
+    return run(folder / "many.csv", folder / "report.xlsx", method="random", samples=64), folder / "report.xlsx"
+
+
+@lru_cache(maxsize=2)
+def _open(path):
+    with path.open("rb") as file, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return openpyxl.load_workbook(file)
 
 
 def _cells(path, heading, last):
     """Return the range of a column of the data sheet, and the numbers in it."""
-    with path.open("rb") as file, warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        sheet = openpyxl.load_workbook(file)["Compared"]
+    sheet = _open(path)["Compared"]
     (place,) = [cell.column for cell in sheet[2] if cell.value == heading]
     letter = openpyxl.utils.get_column_letter(place)
     end = f":${letter}${last}" if last > 3 else ""
@@ -52,10 +62,7 @@ def _cells(path, heading, last):
 
 
 def _texts(path):
-    with path.open("rb") as file, warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        sheet = openpyxl.load_workbook(file)["Compare"]
-    return " ".join(str(cell.value) for row in sheet.iter_rows() for cell in row if cell.value)
+    return " ".join(str(cell.value) for row in _open(path)["Compare"].iter_rows() for cell in row if cell.value)
 
 
 @pytest.mark.parametrize(
@@ -93,12 +100,13 @@ def test_the_axis_holds_all_whiskers_and_limits(study):
 
 def test_the_worst_of_many_have_boxes(many):
     """Of more variants than can be read the worst have boxes, and the sheet says so; without limits no limit."""
-    chart = chart_titled(many, "Backlash")
-    cells, numbers = _cells(many, "P25", 2 + BOXES)
+    path = many[1]
+    chart = chart_titled(path, "Backlash")
+    cells, numbers = _cells(path, "P25", 2 + BOXES)
     assert points_of(chart, cells) == pytest.approx(dict(enumerate(numbers)), rel=1e-15)
     assert numbers == sorted(numbers, reverse=True)
     assert "Compared!$I$" not in chart
-    assert _texts(many).startswith(
+    assert _texts(path).startswith(
         "Variants side by side The 40 worst of 60 computed variants, worst first (Ranking lists 60)."
     )
 
@@ -123,16 +131,26 @@ def test_charts_are_described(study):
     ]
 
 
+def _alone(outcome, path):
+    """Write the three sheets of the comparison and what they lead to, which are printed sooner than a whole report."""
+    drawn = drawn_variants(outcome)
+    compared = compared_variants(drawn)
+    with xlsxwriter.Workbook(path) as workbook:
+        book = Book(workbook)
+        write_compare(book, outcome, drawn, compared)
+        write_ranking(book, outcome, drawn, compared)
+        write_contributions(book, outcome, drawn, compared)
+        compared.write(book, COMPARED_NOTE)
+        workbook.add_worksheet("Results")
+    return path
+
+
 @needs_libreoffice
-@pytest.mark.parametrize("name", ["study", "many"])
-def test_the_comparison_prints_on_whole_pages(name, request, tmp_path):
+def test_the_comparison_prints_on_whole_pages(study, many, tmp_path):
     """Compare and Contributions print on one page each, Ranking of a few dozen rows on one or two."""
-    given = request.getfixturevalue(name)
-    path = given if name == "many" else given[1]
-    document = convert(path, "pdf", tmp_path)
-    text = subprocess.run(["pdftotext", document, "-"], check=True, capture_output=True, text=True).stdout
-    pages = [set(page.splitlines()) for page in text.split("\f")]
-    # About names all sheets.
-    footers = [line for page in pages if "Summary" not in page for line in page]
-    assert (footers.count("Compare"), footers.count("Contributions")) == (1, 1)
-    assert footers.count("Ranking") in {1, 2}
+    paths = [_alone(outcome, tmp_path / f"{place}.xlsx") for place, (outcome, _) in enumerate((study, many))]
+    for document in convert_all(paths, "pdf", tmp_path):
+        text = subprocess.run(["pdftotext", document, "-"], check=True, capture_output=True, text=True).stdout
+        footers = [line for page in text.split("\f") for line in set(page.splitlines())]
+        assert (footers.count("Compare"), footers.count("Contributions")) == (1, 1)
+        assert footers.count("Ranking") in {1, 2}

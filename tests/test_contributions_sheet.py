@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from functools import lru_cache
 
 import openpyxl
 import pytest
@@ -25,6 +26,7 @@ def study(tmp_path_factory):
     return run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path, samples=512), path
 
 
+@lru_cache(maxsize=2)
 def _sheet(path):
     with path.open("rb") as file, warnings.catch_warnings():
         warnings.simplefilter("ignore")

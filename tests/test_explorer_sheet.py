@@ -33,6 +33,12 @@ def study(tmp_path_factory):
     return run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path), path
 
 
+@pytest.fixture
+def _curves_without_a_report(monkeypatch):
+    """Leave out the writing of whole reports, for tests that look at the Explorer alone."""
+    monkeypatch.setattr("flexlash.report.workbook.report_bytes", lambda _: b"")
+
+
 def _explorer_alone(outcome, path):
     """Write the Explorer without charts and its data sheet alone, recalculated sooner than a whole report."""
     drawn = path.with_name(f"drawn {path.name}")
@@ -97,6 +103,7 @@ def _five(sound):
 
 @needs_libreoffice
 @pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.usefixtures("_curves_without_a_report")
 def test_any_variant_and_any_limit_agree_with_the_program(table, sound, tmp_path, shape):
     """Five variants at two or ten limits each, from 1 ppm up: the reading is within 1 % of the program's share.
 
@@ -178,6 +185,7 @@ def test_the_unit_is_switched_in_one_cell(study, tmp_path):
 
 
 @needs_libreoffice
+@pytest.mark.usefixtures("_curves_without_a_report")
 def test_without_limit_or_scatter_nothing_is_an_error(table, sound, tmp_path):
     """A variant without a limit says so; one that does not scatter is over a limit or not; no cell is an error."""
     tolerances = tmp_path / "tolerances.csv"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from functools import lru_cache
 
 import openpyxl
 import pytest
@@ -46,6 +47,7 @@ def _alone(outcome, path):
     return path
 
 
+@lru_cache(maxsize=2)
 def _sheet(path, **options):
     with path.open("rb") as file, warnings.catch_warnings():
         warnings.simplefilter("ignore")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import warnings
 import zipfile
+from functools import lru_cache
 
 import openpyxl
 import pytest
@@ -43,6 +44,7 @@ def faulty(tmp_path_factory):
     return run(regenerate.ROOT / "data" / "needs-fixing.xlsx", path, samples=512), path
 
 
+@lru_cache(maxsize=2)
 def _open(path, **options):
     with path.open("rb") as file, warnings.catch_warnings():
         warnings.simplefilter("ignore")

@@ -6,6 +6,7 @@ import re
 import subprocess
 import warnings
 import zipfile
+from functools import lru_cache
 
 import openpyxl
 import pytest
@@ -30,6 +31,7 @@ FILLS = {"red": "FFF8CBAD", "amber": "FFFFE699", "green": "FFC6E5D8"}
 NUMBERS = ("backlash_arcmin", "p50_arcmin", "p97_5_arcmin", "backlash_limit_arcmin")
 
 
+@lru_cache(maxsize=2)
 def _open(path, **options):
     with path.open("rb") as file, warnings.catch_warnings():
         warnings.simplefilter("ignore")
