@@ -8,7 +8,7 @@ import json
 
 import openpyxl
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from openpyxl.packaging.custom import StringProperty
 
@@ -109,15 +109,19 @@ def test_nonsense_is_refused(what):
 
 
 KEYS = st.sampled_from(["form", "version", "submission", "options", "cells", "sheets", "rows", "name"])
+thorough = settings(deadline=None, derandomize=True, max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+
 VALUES = st.none() | st.booleans() | st.floats() | st.text()
 
 
+@thorough
 @given(st.recursive(VALUES, lambda one: st.lists(one) | st.dictionaries(KEYS, one)))
 def test_any_nonsense_is_refused(found):
     """No JSON text whatever raises anything but a refusal."""
     assert _refused(found).code == "E122"
 
 
+@thorough
 @given(st.data())
 def test_any_place_replaced_by_anything(data):
     """One part of a sound text replaced by anything gives a submission or a refusal, nothing else."""
