@@ -24,7 +24,6 @@ __all__ = [
     "entry_of",
     "exponential",
     "filled",
-    "first_of",
     "fixed",
     "greatest",
     "greatest_in",
@@ -119,12 +118,6 @@ def _of_numbers(name: str, operands: Sequence[Operand], work: Callable[[list[Any
     if texts:
         return call(name, operands, next(filter(is_error, texts), "#VALUE!"))
     return call(name, operands, float(work(values)))
-
-
-def first_of(wanted: Live, otherwise: Operand) -> Live:
-    """Return an expression, or another one where it is an error."""
-    two = live(otherwise)
-    return call("IFERROR", [wanted, two], two.value if is_error(wanted.value) else wanted.value)
 
 
 def fixed(number: Operand, decimals: Operand) -> Live:
