@@ -33,7 +33,7 @@ ALLOWED = {
     "submission": CORE | {"tolerance.grades"},
     "assessment": CORE | {"mechanics", "submission", "tolerance"},
     "verification": CORE | {"assessment", "elasticity", "mechanics", "submission"},
-    "results": CORE | {"tolerance"},
+    "results": CORE | {"outcome", "submission", "tolerance"},
     "scatter": CORE | {"assessment", "mechanics", "options", "tolerance"},
     "outcome": CORE | {"assessment", "elasticity", "options", "remedies", "submission", "tolerance.curves"},
     "remedies": CORE | {"assessment", "mechanics", "options", "scatter", "tolerance"},

@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flexlash.assessment import assess
 from flexlash.elasticity import MISSING, is_available
@@ -15,7 +15,7 @@ from flexlash.handback import certain_repairs, marked, mended, sealed, unclaimed
 from flexlash.options import Options
 from flexlash.outcome import DRAWN, PICTURED, Outcome
 from flexlash.remedies import remedies_of
-from flexlash.results import result_record, results_frame
+from flexlash.results import results_frame, results_of
 from flexlash.scatter import drawn_curves, scattered
 from flexlash.submission.mending.repair import Repair
 from flexlash.submission.reading.gate import kind_of, read_bytes
@@ -23,22 +23,14 @@ from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import column_number
 from flexlash.submission.reading.read import RawSheet, Reading, ReportReading, Submission, read_table
 from flexlash.submission.reading.refusal import Refusal
-from flexlash.submission.stops import stopped_by
 from flexlash.submission.validate import Validated, validate
 from flexlash.summary import worst_first
 from flexlash.variant import Settings
 
-if TYPE_CHECKING:
-    import polars as pl
-
 __all__ = ["Options", "Outcome", "check", "mend", "run"]
 
-_HELD_BACK = "held back by --strict, since other rows have errors"
 _PASSES = 3
 """Most times that a mended submission is looked at again, since one repair may uncover another fault."""
-
-_NAMED = 3
-"""Most errors elsewhere that a row of Results names."""
 
 
 def check(submission: str | Path | Reading, **options: Any) -> Outcome:
@@ -201,7 +193,7 @@ def _validated(submission: Submission, options: Options) -> Outcome:
         validated=validated,
         computed=computed,
     )
-    outcome.results = _results(outcome)
+    outcome.results = results_of(outcome)
     return outcome
 
 
@@ -228,7 +220,7 @@ def _spread(outcome: Outcome, options: Options) -> None:
         options,
         (lambda done, rows: progress(done, rows * steps)) if progress else None,
     )
-    outcome.results = _results(outcome, cross_check=bool(options.cross_check))
+    outcome.results = results_of(outcome, cross_check=bool(options.cross_check))
     outcome.remedies = remedies_of(outcome.computed, outcome.settings)
 
 
@@ -254,7 +246,7 @@ def _verify(outcome: Outcome, options: Options) -> None:
         progress=(lambda done, total: progress(rows + done, rows + total)) if progress else None,
     )
     outcome.findings = _in_order(outcome.validated, outcome.submission)
-    outcome.results = _results(outcome, cross_check=bool(options.cross_check), elasticity=True)
+    outcome.results = results_of(outcome, cross_check=bool(options.cross_check), elasticity=True)
 
 
 def _picture(outcome: Outcome) -> None:
@@ -269,37 +261,3 @@ def _picture(outcome: Outcome) -> None:
 def _in_order(validated: Validated, submission: Submission) -> list[Finding]:
     """Return the findings in the order of the submission."""
     return sorted(validated.ledger.findings, key=_place_order(submission))
-
-
-def _results(outcome: Outcome, *, cross_check: bool = False, elasticity: bool = False) -> pl.DataFrame:
-    """Return the Results table, one row per submitted variant in submitted order."""
-    if outcome.validated is None:
-        return results_frame([])
-    by_row: dict[int, list[Finding]] = {}
-    sheet = outcome.validated.table.sheet if outcome.validated.table else ""
-    for found in outcome.findings:
-        if found.sheet == sheet and found.cell and found.level != "info":
-            row = int(found.cell.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
-            by_row.setdefault(row, []).append(found)
-    stops = stopped_by(outcome.validated)
-    records = []
-    for row, name, notes in outcome.validated.submitted:
-        mine = by_row.get(row, [])
-        one = outcome.computed.get(row)
-        listed = ", ".join(f"{found.code} {found.cell}" for found in mine)
-        if one is None and not any(found.level == "error" for found in mine):
-            listed = ", ".join(filter(None, [listed, _stopped(stops.get(row, []))]))
-        record = result_record(one.variant, one.nominal, one.variation) if one else {}
-        status = "error" if one is None else "warning" if mine else "ok"
-        records.append(
-            {**record, "variant": name, "status": status, "notes": notes or None, "findings": listed or None}
-        )
-    return results_frame(records, cross_check=cross_check, elasticity=elasticity)
-
-
-def _stopped(errors: list[Finding]) -> str:
-    """Return what stops a row that has no error itself: `stopped by E317 Tolerances!F7`."""
-    if not errors:
-        return _HELD_BACK
-    more = f" and {len(errors) - _NAMED} more" if len(errors) > _NAMED else ""
-    return f"stopped by {', '.join(f'{found.code} {found.place}' for found in errors[:_NAMED])}{more}"

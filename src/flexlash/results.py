@@ -8,12 +8,19 @@ from typing import Any
 
 import polars as pl
 
+from flexlash.findings import Finding
+from flexlash.outcome import Outcome
 from flexlash.result_columns import result_columns
+from flexlash.submission.stops import stopped_by
 from flexlash.tolerance.variation import Variation
 from flexlash.units import ARCMIN, RPM, as_entered
 from flexlash.variant import Variant
 
-__all__ = ["result_record", "results_frame"]
+__all__ = ["result_record", "results_frame", "results_of"]
+
+_HELD_BACK = "held back by --strict, since other rows have errors"
+_NAMED = 3
+"""Most errors elsewhere that a row of Results names."""
 
 _COLUMNS = result_columns(cross_check=True, elasticity=True)
 _STEMS = {column.key: (column.dimension, column.si_unit.si) for column in _COLUMNS if column.quantity} | {
@@ -63,3 +70,37 @@ def results_frame(
     columns = result_columns(cross_check=cross_check, elasticity=elasticity)
     types = {column.key: pl.Float64 if column.is_number else pl.String for column in columns}
     return pl.DataFrame([{key: record.get(key) for key in types} for record in records], schema=types, orient="row")
+
+
+def results_of(outcome: Outcome, *, cross_check: bool = False, elasticity: bool = False) -> pl.DataFrame:
+    """Return the Results table, one row per submitted variant in submitted order."""
+    if outcome.validated is None:
+        return results_frame([])
+    by_row: dict[int, list[Finding]] = {}
+    sheet = outcome.validated.table.sheet if outcome.validated.table else ""
+    for found in outcome.findings:
+        if found.sheet == sheet and found.cell and found.level != "info":
+            row = int(found.cell.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
+            by_row.setdefault(row, []).append(found)
+    stops = stopped_by(outcome.validated)
+    records = []
+    for row, name, notes in outcome.validated.submitted:
+        mine = by_row.get(row, [])
+        one = outcome.computed.get(row)
+        listed = ", ".join(f"{found.code} {found.cell}" for found in mine)
+        if one is None and not any(found.level == "error" for found in mine):
+            listed = ", ".join(filter(None, [listed, _stopped(stops.get(row, []))]))
+        record = result_record(one.variant, one.nominal, one.variation) if one else {}
+        status = "error" if one is None else "warning" if mine else "ok"
+        records.append(
+            {**record, "variant": name, "status": status, "notes": notes or None, "findings": listed or None}
+        )
+    return results_frame(records, cross_check=cross_check, elasticity=elasticity)
+
+
+def _stopped(errors: list[Finding]) -> str:
+    """Return what stops a row that has no error itself: `stopped by E317 Tolerances!F7`."""
+    if not errors:
+        return _HELD_BACK
+    more = f" and {len(errors) - _NAMED} more" if len(errors) > _NAMED else ""
+    return f"stopped by {', '.join(f'{found.code} {found.place}' for found in errors[:_NAMED])}{more}"
