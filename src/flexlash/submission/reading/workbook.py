@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from flexlash.submission.reading.archive import packed, unpacked
+from flexlash.submission.reading.libraries import require_known_libraries
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.package import Package, open_package
 from flexlash.submission.reading.raw import ERROR_WORDS, ErrorCell, RawSheet, RawValue, Unstored
@@ -53,6 +54,7 @@ def read_workbook(data: bytes, limits: ReadingLimits, only: Collection[str] = ()
         raise
     except Exception as fault:
         # openpyxl leaks a dozen exception types on damaged parts; none of their texts is for a user.
+        require_known_libraries()
         raise Refusal("E102") from fault
     _check_texts(cells, limits)
     return cells
