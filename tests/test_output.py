@@ -35,7 +35,7 @@ def test_csv_holds_full_doubles_and_blanks(outcome, tmp_path):
 def test_csv_text_is_inert(outcome, tmp_path):
     """A text that a spreadsheet would take for a formula gets an apostrophe in CSV, and only there."""
     text = output.write_outcome(outcome, tmp_path / "out.csv").read_text(encoding="utf-8")
-    assert "\n'=1+1," in text
+    assert '\n"\'=1+1",' in text
     assert outcome.results["variant"][0] == "=1+1"
 
 

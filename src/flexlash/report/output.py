@@ -8,15 +8,13 @@ import os
 import tempfile
 from pathlib import Path
 
-import polars as pl
-
 from flexlash.outcome import Outcome
+from flexlash.report.results_table import csv_text, results_table
 
 __all__ = ["ENDINGS", "write_bytes", "write_outcome"]
 
 ENDINGS = (".xlsx", ".csv", ".parquet", ".json")
 
-_FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
 _COPIES = 100
 _LOCKS = os.name == "nt"
 """Whether this system refuses to replace a file that another program holds open."""
@@ -34,24 +32,16 @@ def write_outcome(outcome: Outcome, path: Path) -> Path:
 
         data = report_bytes(outcome)
     elif ending == ".csv":
-        data = _as_csv(outcome.results)
+        data = csv_text(results_table(outcome)).encode()
     elif ending == ".parquet":
         buffer = io.BytesIO()
-        outcome.results.write_parquet(buffer)
+        results_table(outcome).write_parquet(buffer)
         data = buffer.getvalue()
     elif ending == ".json":
-        data = (json.dumps(outcome.results.to_dicts(), ensure_ascii=False, indent=1) + "\n").encode()
+        data = (json.dumps(results_table(outcome).to_dicts(), ensure_ascii=False, indent=1) + "\n").encode()
     else:
         raise ValueError(f"the output must end in {', '.join(ENDINGS)}, not {path.suffix or 'nothing'}")
     return write_bytes(data, path)
-
-
-def _as_csv(results: pl.DataFrame) -> bytes:
-    """Return the Results as CSV; texts that a spreadsheet would take for a formula get an apostrophe."""
-    texts = pl.col(pl.String)
-    starts = texts.str.slice(0, 1).is_in(_FORMULA_STARTS)
-    inert = results.with_columns(pl.when(starts).then(pl.lit("'") + texts).otherwise(texts).name.keep())
-    return inert.write_csv().encode()
 
 
 def write_bytes(data: bytes, path: Path) -> Path:

@@ -1,0 +1,126 @@
+"""Results as a table alone: its columns, then the engineer's own under their own headers; and the CSV text of it."""
+
+from __future__ import annotations
+
+import datetime
+import math
+import re
+from collections.abc import Iterator, Sequence
+
+import polars as pl
+
+from flexlash.outcome import Outcome
+from flexlash.result_columns import result_columns
+from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Percentage, RawValue
+
+__all__ = ["csv_text", "results_table"]
+
+_AS_SUBMITTED = "as submitted"
+"""What follows the header of an own column in brackets where another column has that name."""
+
+_NUMBER = re.compile(r"-?(?:0|[1-9]\d*)(?:\.\d+)?(?:[eE][+-]\d{1,3})?", re.ASCII)
+"""A text of a CSV file that is a number and no part number such as 007 or 12E5."""
+
+_MOST_DIGITS = 15
+"""Digits of a number that every program keeps."""
+
+_GREATEST = 2**63
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
+
+_STARTS = ((r"^([\t\r])", "'${1}"), (r"(^|[;|\t\r\n])([=+\-@])", "${1}'${2}"))
+"""What a spreadsheet takes for the start of a formula, and what takes its place.
+
+It may also stand behind what another reader takes for the end of a cell. Quotes do not help there: a reader that
+separates cells elsewhere meets them in the middle of a cell, where they are letters.
+"""
+
+
+def results_table(outcome: Outcome) -> pl.DataFrame:
+    """Return Results in submitted order with the submission's own columns at the right.
+
+    An own column is numeric where all of its entries are numbers, else text. Where its header is the name of another
+    column it reads `header (as submitted)`.
+    """
+    own: list[pl.Series] = []
+    taken = {column.key for column in result_columns(cross_check=True, elasticity=True)}
+    for header, values in _own_columns(outcome):
+        name, copy = header, 1
+        while name in taken:
+            name = f"{header} ({_AS_SUBMITTED}{f' {copy}' if copy > 1 else ''})"
+            copy += 1
+        taken.add(name)
+        own.append(_typed(name, values))
+    return outcome.results.with_columns(own)
+
+
+def _own_columns(outcome: Outcome) -> Iterator[tuple[str, list[RawValue | None]]]:
+    """Yield header and entries of each column that the submission has and flexlash does not use."""
+    table = outcome.validated.table if outcome.validated else None
+    if outcome.validated is None or table is None:
+        return
+    rows = [row for row, _, _ in outcome.validated.submitted]
+    for place, header in sorted(table.heading.extra.items()):
+        values = [table.cells[row].get(place) for row in rows]
+        if table.numbers_are_texts:
+            numbers = [None if value is None else _number_of(value) for value in values]
+            is_numeric = all((value is None) == (number is None) for value, number in zip(values, numbers, strict=True))
+            values = [*numbers] if is_numeric else values
+        yield _clean(header), values
+
+
+def _number_of(value: RawValue) -> float | int | None:
+    """Return the number that a text of a CSV file is, None where it is none or would lose digits."""
+    if not isinstance(value, str) or isinstance(value, DoubtfulNumber):
+        return None
+    text = value.strip()
+    text = text.replace(",", ".") if isinstance(value, CommaNumber) else text
+    digits = sum(character.isdigit() for character in text.lower().partition("e")[0])
+    if not _NUMBER.fullmatch(text) or digits > _MOST_DIGITS:
+        return None
+    return int(text) if text.lstrip("-").isdigit() else float(text)
+
+
+def _typed(name: str, values: Sequence[RawValue | None]) -> pl.Series:
+    """Return a column of whole numbers, of numbers, or of texts."""
+    entries = [value for value in values if value is not None]
+    if entries and all(map(_is_number, entries)):
+        is_whole = all(isinstance(value, int) and abs(value) < _GREATEST for value in entries)
+        return pl.Series(name, values, dtype=pl.Int64 if is_whole else pl.Float64, strict=False)
+    return pl.Series(name, [None if value is None else _text_of(value) for value in values], dtype=pl.String)
+
+
+def _is_number(value: RawValue) -> bool:
+    """Whether an entry is a finite number."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _text_of(value: RawValue) -> str:
+    """Return an entry as a text, as its cell shows it."""
+    if isinstance(value, Percentage):
+        return value.shown
+    if isinstance(value, datetime.datetime) and value.time() == datetime.time():
+        value = value.date()
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
+    text = value.text if isinstance(value, ErrorCell) else str(value)
+    return _clean(text.upper() if isinstance(value, bool) else text)
+
+
+def _clean(text: str) -> str:
+    """Return a text without what no file of texts can hold."""
+    return _CONTROL.sub("·", text).encode("utf-8", "backslashreplace").decode()
+
+
+def csv_text(table: pl.DataFrame) -> str:
+    """Return a table as CSV in which every text is quoted and none can act as a formula, whatever separates cells."""
+    header = pl.select(_inert(pl.lit(pl.Series(table.columns)))).to_series()
+    first = ",".join('"' + name.replace('"', '""') + '"' for name in header)
+    rows = table.with_columns(_inert(pl.col(pl.String))).write_csv(quote_style="non_numeric", include_header=False)
+    return f"{first}\n{rows}"
+
+
+def _inert(texts: pl.Expr) -> pl.Expr:
+    """Return texts with an apostrophe before all that a spreadsheet would take for a formula."""
+    for start, guarded in _STARTS:
+        texts = texts.str.replace_all(start, guarded)
+    return texts
