@@ -235,9 +235,49 @@ def test_a_torn_copy_is_never_read():
 
 
 def test_compression_is_measured_above_a_mebibyte():
-    """A part of up to 1 MiB may shrink as it will; a larger one by 100 to 1 at most."""
+    """A part of up to 1 MiB may shrink as it will; a larger one by no more than like rows do."""
     assert _refused(book_of(**{"xl/media/image.bin": b"\0" * 2**20})) is None
     assert _refused(book_of(**{"xl/media/image.bin": b"\0" * (2**20 + 1)})) == "E110"
+
+
+def _alike(mebibytes):
+    """Return the texts of a sheet of hand-written remarks, most of which are alike."""
+    text = "".join(f"<si><t>Test piece, hardened and tempered by drawing {number % 9}</t></si>" for number in range(99))
+    return f"<sst>{text * (mebibytes * 2**20 // len(text) + 1)}</sst>"
+
+
+def test_honest_parts_of_like_rows_are_let_through():
+    """A part of like rows shrinks by hundreds to 1 and is no bomb; a large one is refused all the same."""
+    small, large = (archive_of({"xl/sharedStrings.xml": _alike(size)}) for size in (3, 17))
+    (part,) = zipfile.ZipFile(io.BytesIO(small)).infolist()
+    assert part.file_size > 150 * part.compress_size
+    assert _refused(small) is None
+    assert _refused(large) == "E110"
+
+
+APPLE = b"\0\5\x16\7\0\2\0\0Mac OS X        " + b"\0" * 100
+LITTER = {
+    "a Mac's": {"__MACOSX/": "", **{f"__MACOSX/._{name}": APPLE for name in parts_of()}, ".DS_Store": b"\0\0\0\1Bud1"},
+    "a Mac's beside each part": {
+        "xl/._workbook.xml": APPLE + b"<!DOCTYPE plist>", "xl/.DS_Store": b"Bud1", "Icon\r": b"",
+    },
+    "a Mac's whose names have colons": {"__MACOSX/xl/._a:b.xml": APPLE},
+    "a large one": {"__MACOSX/._photo": b"\0" * (2**20 + 1)},
+    "Windows'": {"Thumbs.db": b"\xd0\xcf\x11\xe0", "xl/desktop.ini": "[.ShellClassInfo]"},
+    "folders": {"xl/": "", "xl/worksheets/": "", "_rels/": ""},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", LITTER)
+def test_what_file_managers_leave_behind_is_no_part(what):
+    """What macOS or Windows put into an archive is passed over, wherever it stands and whatever it holds."""
+    parts = {name: text.encode() for name, text in parts_of().items()}
+    assert unpacked(archive_of(parts | LITTER[what]), ReadingLimits()) == parts
+
+
+def test_litter_hides_no_part():
+    """What is passed over still has a place of its own in the archive."""
+    assert _refused(_swallowing().replace(b"b.xml", b"._b.x")) == "E102"
 
 
 @pytest.mark.parametrize("compressed", [False, True])

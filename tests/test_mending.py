@@ -175,3 +175,9 @@ def test_tables_keep_their_manner(what):
     """A mended table keeps rows, delimiter and decimal sign."""
     data, expected = TABLES[what]
     assert mended_table(read_table(data, "Variants"), [_repair("B2", 1.6)]).decode() == expected
+
+
+def test_a_cell_whose_address_is_in_small_letters_is_mended():
+    """A workbook whose program writes b2 for B2 is mended at B2."""
+    part = SHEET.replace(b'"B2"', b'"b2"')
+    assert cell_spans(part, frozenset({"B2"})).keys() == {"B2"}

@@ -1,5 +1,7 @@
 """What is easily overlooked: merged cells, hidden rows and sheets, a row far below the others."""
 
+import time
+
 import openpyxl
 import pytest
 
@@ -129,3 +131,13 @@ def test_a_workbook_says_all_of_it(workbook, sound, tmp_path):
     told = {(found.code, found.sheet, found.cell) for found in outcome.findings if found.level != "info"}
     assert told >= {("E214", "Variants", "D6"), ("W425", "Variants", "A7"), ("W426", "Materials", "A1")}
     assert outcome.counts["computed"] == 3
+
+
+def test_overlapping_merged_areas_cost_no_more_than_one():
+    """Many areas over the same cells, which Excel never writes, are judged once a cell."""
+    sheet = _sheet(*range(2, 302), merged=((2, 1, 1_048_576, 16_384),) * 20_000)
+    start = time.process_time()
+    told, rows = _told(sheet)
+    assert time.process_time() - start < 5
+    assert rows == []
+    assert len({place for place in told if place[0] == "E214"}) == len([one for one in told if one[0] == "E214"])

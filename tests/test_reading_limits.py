@@ -24,7 +24,7 @@ PROMISED = {
     "attributes": 256,
     "sheets": 100,
     "cells": 1_000_000,
-    "merged_areas": 10_000,
+    "merged_areas": 100_000,
     "characters": 32_767,
     "rows": 20_000,
     "columns": 256,
@@ -47,9 +47,9 @@ def _unpacking_to(size):
 
 
 def _shrinking_by(ratio):
-    """Return a workbook with a part that shrinks by hardly less than a ratio."""
-    noise = random.Random(3).randbytes(MEBI // ratio)  # noqa: S311
-    return book_of(**{"xl/media/image.bin": noise + b" " * (MEBI + 1 - len(noise))})
+    """Return a workbook with a large part that shrinks by hardly less than a ratio."""
+    noise = random.Random(3).randbytes(16 * MEBI // ratio)  # noqa: S311
+    return book_of(**{"xl/media/image.bin": noise + b" " * (16 * MEBI + 1 - len(noise))})
 
 
 def _sheets(number):

@@ -353,3 +353,39 @@ def test_only_the_named_sheets_are_read():
     with pytest.raises(Refusal) as refusal:
         read_workbook(buffer.getvalue(), limits)
     assert refusal.value.code == "E110"
+
+
+def _lowered(rows):
+    return rows.replace('r="A', 'r="a').replace('r="B', 'r="b')
+
+
+def test_addresses_in_small_letters_are_the_same_addresses():
+    """A workbook whose program writes a1 for A1 is read like any other, merged areas and formulas included."""
+    rows = (
+        _row('<c r="A1"><v>1.6</v></c>', '<c r="B1" t="s"><v>0</v></c>')
+        + '<row r="2"><c r="B2"><f>B1</f></c><c r="C2" t="e"><v>#N/A</v></c></row>'
+    )
+    merges = '<mergeCells><mergeCell ref="A1:B1"/></mergeCells>'
+    usual, small = (
+        read_workbook(book_of(**{SHEET: sheet_of(text, after=after)}), ReadingLimits())
+        for text, after in ((rows, merges), (_lowered(rows), merges.lower().replace("cell", "Cell")))
+    )
+    assert small == usual
+    assert small.sheets[0].rows[1] == {1: 1.6, 2: "first"}
+
+
+def test_a_text_where_its_kind_does_not_expect_it():
+    """A cell of kind inlineStr is read by its text inside, which holds, or else by its value, as a text."""
+    inside = '<c r="A1" t="inlineStr"><is><t>in</t></is><v>beside</v></c>'
+    value = '<c r="B1" t="inlineStr"><v>160 _x0041_</v></c>'
+    formula = '<c r="C1" t="inlineStr"><f>"x"</f><is><t>x</t></is></c>'
+    error = '<c r="D1" t="inlineStr"><v>#REF!</v></c>'
+    assert _read(book_of(_row(inside, value, formula, error))) == {
+        1: {1: "in", 2: "160 A", 3: "x", 4: ErrorCell("#REF!")}
+    }
+
+
+def test_an_archive_of_a_mac_is_read():
+    """What macOS puts beside the parts of a workbook changes nothing of what is read."""
+    litter = {f"__MACOSX/._{name}": b"\0\5\x16\7<!DOCTYPE plist>" for name in parts_of()}
+    assert _read(archive_of(parts_of() | {"__MACOSX/": "", ".DS_Store": b"\0"} | litter)) == _read(book_of())

@@ -53,7 +53,6 @@ REFUSED = {
     "a cell without letters": '<row r="1"><c r="1"/></row>',
     "an absolute reference": '<row r="1"><c r="$A$1"/></row>',
     "a padded row number": '<row r="1"><c r="A01"/></row>',
-    "an address in small letters": '<row r="1"><c r="a1"><v>1</v></c></row>',
     "an address of two cells": '<row r="1"><c r="A1:B1"/></row>',
     "a style that does not exist": _cell("<v>1</v>", s=1),
     "a style before the first": _cell("<v>1</v>", s=-1),
@@ -73,7 +72,6 @@ REFUSED = {
     "two values in one cell": _cell("<v>1</v><v>6</v>"),
     "markup in a value": _cell("<v><b>1</b></v>"),
     "markup beside a value": _cell("<v>1<b/>6</v>"),
-    "a value of a text in the cell": _cell("<v>1</v>", t="inlineStr"),
     "a text in a number": _cell("<is><t>1</t></is>"),
     "two texts in one cell": _cell("<is><t>1</t></is><is><t>6</t></is>", t="inlineStr"),
     "a truth value that is none": _cell("<v>2</v>", t="b"),
@@ -102,6 +100,8 @@ ACCEPTED = {
     "a result that is a text": (_cell("<f>A2</f><v>1_000</v>", t="str"), 1),
     "a cell of another namespace": (f'{ONE}<row r="2"><c xmlns="urn:x" r="x"/></row>', 1),
     "an extension behind the cells": ('<row r="1"><c r="A1"/><extLst><ext/></extLst></row>', 1),
+    "addresses in small letters": ('<row r="1"><c r="a1"><v>1</v></c><c r="ab1"/></row>', 2),
+    "a text and a value beside it": (_cell("<is><t>a</t></is><v>1</v>", t="inlineStr"), 1),
     "no cell": ("", 0),
 }  # fmt: skip
 
@@ -126,6 +126,9 @@ FORMULAS = {
     '<c r="A1"><v>2</v></c><c r="AB1"><f>A1</f></c>': [(1, 28)],
     '<c r="A1"><f t="shared" ref="A1:B1" si="0">1</f></c><c r="B1"><f t="shared" si="0"/></c>': [(1, 1), (1, 2)],
     '<c r="A1"><f t="array" ref="A1:A1">1</f><v>1</v></c>': [],
+    '<c r="A1" t="inlineStr"><f>"x"</f><is><t>x</t></is></c>': [],
+    '<c r="A1" t="inlineStr"><f>"x"</f><v>x</v></c>': [],
+    '<c r="A1" t="inlineStr"><f>"x"</f></c>': [(1, 1)],
     '<c r="A1"/>': [],
 }
 
@@ -169,7 +172,12 @@ def test_hidden_rows_with_cells_are_noted(rows, hidden):
 
 @pytest.mark.parametrize(
     ("reference", "area"),
-    [("A1:XFD1048576", (1, 1, 1048576, 16384)), ("B2:AA3", (2, 2, 3, 27)), ("C4", (4, 3, 4, 3))],
+    [
+        ("A1:XFD1048576", (1, 1, 1048576, 16384)),
+        ("B2:AA3", (2, 2, 3, 27)),
+        ("b2:aA3", (2, 2, 3, 27)),
+        ("C4", (4, 3, 4, 3)),
+    ],
 )
 def test_merged_areas_are_noted(reference, area):
     """Merged areas are noted by their corners, even that of the whole sheet."""
@@ -188,9 +196,16 @@ def _merges(number):
 
 
 def test_merged_areas_at_their_limit():
-    """A sheet may have 10,000 merged areas, not 10,001."""
-    assert _refused(ONE, after=_merges(10_000)) is None
-    assert _refused(ONE, after=_merges(10_001)) == "E110"
+    """A sheet may have 100,000 merged areas, not 100,001."""
+    assert _refused(ONE, after=_merges(100_000)) is None
+    assert _refused(ONE, after=_merges(100_001)) == "E110"
+
+
+def test_a_text_as_the_value_of_a_cell_that_should_hold_it_inside():
+    """A cell that says to hold its text inside, and has it as its value, is noted with that text."""
+    rows = f'<row r="2">{_cell("<v>1 &amp; 2</v>", r="B2", t="inlineStr")[11:]}'
+    assert _walked(rows).texts == {(2, 2): "1 & 2"}
+    assert _walked(_cell("<is><t>a</t></is><v>1</v>", t="inlineStr")).texts == {}
 
 
 @pytest.mark.parametrize("shape", ["<is><t>{}</t></is>", "<is><r><t>abc</t></r><r><t>{:.32764}</t></r></is>"])

@@ -44,14 +44,18 @@ def _first_letter(table: Table) -> str:
 
 def _covered(sheet: RawSheet, table: Table, rows: list[int]) -> Iterator[tuple[int, int, str]]:
     """Yield row, place and area of every cell of a column that is read but lies under another cell."""
-    for top, left, bottom, right in sheet.merged:
-        places = [place for place in table.heading.places.values() if left <= place <= right]
+    judged = dict.fromkeys(table.heading.places.values(), 0)
+    for top, left, bottom, right in sorted(sheet.merged):
+        last = bisect_right(rows, bottom)
         shown = sheet.rows.get(top, {}).get(left) is not None
-        for row in rows[bisect_left(rows, top) : bisect_right(rows, bottom)] if places else ():
-            for place in places:
+        for place in judged if bisect_left(rows, top) < last else ():
+            # Areas that overlap, which only a faulty program writes, would cost their number times the rows.
+            first = bisect_left(rows, max(top, judged[place] + 1)) if left <= place <= right else last
+            for row in rows[first:last]:
                 hides = place in table.cells[row]
                 if (row, place) != (top, left) and (shown or hides):
                     yield row, place, f"{column_letters(left)}{top}:{column_letters(right)}{bottom}"
+                judged[place] = row
 
 
 def _blame_covered(table: Table, ledger: Ledger, row: int, place: int, area: str) -> None:

@@ -57,7 +57,7 @@ class _Cells:
             self.column = 0
         elif local == "c":
             self.column += 1
-            self.address = attributes.get("r", "")
+            self.address = attributes.get("r", "").upper()
             if self.address:
                 self.column = column_number(self.address.rstrip("0123456789"))
             else:

@@ -21,6 +21,13 @@ _COUNT = struct.Struct("<10xH")
 _MANY = 0xFFFF
 """The number that stands there for more; a record of another kind has it then."""
 
+_LITTER = frozenset((".DS_Store", "Thumbs.db", "desktop.ini", "Icon\r"))
+"""Files by which macOS and Windows remember how a folder looks."""
+
+_SMALL, _LARGE = _MEBI, 16 * _MEBI
+_REPETITIVE = 400
+"""Up to so many times a part of honest rows that are all alike shrinks, which is let through unless it is large."""
+
 _FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 _DAMAGE = (
     zipfile.BadZipFile, zlib.error, struct.error, EOFError, OSError, NotImplementedError, RuntimeError, ValueError,
@@ -29,7 +36,7 @@ _DAMAGE = (
 
 
 def unpacked(data: bytes, limits: ReadingLimits) -> dict[str, bytes]:
-    """Return the parts of an archive by name, their checksums verified.
+    """Return the parts of an archive by name, their checksums verified; what file managers leave behind is none.
 
     Raises Refusal for an archive that is damaged, too large, encrypted, or that hides one part in another.
     """
@@ -38,9 +45,10 @@ def unpacked(data: bytes, limits: ReadingLimits) -> dict[str, bytes]:
             parts = archive.infolist()
             limits.require("parts", len(parts))
             _check_count(data, parts)
+            _check_places(data, parts, archive.start_dir)
+            parts = [part for part in parts if not _is_litter(part.filename)]
             _check_names(parts)
             _check_sizes(parts, limits)
-            _check_places(data, parts, archive.start_dir)
             return {part.filename: _inflated(archive, data, part) for part in parts if not part.is_dir()}
     except _DAMAGE as fault:
         raise Refusal("E102") from fault
@@ -51,6 +59,12 @@ def _check_count(data: bytes, parts: list[zipfile.ZipInfo]) -> None:
     (count,) = _COUNT.unpack_from(data, data.rfind(b"PK\x05\x06"))
     if count not in {len(parts), _MANY}:
         raise Refusal("E102")
+
+
+def _is_litter(name: str) -> bool:
+    """Whether a part is what macOS or Windows put into an archive for themselves; no workbook refers to it."""
+    last = name.rpartition("/")[2]
+    return name.startswith("__MACOSX/") or last.startswith("._") or last in _LITTER
 
 
 def _check_names(parts: list[zipfile.ZipInfo]) -> None:
@@ -73,8 +87,9 @@ def _check_sizes(parts: list[zipfile.ZipInfo], limits: ReadingLimits) -> None:
     """Refuse what would unpack to too much; unpacking never yields more than is declared here."""
     for part in parts:
         limits.require("part_mebibytes", part.file_size / _MEBI)
-        if part.file_size > _MEBI:
-            limits.require("compression", part.file_size / max(1, part.compress_size))
+        shrinks = part.file_size / max(1, part.compress_size)
+        if part.file_size > (_LARGE if shrinks <= _REPETITIVE else _SMALL):
+            limits.require("compression", shrinks)
     limits.require("unpacked_mebibytes", sum(part.file_size for part in parts) / _MEBI)
 
 

@@ -28,7 +28,7 @@ class ReadingLimits:
     attributes: int = _limit(256, "the number of attributes of one element")
     sheets: int = _limit(100, "the number of sheets")
     cells: int = _limit(1_000_000, "the number of cells")
-    merged_areas: int = _limit(10_000, "the number of merged areas")
+    merged_areas: int = _limit(100_000, "the number of merged areas")
     characters: int = _limit(32_767, "the length of one cell's text", "characters")
     rows: int = _limit(20_000, "the number of rows with data")
     columns: int = _limit(256, "the number of columns")

@@ -90,6 +90,8 @@ def _read(data: bytes, package: Package, looked_at: dict[str, Worksheet]) -> Cel
             row: {place: _plain(value) for place, value in cells}
             for row, cells in reader.rows(package.parts[part.part])
         }
+        for (row, place), text in seen.texts.items():
+            rows.setdefault(row, {})[place] = _plain(text)
         for row, place in seen.errors:
             shows = rows.setdefault(row, {}).get(place, "an error")
             rows[row][place] = shows if isinstance(shows, ErrorCell) else ErrorCell(str(shows))

@@ -1,7 +1,8 @@
 """One walk through a worksheet's XML: what the workbook reader cannot tell, and what it would read wrongly.
 
-Formulas without a stored result, error cells, hidden rows and merged areas are noted. Refused is what a reader would
-take for something else without a word: rows or cells out of order, indices without a target, texts as numbers.
+Formulas without a stored result, error cells, texts in an unusual place, hidden rows and merged areas are noted.
+Refused is what a reader would take for something else without a word: rows or cells out of order, indices without a
+target, texts as numbers.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ MAXIMUM_COLUMN = 16_384
 
 _NUMBER = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 _INDEX = re.compile(r"\s*\d{1,9}\s*", re.ASCII)
-_REFERENCE = re.compile(r"([A-Z]{1,3})([1-9]\d{0,6})", re.ASCII)
-_AREA = re.compile(r"([A-Z]{1,3}[1-9]\d{0,6})(?::([A-Z]{1,3}[1-9]\d{0,6}))?", re.ASCII)
+_REFERENCE = re.compile(r"([A-Za-z]{1,3})([1-9]\d{0,6})", re.ASCII)
+_AREA = re.compile(r"([A-Za-z]{1,3}[1-9]\d{0,6})(?::([A-Za-z]{1,3}[1-9]\d{0,6}))?", re.ASCII)
 _KINDS = frozenset(("n", "s", "str", "b", "e", "inlineStr", "d"))
 _TRUE = frozenset(("1", "true", "on"))
 
@@ -32,7 +33,7 @@ def _place(reference: str) -> tuple[int, int]:
     match = _REFERENCE.fullmatch(reference)
     if match is None:
         raise Refusal("E102")
-    row, column = int(match[2]), column_number(match[1])
+    row, column = int(match[2]), column_number(match[1].upper())
     if row > MAXIMUM_ROW or column > MAXIMUM_COLUMN:
         raise Refusal("E102")
     return row, column
@@ -41,13 +42,15 @@ def _place(reference: str) -> tuple[int, int]:
 class Worksheet(Elements):
     """What a worksheet holds beside its values; `styles` and `strings` are how many of them its cells may refer to.
 
-    `unstored` are formula cells without a stored result, `errors` error cells, both as (row, column); `hidden_rows`
-    rows with cells that are hidden; `merged` areas as (first row, first column, last row, last column).
+    `unstored` are formula cells without a stored result, `errors` error cells, both as (row, column); `texts` are the
+    texts by (row, column) of cells that say to hold their text inside and have it as their value; `hidden_rows` rows
+    with cells that are hidden; `merged` areas as (first row, first column, last row, last column).
     """
 
     def __init__(self, data: bytes, limits: ReadingLimits, styles: int, strings: int) -> None:
         self.unstored: list[tuple[int, int]] = []
         self.errors: list[tuple[int, int]] = []
+        self.texts: dict[tuple[int, int], str] = {}
         self.hidden_rows: list[int] = []
         self.merged: list[tuple[int, int, int, int]] = []
         self.styles = styles
@@ -155,14 +158,16 @@ class Worksheet(Elements):
         """Judge a cell's stored value by its kind."""
         self.in_cell = False
         place = (self.row, self.column)
-        if self.is_formula and not self.value and self.kind != "str":
+        if self.is_formula and not self.value and not self.has_inline and self.kind != "str":
             self.unstored.append(place)
         elif self.kind == "e":
             self.errors.append(place)
+        elif self.kind == "inlineStr":
+            if self.value and not self.has_inline:
+                self.texts[place] = self.value
         elif self.value and (
             (self.kind == "n" and not _NUMBER.fullmatch(self.value))
             or (self.kind == "s" and _index(self.value) >= self.strings)
-            or self.kind == "inlineStr"
             or (self.kind == "b" and self.value.strip() not in {"0", "1", "true", "false"})
         ):
             raise Refusal("E102")
