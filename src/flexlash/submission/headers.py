@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 from typing import Any
 
 from flexlash.columns import Column, columns_of
 from flexlash.findings import shown
+from flexlash.submission.header_names import LAST_HEADER_ROW, known_names, name_and_unit
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.likely_headers import likely_headers
 from flexlash.submission.reading.read import ErrorCell, RawSheet, RawValue, Unstored, column_letters
@@ -18,21 +18,6 @@ __all__ = ["STATUS_HEADER", "Heading", "closest", "count_headings", "find_headin
 
 STATUS_HEADER = "Row status"
 """Header of the template's own formula column, which is never data."""
-
-_LAST_HEADER_ROW = 15
-_SHORT = {
-    "flexspline_type": ("type",),
-    "mean_radius_mm": ("r_m",),
-    "wall_thickness_mm": ("Δ",),
-    "disk_inner_radius_mm": ("r_ci",),
-    "disk_outer_radius_mm": ("r_co",),
-}
-"""Short headers that can mean nothing else; T, l and t could."""
-
-_LOST = frozenset({"?", "\ufffd"})
-"""What other programs make of Δ and ν where their encoding has no such letter."""
-
-_BRACKETS = re.compile(r"^(.*?)\s*[\[(]([^\])]*)[\])]\s*$", re.DOTALL)
 
 
 @dataclass(kw_only=True)
@@ -60,22 +45,6 @@ def _as_header(cell: RawValue) -> str:
     return cell if isinstance(cell, str) else shown(cell)
 
 
-def _spellings(columns: dict[str, Column]) -> dict[str, str]:
-    """Every accepted header without its unit → key: key, label with and without symbol, short forms."""
-    found = {}
-    for key, column in columns.items():
-        for spelling in (key, column.dimension, column.name, column.plain_name, *_SHORT.get(key, ())):
-            found[plain(spelling)] = key
-    return found
-
-
-def _split(header: str) -> tuple[str, str | None]:
-    """Return a header's name and the unit in its brackets, None without brackets."""
-    match = _BRACKETS.match(header)
-    name, unit = (match[1], match[2].strip()) if match else (header, None)
-    return " ".join(word for word in name.split(" ") if word not in _LOST), unit
-
-
 def find_headings(sheet: RawSheet, schema: str, ledger: Ledger) -> Heading | None:
     """Return the columns of a sheet, or None (with a finding) when it has no header row."""
     return _Recogniser(sheet, schema, ledger).recognise()
@@ -93,7 +62,7 @@ class _Recogniser:
         self.sheet = sheet
         self.ledger = ledger
         self.columns = columns_of(schema)
-        self.spellings = _spellings(self.columns)
+        self.spellings = known_names(self.columns)
 
     def recognise(self) -> Heading | None:
         """Return the headings of the row, within the first fifteen, that has most of them."""
@@ -107,7 +76,7 @@ class _Recogniser:
         headers = {place: _as_header(cell) for place, cell in self.sheet.rows[best].items()}
         heading.ignored |= {place for place, header in headers.items() if plain(header) == plain(STATUS_HEADER)}
         headers = {place: text for place, text in headers.items() if text.strip() and place not in heading.ignored}
-        names = {place: _split(header)[0] for place, header in headers.items()}
+        names = {place: name_and_unit(header)[0] for place, header in headers.items()}
         likely = likely_headers(names, self.columns, self.spellings)
         for place, header in headers.items():
             self._place(heading, place, header, likely.get(place, []))
@@ -116,11 +85,11 @@ class _Recogniser:
 
     def known_by_row(self) -> dict[int, int]:
         """Return how many known headers each of the first rows holds."""
-        rows = {number: cells for number, cells in self.sheet.rows.items() if number <= _LAST_HEADER_ROW}
+        rows = {number: cells for number, cells in self.sheet.rows.items() if number <= LAST_HEADER_ROW}
         return {number: sum(map(self._is_known, cells.values())) for number, cells in rows.items()}
 
     def _is_known(self, cell: RawValue) -> bool:
-        return isinstance(cell, str) and plain(_split(cell)[0]) in self.spellings
+        return isinstance(cell, str) and plain(name_and_unit(cell)[0]) in self.spellings
 
     def _require(self, heading: Heading, next_place: int) -> None:
         """Tell which required columns are missing, at the cell where they could be added."""
@@ -135,7 +104,7 @@ class _Recogniser:
 
     def _place(self, heading: Heading, place: int, header: str, likely: list[str]) -> None:
         """Recognise one header cell, or say what is wrong with it; `likely` are the columns an unknown one may be."""
-        name, unit_text = _split(header)
+        name, unit_text = name_and_unit(header)
         key = self.spellings.get(plain(name))
         meant = key or next(iter(likely), None)
         place_facts: dict[str, Any] = {
