@@ -158,4 +158,7 @@ def test_a_library_that_is_missing_is_no_matter_of_elasticity(report, monkeypatc
         raise ModuleNotFoundError("No module named 'other'")
 
     monkeypatch.setattr("flexlash.commands.recreate.recreate", missing)
-    assert isinstance(_call("run", "--from-report", report).exception, ModuleNotFoundError)
+    done = _call("run", "--from-report", report)
+    assert done.exit_code == 1
+    assert "Internal error (ModuleNotFoundError)" in done.stderr
+    assert "--no-elasticity" not in done.stderr

@@ -122,7 +122,8 @@ def test_certain_repairs_are_made_and_listed(workbook, sound, tmp_path):
     assert [(one.place, one.value) for one in repairs] == [("Variants!H5", 1.6), ("Variants!V6", "standard")]
     assert [(found.code, found.cell) for found in outcome.findings] == [("E202", "D7")]
     assert outcome.outputs == [tmp_path / "new.xlsx"]
-    assert check(tmp_path / "new.xlsx").counts == {"rows": 3, "computed": 2, "errors": 1, "warnings": 0}
+    counts = check(tmp_path / "new.xlsx").counts
+    assert [counts[one] for one in ("rows", "computed", "errors", "warnings")] == [3, 2, 1, 0]
     assert "Variants!H5" in _text(tmp_path / "new.xlsx", "Fixes")
 
 

@@ -11,7 +11,7 @@ from flexlash.findings import Finding, cell_ranges
 from flexlash.pipeline import check, run
 from flexlash.summary import (
     finding_lines,
-    over_limit_lines,
+    limit_lines,
     points_words,
     spread_notes,
     summary_lines,
@@ -106,12 +106,15 @@ def test_the_worst_come_first(table, sound):
     assert [row["variant"] for row in worst_first(outcome)] == ["over", "near", "far", "beyond", "none"]
 
 
-def test_over_limit_lines_name_the_worst(table, sound):
+def test_limit_lines_name_the_worst(table, sound):
     """At most three variants over their limit are named, the worst first, each with its share in words."""
     rows = [{**sound, "variant": f"v{number}", "backlash_limit_arcmin": 3.66 + number / 100} for number in range(5)]
     outcome = run(table(rows))
-    lines = list(over_limit_lines(outcome))
-    assert lines[0] == "P97.5 is over the backlash limit for 5 of 5 variants with a limit."
+    lines = list(limit_lines(outcome))
+    assert lines[0] == (
+        "Backlash limit met by 0 of 5 variants with a limit (at most 0.135 % of units over it); marginal: 0 (at most "
+        "2.5 %); not met: 5."
+    )
     assert [line.split(":")[0] for line in lines[1:]] == ["  v0", "  v1", "  v2"]
     for line in lines[1:]:
         assert re.search(r": \d\d\.\d+ % \(\d\d\.\d+ to \d\d\.\d+ %\) of units are over 3\.6[678]′\.$", line)
@@ -120,13 +123,13 @@ def test_over_limit_lines_name_the_worst(table, sound):
 def test_all_units_over_their_limit_are_no_part_of_them(table, sound, tmp_path):
     """Where no unit, or hardly one, is within the limit the line says that all units are over, not all of units."""
     outcome = run(table([{**sound, "backlash_limit_arcmin": 3.0}]), samples=64)
-    assert list(over_limit_lines(outcome))[1] == "  B3-160: practically all units are over 3′."
+    assert list(limit_lines(outcome))[1] == "  B3-160: practically all units are over 3′."
     tolerances = tmp_path / "tolerances.csv"
     tolerances.write_text(
         "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n", encoding="utf-8"
     )
     outcome = run(table([{**sound, "backlash_limit_arcmin": 3.6}]), tolerances=tolerances)
-    assert list(over_limit_lines(outcome))[1] == "  B3-160: all units are over 3.6′."
+    assert list(limit_lines(outcome))[1] == "  B3-160: all units are over 3.6′."
 
 
 def test_a_check_says_nothing_of_the_spread(table, sound):

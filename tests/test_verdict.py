@@ -7,20 +7,16 @@ import pytest
 from flexlash.pipeline import run
 from flexlash.report.verdict import COLOURS, NO_VERDICT, RULES, firm, light, straddled, verdict_counts
 
-SHARES = {"green": 0.0, "amber": 0.01, "red": 0.5, NO_VERDICT: None}
+SHARES = {0.0: "green", 0.00135: "green", 0.01: "amber", 0.025: "amber", 0.5: "red", None: NO_VERDICT}
 
 
-@pytest.mark.parametrize(
-    ("limit", "verdict"), [(3.1, "green"), (3.0, "green"), (2.99, "amber"), (2.0, "amber"), (1.99, "red"), (None, "–")]
-)
-def test_verdict_follows_its_rule(limit, verdict):
-    """Green, amber and red follow P97.5 and P99.865 against the limit; a percentile at the limit keeps it."""
-    share = SHARES[verdict]
-    row = {"p97_5_arcmin": 2.0, "p99_865_arcmin": 3.0, "backlash_limit_arcmin": limit}
-    row |= {f"probability_over_limit_{end}": share for end in ("low", "high")}
-    assert light(row) == verdict
-    assert verdict in COLOURS
-    assert (verdict in RULES) == (limit is not None)
+@pytest.mark.parametrize("share", SHARES)
+def test_verdict_follows_its_rule(share):
+    """Green, amber and red follow the share of units over the limit; a share at its bound keeps it."""
+    row = {f"probability_over_limit{end}": share for end in ("", "_low", "_high")}
+    assert light(row) == SHARES[share]
+    assert SHARES[share] in COLOURS
+    assert (SHARES[share] in RULES) == (share is not None)
 
 
 def test_verdicts_are_counted(table, sound):
@@ -52,8 +48,7 @@ INTERVALS = {
 def test_a_verdict_that_more_points_may_change_has_a_mark(case):
     """Where the 95 % interval of the share lies on both sides of a bound the verdict has a ? and keeps its colour."""
     verdict, low, high, told, bounds = INTERVALS[case]
-    tails = {"green": (1.0, 1.0), "amber": (1.0, 3.0), "red": (3.0, 3.0)}[verdict]
-    row = {"backlash_limit_arcmin": 2.0, "p97_5_arcmin": tails[0], "p99_865_arcmin": tails[1]}
+    row = {"probability_over_limit": {"green": low, "amber": 0.01, "red": high}[verdict]}
     row |= {"probability_over_limit_low": low, "probability_over_limit_high": high}
     assert light(row) == told
     assert straddled(row) == bounds

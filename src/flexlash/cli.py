@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import sys
-import traceback
 
 import click
 
@@ -14,7 +12,9 @@ from flexlash.commands.diff import diff
 from flexlash.commands.reference import explain, schema
 from flexlash.commands.run import run
 from flexlash.commands.template import template
-from flexlash.terminal import INTERNAL, INTERRUPTED, NO_FILE, named, reason
+from flexlash.exit_codes import ExitCode
+from flexlash.streams import lost_output, patient_streams
+from flexlash.terminal import colour, complain, internal_error, named, reason
 
 __all__ = ["cli", "main"]
 
@@ -22,7 +22,8 @@ __all__ = ["cli", "main"]
 @click.group(
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="Exit codes of run and check: 0 every row fine, 3 some rows had errors, 4 nothing computable or no "
-    "readable submission, 5 a file could not be opened or written, 2 usage, 1 internal error.",
+    "readable submission, 5 a file could not be opened or written, 6 a variant does not meet its limit (with "
+    "--fail-over-limit), 2 usage, 1 internal error. Of several submissions the most severe: 1, 5, 4, 3, 6.",
 )
 @click.version_option(__version__, prog_name="flexlash")
 def cli() -> None:
@@ -44,27 +45,30 @@ for _command in (template, check, run, diff, schema, explain):
 
 def main() -> None:
     """Run the command line; never a traceback unless FLEXLASH_DEBUG=1."""
-    for stream in (sys.stdout, sys.stderr):
-        stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    if "NO_COLOR" in os.environ:
-        cli.context_settings["color"] = False
+    cli.context_settings["color"] = colour()
+    with patient_streams():
+        code = _ended()
+        if lost := lost_output():
+            complain(f"Standard output could not be written: {reason(lost)}.")
+            code = code or ExitCode.NO_FILE
+    sys.exit(code)
+
+
+def _ended() -> int:
+    """Run the command and return its exit code."""
     try:
-        cli.main(standalone_mode=False)
+        return int(cli.main(standalone_mode=False) or ExitCode.FINE)
+    except SystemExit as stop:
+        return int(stop.code or ExitCode.FINE)
     except click.ClickException as fault:
         fault.show()
-        sys.exit(fault.exit_code)
+        return fault.exit_code
     except (click.Abort, KeyboardInterrupt):
         click.echo("Interrupted.", err=True)
-        sys.exit(INTERRUPTED)
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        sys.exit(0)
+        return ExitCode.INTERRUPTED
     except OSError as fault:
-        place = f"{named(fault.filename)}: " if fault.filename else ""
-        click.secho(f"{place}{reason(fault)}", fg="red", err=True)
-        sys.exit(NO_FILE)
+        complain(f"{f'{named(fault.filename)}: ' if fault.filename else ''}{reason(fault)}")
+        return ExitCode.NO_FILE
     except Exception as fault:  # noqa: BLE001
-        if os.environ.get("FLEXLASH_DEBUG") == "1":
-            traceback.print_exc()
-        click.secho(f"Internal error ({type(fault).__name__}). Set FLEXLASH_DEBUG=1 for details.", fg="red", err=True)
-        sys.exit(INTERNAL)
+        complain(internal_error(fault))
+        return ExitCode.INTERNAL

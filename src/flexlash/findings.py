@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import math
+import re
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -11,7 +12,7 @@ from typing import Any
 
 from flexlash.catalogue import CATALOGUE, Level
 
-__all__ = ["CATALOGUE", "Finding", "cell_ranges", "finding", "shown", "spelled_out"]
+__all__ = ["CATALOGUE", "Finding", "cell_ranges", "finding", "readable", "shown", "spelled_out"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,6 +86,25 @@ def _inert(fact: Any) -> Any:
     return shown(fact, _LONGEST) if isinstance(fact, str) else fact
 
 
+_NO_CHARACTER = re.compile(r"[\ud800-\udfff]")
+_BYTES = range(0xDC80, 0xDD00)
+"""What Python takes for the bytes of a name that are no UTF-8."""
+
+
+def readable(text: object) -> str:
+    r"""Return a text, such as a path, with what is no character in it escaped: a file's name need not be UTF-8.
+
+    >>> readable("caf\udce9.csv")
+    'caf\\xe9.csv'
+    """
+    return _NO_CHARACTER.sub(lambda found: _escaped(ord(found[0])), str(text))
+
+
+def _escaped(code: int) -> str:
+    """Return a byte that is no UTF-8, or half a character of UTF-16, as Python writes it."""
+    return f"\\x{code - 0xDC00:02x}" if code in _BYTES else f"\\u{code:04x}"
+
+
 def shown(value: Any, longest: int = 60) -> str:
     """Return a value as a message shows it: short, on one line, without control characters.
 
@@ -94,7 +114,7 @@ def shown(value: Any, longest: int = 60) -> str:
     if isinstance(value, bool):
         return str(value).upper()
     text = f"{value:.10g}" if isinstance(value, float) else str(value)
-    plain = "".join(character if character.isprintable() else "·" for character in text)
+    plain = "".join(character if character.isprintable() else "·" for character in readable(text))
     return plain if len(plain) <= longest else plain[: longest - 1] + "…"
 
 

@@ -20,7 +20,8 @@ class Options:
     """What the caller decides; None leaves it to the submission's settings.
 
     `marked_copy` is where the submission goes with its errors and warnings marked, when there are any;
-    `marked_copies` takes such copies as submissions as well. `from_report` says that the file is a report, of whose
+    `marked_copies` takes such copies as submissions as well. `fail_over_limit` gives an exit code of its own where a
+    variant does not meet its limit. `from_report` says that the file is a report, of whose
     submission everything is computed anew; what is None is then as it was in that run.
     """
 
@@ -28,6 +29,7 @@ class Options:
     method: str | None = None
     samples: int | None = None
     strict: bool | None = None
+    fail_over_limit: bool = False
     cross_check: bool | None = None
     elasticity: bool | None = None
     jobs: int = 1

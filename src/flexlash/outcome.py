@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from flexlash import __version__
 from flexlash.assessment import Computed
-from flexlash.findings import Finding
+from flexlash.exit_codes import ExitCode
+from flexlash.findings import Finding, readable
+from flexlash.limit_verdict import VERDICTS, limit_verdict
 from flexlash.options import Options
 from flexlash.submission.reading.read import Submission
 from flexlash.submission.validate import Validated
@@ -62,18 +64,19 @@ class Outcome:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Submitted and computed rows, error and warning findings."""
+        """Submitted and computed rows, error and warning findings, variants with a limit by their verdict."""
         levels = Counter(found.level for found in self.findings)
-        rows = len(self.validated.submitted) if self.validated else 0
+        verdicts = Counter(map(limit_verdict, self.results["probability_over_limit"]))
         return {
-            "rows": rows,
+            "rows": len(self.validated.submitted) if self.validated else 0,
             "computed": len(self.computed),
             "errors": levels["error"],
             "warnings": levels["warning"],
+            **{verdict: verdicts[verdict] for verdict in VERDICTS},
         }
 
     def as_dictionary(self) -> dict[str, Any]:
-        """Return the object that `--json` prints."""
+        """Return what `--json` prints of it."""
         return {
             "submission": self.submission.name,
             "sha256": self.submission.sha256,
@@ -82,12 +85,17 @@ class Outcome:
             "method": self.settings.method,
             "counts": self.counts,
             "findings": [found.as_dictionary() for found in self.findings],
-            "outputs": [str(path) for path in self.outputs],
+            "outputs": [readable(path) for path in self.outputs],
         }
 
     @property
-    def exit_code(self) -> int:
-        """0 every row fine, 3 some rows not computed, 4 nothing computable."""
+    def exit_code(self) -> ExitCode:
+        """With which code a command ends that computes this submission alone."""
+        counts = self.counts
         if not self.computed:
-            return 4
-        return 3 if self.counts["computed"] < self.counts["rows"] else 0
+            return ExitCode.NOTHING
+        if counts["computed"] < counts["rows"] or counts["errors"]:
+            return ExitCode.SOME_ROWS
+        if self.options.fail_over_limit and counts["marginal"] + counts["fails"]:
+            return ExitCode.OVER_LIMIT
+        return ExitCode.FINE

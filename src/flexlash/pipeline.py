@@ -10,7 +10,7 @@ from typing import Any
 
 from flexlash.assessment import assess
 from flexlash.elasticity import MISSING, is_available
-from flexlash.findings import Finding, finding
+from flexlash.findings import Finding, finding, readable
 from flexlash.handback import certain_repairs, marked, mended, sealed, unclaimed, worth_marking
 from flexlash.options import Options
 from flexlash.outcome import DRAWN, PICTURED, Outcome
@@ -110,13 +110,12 @@ def _reading(given: str | Path | Reading, options: Options) -> Reading:
 
 def _examine(reading: Reading, options: Options) -> Outcome:
     """Read, validate and compute at the entered dimensions."""
-    path = reading.path
     try:
         submission = reading.submission()
         options = options.completed(submission.run_with)
         others = {"report"} | (set() if options.marked_copies else {"checked"})
         if submission.run_with is None and submission.role in others:
-            skipped = [finding("I508" if submission.role == "report" else "I513", file=path.name)]
+            skipped = [finding("I508" if submission.role == "report" else "I513", file=reading.name)]
             return Outcome(
                 submission=submission,
                 results=results_frame([]),
@@ -126,9 +125,9 @@ def _examine(reading: Reading, options: Options) -> Outcome:
             )
         return _validated(_with_tables(submission, options), options)
     except Refusal as refusal:
-        facts: dict[str, Any] = {"file": path.name, **refusal.facts}
+        facts: dict[str, Any] = {"file": reading.name, **refusal.facts}
         digest = hashlib.sha256(reading.data).hexdigest() if reading.data else ""
-        refused = Submission(name=path.name, sha256=digest, kind="refused")
+        refused = Submission(name=reading.name, sha256=digest, kind="refused")
         return Outcome(
             submission=refused,
             results=results_frame([]),
@@ -168,7 +167,7 @@ def _table_beside(path: Path, name: str, limits: ReadingLimits) -> RawSheet:
     try:
         data = read_bytes(path, limits)
         kind_of(data, only="csv")
-        return read_table(data, name, path.name)
+        return read_table(data, name, readable(path.name))
     except Refusal as refusal:
         raise Refusal(refusal.code, **{"file": path.name, **refusal.facts}) from refusal
 

@@ -49,7 +49,7 @@ def recreate(report: Path, output: Path | None, taken: set[Path], **options: Any
         name = reading.submission().name
     except Refusal:
         # Running it says why.
-        name = report.name
+        name = reading.name
     filled, anew = recreated_targets(report, output, name, taken)
     outcome = run(reading, anew, from_report=True, **options)
     if outcome.validated is None or outcome.validated.table is None or not outcome.computed:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from flexlash.assessment import Computed
 from flexlash.columns import DIMENSIONS
+from flexlash.limit_verdict import misses_limit
 from flexlash.mechanics.flexspline import backlash
 from flexlash.options import Options
 from flexlash.scatter import scattered
@@ -83,9 +84,9 @@ def _number(one: Computed, key: str) -> float:
 
 
 def _fails(one: Computed) -> bool:
-    """Whether a variant has a limit and its verdict is not green."""
-    limit = one.variant.backlash_limit
-    return limit is not None and _number(one, "p99_865") > limit
+    """Whether a variant has a limit and does not meet it."""
+    over = one.variation.statistics.get("probability_over_limit") if one.variation else None
+    return misses_limit(over)
 
 
 def _can_be_tightened(one: Computed) -> bool:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from flexlash.columns import DIMENSIONS
 from flexlash.findings import CATALOGUE, Finding, cell_ranges, shown
+from flexlash.limit_verdict import BOUNDS, VERDICTS, misses_limit
 from flexlash.number_words import ALL_UNITS, angle_words, rounded, share_words
 from flexlash.outcome import Outcome
 from flexlash.submission.mending.repair import Repair
@@ -19,6 +20,7 @@ __all__ = [
     "counted",
     "dimension_words",
     "finding_lines",
+    "limit_lines",
     "listed",
     "points_range",
     "points_words",
@@ -83,7 +85,7 @@ def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
     warned = counted(counts["warnings"], "warning") if counts["warnings"] else ""
     yield f"{name}: {'; '.join(filter(None, [ready, fixes, warned]))}."
     if ran and rows:
-        yield from over_limit_lines(outcome)
+        yield from limit_lines(outcome)
         yield from spread_notes(outcome)
     if ran and not computed:
         yield "No report was written: there is no computed row."
@@ -91,7 +93,7 @@ def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
         yield _written(outcome, path)
     if not ran:
         quoted = f'"{name}"' if " " in name else name
-        yield f"Next: {_next_step(computed, rows, quoted)}"
+        yield f"Next: {_next_step(counts, quoted)}"
 
 
 def _written(outcome: Outcome, path: Path) -> str:
@@ -116,11 +118,12 @@ def repair_lines(repairs: Sequence[Repair]) -> Iterator[str]:
         yield f"    … and {len(repairs) - _SHOWN_REPAIRS} more; a workbook lists them all on its sheet Fixes"
 
 
-def _next_step(computed: int, rows: int, name: str) -> str:
+def _next_step(counts: Mapping[str, int], name: str) -> str:
     """Return what to do after a check, the command last."""
+    computed = counts["computed"]
     if not computed:
         return f"mend that, then: flexlash check {name}"
-    if computed < rows:
+    if computed < counts["rows"] or counts["errors"]:
         return f"mend that and check again, or compute the {counted(computed, 'row')}: flexlash run {name}"
     return f"flexlash run {name}"
 
@@ -161,17 +164,22 @@ def listed(words: Sequence[str], most: int) -> str:
     return " and ".join(filter(None, [", ".join(named[:-1]), *named[-1:]]))
 
 
-def over_limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
-    """Yield how the variants stand to their limits, the worst by name."""
-    rows = [row for row in worst_first(outcome) if row["probability_over_limit"] is not None]
-    if not rows:
+def limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
+    """Yield how many variants meet their limits, and by name the worst of those that do not."""
+    counts = outcome.counts
+    judged = sum(counts[verdict] for verdict in VERDICTS)
+    if not judged:
         return
-    over = [row for row in rows if row["p97_5_arcmin"] > row["backlash_limit_arcmin"]]
-    yield f"P97.5 is over the backlash limit for {len(over)} of {len(rows)} variants with a limit."
+    yield (
+        f"Backlash limit met by {counts['meets']} of {counted(judged, 'variant')} with a limit (at most "
+        f"{BOUNDS['meets']:.3%} of units over it); marginal: {counts['marginal']} (at most {BOUNDS['marginal']:.1%}); "
+        f"not met: {counts['fails']}."
+    ).replace("%", " %")
+    over = [row for row in worst_first(outcome) if misses_limit(row["probability_over_limit"])]
     for row in over[:most]:
         words = share_words(row)
         units = f"{words} units" if words in ALL_UNITS else f"{words} of units"
-        yield f"  {row['variant']}: {units} are over {row['backlash_limit_arcmin']:g}′."
+        yield f"  {shown(row['variant'], longest=200)}: {units} are over {row['backlash_limit_arcmin']:g}′."
 
 
 def points_words(outcome: Outcome) -> str:

@@ -1,9 +1,11 @@
-"""What reaches the screen, and with which exit code a command ends."""
+"""What reaches the screen: names as they may be printed, complaints in red, progress where it can be drawn."""
 
 from __future__ import annotations
 
 import json
+import os
 import sys
+import traceback
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,31 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from flexlash.findings import shown
+from flexlash.findings import readable, shown
+from flexlash.submission.reading.libraries import ChangedLibrary
 
 if TYPE_CHECKING:
     from flexlash.findings import Finding
     from flexlash.options import Progress
-    from flexlash.outcome import Outcome
-    from flexlash.submission.mending.repair import Repair
 
-__all__ = [
-    "INTERNAL",
-    "INTERRUPTED",
-    "NOTHING",
-    "NO_FILE",
-    "named",
-    "one_submission",
-    "progress",
-    "reason",
-    "tell",
-    "tell_refused",
-    "worst",
-]
-
-INTERNAL, _USAGE, SOME_ROWS, NOTHING, NO_FILE, INTERRUPTED = 1, 2, 3, 4, 5, 130
-
-_SEVERITY = (INTERNAL, NO_FILE, NOTHING, SOME_ROWS, 0)
+__all__ = ["colour", "complain", "internal_error", "named", "print_json", "print_refusal", "progress", "reason"]
 
 
 def named(path: object) -> str:
@@ -43,25 +28,38 @@ def named(path: object) -> str:
     return shown(path, longest=4096)
 
 
-def worst(codes: list[int]) -> int:
-    """Return the most severe exit code; without any submission there was nothing to compute."""
-    return min(codes or [NOTHING], key=_SEVERITY.index)
+def colour() -> bool | None:
+    """Return False where colours are not wanted or would not be drawn, None to let the stream decide."""
+    return False if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb" else None
 
 
-@contextmanager
-def one_submission(path: Path, codes: list[int], *, as_json: bool) -> Iterator[None]:
-    """Turn what stops one submission into its exit code, so that the others go on."""
-    try:
-        yield
-    except BrokenPipeError:
-        raise
-    except OSError as fault:
-        place = named(fault.filename or path)
-        why = reason(fault, path)
-        click.secho(f"{place} could not be opened or written: {why}", fg="red", err=True)
-        if as_json:
-            click.echo(json.dumps({"submission": str(path), "error": f"{place}: {why}"}, ensure_ascii=False))
-        codes.append(NO_FILE)
+def complain(text: str) -> None:
+    """Print on standard error what went wrong."""
+    click.secho(text, fg="red", err=True, color=colour())
+
+
+def print_refusal(found: Finding, file: str) -> None:
+    """Print why a file was refused, and the mend."""
+    complain(f"{'' if file in found.message else f'{named(file)}: '}{found.code} {found.message}")
+    click.echo(f"Mend: {found.fix}", err=True)
+
+
+def internal_error(fault: BaseException) -> str:
+    """Return the sentence about a fault of flexlash's own, of which FLEXLASH_DEBUG=1 shows everything."""
+    if os.environ.get("FLEXLASH_DEBUG") == "1":
+        traceback.print_exception(fault)
+    if isinstance(fault, ChangedLibrary):
+        return f"Internal error: {readable(fault)}."
+    return (
+        f"Internal error ({type(fault).__name__}): this is a fault of flexlash, not of your file. "
+        "Set FLEXLASH_DEBUG=1 for details."
+    )
+
+
+def print_json(fields: Mapping[str, Any]) -> None:
+    """Print an object on a line of its own, in plain letters where the screen's encoding is not that of JSON."""
+    plain = (sys.stdout.encoding or "").lower().replace("-", "") != "utf8"
+    click.echo(json.dumps(fields, ensure_ascii=plain))
 
 
 def reason(fault: OSError, path: Path | None = None) -> str:
@@ -69,20 +67,13 @@ def reason(fault: OSError, path: Path | None = None) -> str:
     place = fault.filename or path
     if isinstance(place, str | Path) and Path(place).is_dir():
         return "this is a folder; give the files in it"
-    return fault.strerror or str(fault)
-
-
-def tell_refused(found: Finding, file: str) -> None:
-    """Print why a file was refused, and the mend."""
-    name = "" if file in found.message else f"{named(file)}: "
-    click.secho(f"{name}{found.code} {found.message}", fg="red", err=True)
-    click.echo(f"Mend: {found.fix}", err=True)
+    return readable(fault.strerror or fault)
 
 
 @contextmanager
 def progress(*, quiet: bool) -> Iterator[Progress | None]:
-    """Yield a callback that draws a progress bar, or None off a terminal."""
-    if quiet or not sys.stderr.isatty():
+    """Yield a callback that draws a progress bar, or None where none can be drawn or is wanted."""
+    if quiet or not _can_draw():
         yield None
         return
     with click.progressbar(length=1, label="Computing", file=sys.stderr, show_pos=True) as bar:
@@ -94,27 +85,7 @@ def progress(*, quiet: bool) -> Iterator[Progress | None]:
         yield advance
 
 
-def tell(
-    outcome: Outcome,
-    path: Path,
-    *,
-    as_json: bool,
-    ran: bool = False,
-    repairs: list[Repair] | None = None,
-    further: Mapping[str, Any] | None = None,
-) -> None:
-    """Print an outcome: as one JSON object, with `further` fields, or findings grouped by rule and then the summary."""
-    if as_json:
-        fixes = {} if repairs is None else {"fixes": [repair.as_dictionary() for repair in repairs]}
-        click.echo(json.dumps({**outcome.as_dictionary(), **fixes, **(further or {})}, ensure_ascii=False))
-        return
-    from flexlash.summary import finding_lines, repair_lines, summary_lines
-
-    for line in () if repairs is None else repair_lines(repairs):
-        click.echo(line)
-
-    colours = {"error": "red", "warning": "yellow", "info": "cyan"}
-    for level, line in finding_lines(outcome.findings):
-        click.echo(click.style(line, fg=colours[level]) if level else line, err=ran)
-    for line in summary_lines(outcome, named(path), ran=ran):
-        click.echo(line)
+def _can_draw() -> bool:
+    """Whether standard error is a terminal on which a line can be drawn again and again."""
+    terminal = os.environ.get("TERM", "" if os.name == "posix" else "windows")
+    return sys.stderr.isatty() and terminal not in {"", "dumb"}

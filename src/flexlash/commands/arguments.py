@@ -13,7 +13,7 @@ from flexlash.findings import shown
 if TYPE_CHECKING:
     from flexlash.submission.reading.limits import ReadingLimits
 
-__all__ = ["JSON", "LIMITS", "MARKED", "STRICT", "SUBMISSIONS", "planned", "table_option"]
+__all__ = ["JSON", "LIMITS", "MARKED", "QUIET", "STRICT", "SUBMISSIONS", "planned", "table_option"]
 
 Command = Callable[..., None]
 Planned = TypeVar("Planned")
@@ -47,6 +47,7 @@ LIMITS = click.option(
 MARKED = click.option(
     "--marked-copies", is_flag=True, help="Take marked copies (<name>-checked.xlsx) as submissions, too."
 )
+QUIET = click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")
 STRICT = click.option("--strict/--no-strict", default=None, help="Compute nothing when any row has an error.")
 
 

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from flexlash.commands.arguments import JSON, LIMITS, MARKED, STRICT, SUBMISSIONS, planned, table_option
+from flexlash.commands.arguments import JSON, LIMITS, MARKED, QUIET, STRICT, SUBMISSIONS, planned, table_option
+from flexlash.commands.submissions import Submissions
 from flexlash.targets import beside, mended_targets
-from flexlash.terminal import one_submission, tell, worst
-
-if TYPE_CHECKING:
-    from flexlash.submission.mending.repair import Repair
 
 __all__ = ["check"]
 
@@ -30,6 +27,7 @@ __all__ = ["check"]
 @LIMITS
 @MARKED
 @JSON
+@QUIET
 @table_option("tolerances")
 @table_option("materials")
 def check(
@@ -39,6 +37,7 @@ def check(
     annotate: bool,
     apply_fixes: bool,
     as_json: bool,
+    quiet: bool,
     **options: Any,
 ) -> None:
     """Validate submissions and print what was found; nothing is sampled.
@@ -56,19 +55,16 @@ def check(
         if output.suffix.lower() != ".xlsx":
             raise click.UsageError("A marked copy is a workbook: OUT must end in .xlsx or be a folder.")
     options["marked_copies"] |= annotate
-    codes: list[int] = []
+    all_of_them = Submissions(len(submissions), as_json=as_json, quiet=quiet)
     for path, target, copy in zip(submissions, targets, copies, strict=True):
-        with one_submission(path, codes, as_json=as_json):
+        with all_of_them.one(path) as ended:
             reading = Reading(path, options["limits"])
             # Loading the libraries takes as long as reading the file does: both at once.
             from flexlash.pipeline import check as check_one
             from flexlash.pipeline import mend
 
-            repairs: list[Repair] | None = None
             if apply_fixes:
-                outcome, repairs = mend(reading, target, marked_copy=copy if annotate else None, **options)
+                ended.outcome, ended.repairs = mend(reading, target, marked_copy=copy if annotate else None, **options)
             else:
-                outcome = check_one(reading, marked_copy=copy if annotate else None, **options)
-            tell(outcome, outcome.outputs[0] if repairs else path, as_json=as_json, repairs=repairs)
-            codes += [] if outcome.skipped else [outcome.exit_code]
-    sys.exit(worst(codes))
+                ended.outcome = check_one(reading, marked_copy=copy if annotate else None, **options)
+    sys.exit(all_of_them.end())

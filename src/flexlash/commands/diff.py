@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from flexlash.commands.arguments import JSON, LIMITS
-from flexlash.findings import finding
-from flexlash.terminal import NOTHING, one_submission, tell_refused, worst
+from flexlash.commands.submissions import Submissions
+from flexlash.terminal import print_json
 
 if TYPE_CHECKING:
     from flexlash.comparison.sides import Side
@@ -38,31 +37,22 @@ def diff(old: Path, new: Path, *, tolerance: float, every: bool, limits: Reading
     from flexlash.comparison.difference import difference
     from flexlash.comparison.difference_lines import difference_lines
 
-    codes: list[int] = []
-    before, after = (_side(path, limits, codes, as_json=as_json) for path in (old, new))
+    both = Submissions(2, as_json=as_json)
+    before, after = (_side(path, limits, both) for path in (old, new))
     if before is None or after is None:
-        sys.exit(worst(codes))
+        sys.exit(both.code)
     found = difference(before, after, tolerance)
     if as_json:
-        click.echo(json.dumps(found.as_dictionary(), ensure_ascii=False))
+        print_json(found.as_dictionary())
         return
     for line in difference_lines(found, every=every):
         click.echo(line)
 
 
-def _side(path: Path, limits: ReadingLimits, codes: list[int], *, as_json: bool) -> Side | None:
+def _side(path: Path, limits: ReadingLimits, both: Submissions) -> Side | None:
     """Return a file to compare; None, with its exit code, when it is none."""
     from flexlash.comparison.sides import side_of
-    from flexlash.submission.reading.refusal import Refusal
 
-    with one_submission(path, codes, as_json=as_json):
-        try:
-            return side_of(path, limits)
-        except Refusal as refusal:
-            facts: dict[str, Any] = {"file": path.name, **refusal.facts}
-            found = finding(refusal.code, **facts)
-            tell_refused(found, path.name)
-            if as_json:
-                click.echo(json.dumps({"submission": str(path), "error": found.message}, ensure_ascii=False))
-            codes.append(NOTHING)
+    with both.one(path):
+        return side_of(path, limits)
     return None

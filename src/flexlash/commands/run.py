@@ -9,9 +9,10 @@ from typing import Any
 
 import click
 
-from flexlash.commands.arguments import JSON, LIMITS, MARKED, STRICT, SUBMISSIONS, planned, table_option
+from flexlash.commands.arguments import JSON, LIMITS, MARKED, QUIET, STRICT, SUBMISSIONS, planned, table_option
+from flexlash.commands.submissions import Submissions
 from flexlash.targets import beside, report_targets
-from flexlash.terminal import one_submission, progress, tell, worst
+from flexlash.terminal import progress
 
 __all__ = ["run"]
 
@@ -35,13 +36,14 @@ __all__ = ["run"]
     "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default="all cores", help="Processes."
 )
 @STRICT
+@click.option("--fail-over-limit", is_flag=True, help="End with exit code 6 when a variant does not meet its limit.")
 @LIMITS
 @JSON
 @click.option(
     "--from-report", is_flag=True,
     help="The files are reports: write the submission that each carries and compute it anew, with its own options.",
 )  # fmt: skip
-@click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")
+@QUIET
 @click.option(
     "--annotate/--no-annotate", default=True, show_default=True,
     help="Write <name>-checked.xlsx, your file with the cells to mend marked, when there are errors or warnings.",
@@ -69,16 +71,13 @@ def run(
     if from_report:
         from flexlash.commands.recreate import recreate_all
 
-        sys.exit(worst(recreate_all(submissions, output, as_json=as_json, quiet=quiet, **options)))
-    codes: list[int] = []
+        sys.exit(recreate_all(submissions, output, as_json=as_json, quiet=quiet, **options))
+    all_of_them = Submissions(len(submissions), as_json=as_json, quiet=quiet, ran=True)
     for path, target, copy in zip(submissions, targets, beside(submissions, targets), strict=True):
-        with one_submission(path, codes, as_json=as_json), progress(quiet=quiet or as_json) as advance:
+        with all_of_them.one(path) as ended, progress(quiet=quiet or as_json) as advance:
             reading = Reading(path, options["limits"])
             from flexlash.pipeline import run as run_one
 
             options["marked_copy"] = copy if annotate else None
-            outcome = run_one(reading, target, progress=advance, **options)
-            if not quiet or outcome.exit_code:
-                tell(outcome, path, as_json=as_json, ran=True)
-            codes += [] if outcome.skipped else [outcome.exit_code]
-    sys.exit(worst(codes))
+            ended.outcome = run_one(reading, target, progress=advance, **options)
+    sys.exit(all_of_them.end())

@@ -9,9 +9,10 @@ from typing import Any
 import click
 
 from flexlash.commands.arguments import planned
+from flexlash.exit_codes import ExitCode
 from flexlash.findings import finding, shown
 from flexlash.targets import template_target
-from flexlash.terminal import NOTHING, named, tell_refused
+from flexlash.terminal import named, print_refusal
 
 __all__ = ["template"]
 
@@ -54,8 +55,8 @@ def _upgraded(old: Path) -> bytes:
     except Refusal as refusal:
         facts: dict[str, Any] = {"file": old.name, **refusal.facts}
         found = finding(refusal.code, **facts)
-        tell_refused(found, old.name)
-        sys.exit(NOTHING)
+        print_refusal(found, old.name)
+        sys.exit(ExitCode.NOTHING)
     made = f", made from template version {upgrade.version}" if upgrade.version else ""
     click.echo(f"{named(old)}{made}: {upgrade.rows} {'row' if upgrade.rows == 1 else 'rows'} of Variants carried over.")
     for remark in upgrade.remarks:

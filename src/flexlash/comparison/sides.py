@@ -192,7 +192,7 @@ def side_of(path: Path, limits: ReadingLimits) -> Side:
     validated = validate(submission, limits)
     if validated.table is None:
         raise Refusal("E109", sheet="Variants", cell="A1")
-    side = Side(file=path.name, submission=submission, validated=validated)
+    side = Side(file=reading.name, submission=submission, validated=validated)
     if not isinstance(reading, ReportReading):
         return side
     return replace(side, results=by_variant(result_rows(reading.results), side.records), version=reading.version)

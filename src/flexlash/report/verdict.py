@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
+from flexlash.limit_verdict import BOUNDS as ALLOWED
+from flexlash.limit_verdict import Verdict, limit_verdict
 from flexlash.outcome import Outcome
 
 __all__ = ["BOUNDS", "COLOURS", "NO_VERDICT", "RULES", "UNSETTLED", "firm", "light", "straddled", "verdict_counts"]
@@ -27,16 +29,12 @@ _FORMATS = {"red": "error", "amber": "warning", "green": "ok"}
 COLOURS = {**_FORMATS, **{f"{verdict}{UNSETTLED}": look for verdict, look in _FORMATS.items()}, NO_VERDICT: "text"}
 """The cell format of each verdict, settled or not."""
 
-BOUNDS = {"green": 0.00135, "amber": 0.025}
+_LIGHTS: dict[Verdict | None, str] = {"meets": "green", "marginal": "amber", "fails": "red", None: NO_VERDICT}
+
+BOUNDS = {_LIGHTS[verdict]: most for verdict, most in ALLOWED.items()}
 """Greatest share of units over the limit that each verdict allows; red allows any."""
 
-_KEYS = (
-    "backlash_limit_arcmin",
-    "p97_5_arcmin",
-    "p99_865_arcmin",
-    "probability_over_limit_low",
-    "probability_over_limit_high",
-)
+_KEYS = tuple(f"probability_over_limit{end}" for end in ("", "_low", "_high"))
 
 
 def light(row: dict[str, Any]) -> str:
@@ -57,15 +55,13 @@ def straddled(row: dict[str, Any]) -> list[float]:
 
 def verdict_counts(outcome: Outcome) -> Counter[str]:
     """Return how many computed variants have each verdict; those with ? are counted apart."""
-    columns = (outcome.results[key].to_list() for key in _KEYS)
-    return Counter(_verdict(*numbers) for numbers in zip(*columns, strict=True) if numbers[1] is not None)
+    computed = outcome.results.filter(outcome.results["p97_5_arcmin"].is_not_null())
+    return Counter(_verdict(*shares) for shares in computed.select(_KEYS).iter_rows())
 
 
-def _verdict(limit: float | None, tail: float, far_tail: float, low: float | None, high: float | None) -> str:
-    if limit is None or low is None or high is None:
-        return NO_VERDICT
-    found = "green" if far_tail <= limit else "amber" if tail <= limit else "red"
-    return f"{found}{UNSETTLED}" if _straddled(low, high) else found
+def _verdict(share: float | None, low: float | None, high: float | None) -> str:
+    found = _LIGHTS[limit_verdict(share)]
+    return f"{found}{UNSETTLED}" if low is not None and high is not None and _straddled(low, high) else found
 
 
 def _straddled(low: float, high: float) -> list[float]:

@@ -9,10 +9,11 @@ from flexlash.report.functions import all_of, greatest, is_number, place_of_name
 from flexlash.report.live import Live, fill, joined, live, put, when
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book
+from flexlash.report.verdict import BOUNDS
 
 __all__ = ["NONE", "USUAL_SHARE", "Choice"]
 
-USUAL_SHARE = 0.00135
+USUAL_SHARE = BOUNDS["green"]
 """Share of a normal beyond its mean + 3 sd."""
 
 NONE = "none"

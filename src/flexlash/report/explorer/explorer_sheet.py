@@ -15,12 +15,13 @@ from flexlash.report.functions import all_of, greatest, least, normal_score, nor
 from flexlash.report.live import Live, joined, live, put, when
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book
+from flexlash.report.verdict import BOUNDS
 
 __all__ = ["write_explorer"]
 
 _WIDTHS = (29, 19, 30, 3, 31, 15, 11)
 _INTERVAL = 1.96
-_AMBER = 0.025
+_AMBER = BOUNDS["amber"]
 _NEARLY = 1.000001
 """Room for rounding where a share meets the rarest that is told."""
 

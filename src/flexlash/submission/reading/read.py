@@ -6,6 +6,7 @@ import hashlib
 from dataclasses import replace
 from pathlib import Path
 
+from flexlash.findings import readable
 from flexlash.submission.reading.carried import NONSENSE, carried_submission
 from flexlash.submission.reading.delimited import read_table
 from flexlash.submission.reading.gate import kind_of, read_bytes
@@ -38,12 +39,13 @@ _MORE = 4
 class Reading:
     """A submission being read; where another process does so, its caller can do something else meanwhile.
 
-    `data` takes the place of the file's own bytes. Raises OSError when the file cannot be opened; what else is wrong
-    with it is told by `submission`.
+    `data` takes the place of the file's own bytes; `name` is the file's name as it may be printed. Raises OSError when
+    the file cannot be opened; what else is wrong with it is told by `submission`.
     """
 
     def __init__(self, path: Path, limits: ReadingLimits | None = None, data: bytes | None = None) -> None:
         self.path = path
+        self.name = readable(path.name)
         self.limits = limits or ReadingLimits()
         self.kind = ""
         self.data = b""
@@ -66,15 +68,15 @@ class Reading:
             raise self.refusal
         digest = hashlib.sha256(self.data).hexdigest()
         if self.asked is None:
-            sheets = {"Variants": read_table(self.data, "Variants", self.path.name)}
-            return Submission(name=self.path.name, sha256=digest, kind=self.kind, sheets=sheets, data=self.data)
+            sheets = {"Variants": read_table(self.data, "Variants", self.name)}
+            return Submission(name=self.name, sha256=digest, kind=self.kind, sheets=sheets, data=self.data)
         answer = self.asked.answer()[0]
         try:
             cells = from_wire(answer)
         except (ValueError, TypeError, LookupError, AttributeError) as fault:
             raise Refusal("E118") from fault
         return Submission(
-            name=self.path.name,
+            name=self.name,
             sha256=digest,
             kind=self.kind,
             sheets={sheet.name: sheet for sheet in cells.sheets},
