@@ -88,6 +88,42 @@ def test_doubt_about_the_decimal_sign_is_an_error_at_each_cell(tmp_path):
     assert outcome.counts["computed"] == 0
 
 
+THOUSANDS = "variant;material;torque_Nm;cylinder_length_mm;mean_radius_mm;wall_thickness_mm;disk_inner_radius_mm\n"
+
+
+@pytest.mark.parametrize("delimiter", [";", "\t", "|"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_thousands_points_are_questioned_without_any_decimal_comma(tmp_path, delimiter, encoding):
+    """1.050 N·m may be 1050 N·m: in a table that nothing proves to write decimal points, both readings are offered."""
+    rows = "".join(f"V{torque};20Cr2Ni4;{torque};160;80;2;40\n" for torque in ("1.050", "2.500", "12.500"))
+    path = tmp_path / "thousands.txt"
+    path.write_bytes((THOUSANDS + rows).replace(";", delimiter).encode(encoding))
+    outcome = check(path)
+    told = [(found.code, found.cell, found.suggestion, found.repair) for found in outcome.findings if found.cell]
+    assert told == [
+        ("E202", "C2", "1.05 or 1050", None),
+        ("E202", "C3", "2.5 or 2500", None),
+        ("E202", "C4", "12.5 or 12500", None),
+    ]
+    assert (outcome.exit_code, outcome.counts["computed"]) == (4, 0)
+    path.write_bytes((THOUSANDS + rows.replace(";2;40", ";1.6;40")).replace(";", delimiter).encode(encoding))
+    assert (check(path).exit_code, check(path).counts["computed"]) == (0, 3)
+
+
+def test_tables_beside_question_their_numbers_too(tmp_path, table, sound):
+    """Deviations and moduli of tables given beside a submission are questioned alike."""
+    tolerances, materials = tmp_path / "t.csv", tmp_path / "m.csv"
+    tolerances.write_text("tolerance_class;dimension;lower_deviation;upper_deviation\nfine;torque;-1.050;1.050\n")
+    materials.write_text("material\tyoungs_modulus_GPa\tpoisson_ratio\n20Cr2Ni4\t2.110\t0,3\n")
+    found = check(table([sound]), tolerances=tolerances, materials=materials).findings
+    told = {(one.sheet, one.cell, one.suggestion) for one in found if one.code == "E202"}
+    assert told == {
+        ("Tolerances", "C2", "-1.05 or -1050"),
+        ("Tolerances", "D2", "1.05 or 1050"),
+        ("Materials", "B2", "2.11 or 2110"),
+    }
+
+
 DOUBTS = {
     "thousands beside a comma": ("1.200;1,6", {"C2"}),
     "thousands beside both signs": ("1.200;1.200,5", {"C2"}),

@@ -24,6 +24,8 @@ PROMISED = {
     "attributes": 256,
     "sheets": 100,
     "cells": 1_000_000,
+    "table_rows": 1_048_576,
+    "table_cells": 3_000_000,
     "merged_areas": 100_000,
     "characters": 32_767,
     "rows": 20_000,
@@ -118,9 +120,10 @@ def test_compression_at_its_limit(tmp_path):
 
 
 def test_every_limit_has_a_test():
-    """No limit is left out: those of the process are tested with it."""
+    """No limit is left out: those of the process and of tables are tested with them."""
     of_the_process = {"seconds", "processor_seconds", "memory_mebibytes"}
-    assert AT_LIMIT.keys() | of_the_process | {"compression"} == PROMISED.keys()
+    of_tables = {"table_rows", "table_cells"}
+    assert AT_LIMIT.keys() | of_the_process | of_tables | {"compression"} == PROMISED.keys()
 
 
 def test_limits_are_the_promised_ones():

@@ -90,7 +90,14 @@ def test_everything_about_a_file_comes_through():
                 name="c",
                 rows={1: {1: "x"}},
                 numbers_are_texts=True,
-                manner=Manner(delimiter=";", encoding="UTF-8", file="c.csv", comma_number=(2, 3), foreign_text=None),
+                manner=Manner(
+                    delimiter=";",
+                    encoding="UTF-8",
+                    file="c.csv",
+                    comma_number=(2, 3),
+                    foreign_text=None,
+                    longer=frozenset({4}),
+                ),
             ),
         ],
         modified=datetime.datetime(2026, 1, 2, 3, 4, 5),  # noqa: DTZ001

@@ -211,9 +211,11 @@ CATALOGUE = _rules(
         "E202",
         "text instead of a number",
         '{place} {name} = "{value}": {requirement} is required.',
-        "Type the number alone, without unit, with the decimal sign that your program uses.",
+        "Type the number alone, without unit or thousands sign, with the decimal sign that your program uses.",
         "A cell can look like a number and be text: a comma where Excel expects a point, a unit behind the "
-        "number, a stray space, a leading apostrophe. flexlash never guesses at a dimension.",
+        "number, a stray space, a leading apostrophe. In a table separated by semicolons, tabs or bars 1.050 may be "
+        "1.05 or 1050, unless a number with one, two or more than three decimals shows that the point is the decimal "
+        "sign. flexlash never guesses at a dimension.",
     ),
     (
         "E203",

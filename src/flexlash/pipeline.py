@@ -167,7 +167,7 @@ def _table_beside(path: Path, name: str, limits: ReadingLimits) -> RawSheet:
     try:
         data = read_bytes(path, limits)
         kind_of(data, only="csv")
-        return read_table(data, name, readable(path.name))
+        return read_table(data, name, readable(path.name), limits)
     except Refusal as refusal:
         raise Refusal(refusal.code, **{"file": path.name, **refusal.facts}) from refusal
 

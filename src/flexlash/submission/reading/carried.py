@@ -152,5 +152,6 @@ def _is_manner(manner: Manner) -> bool:
         manner.delimiter in _DELIMITERS
         and isinstance(manner.encoding, str)
         and isinstance(manner.file, str)
+        and _are_places(manner.longer, MAXIMUM_ROW)
         and all(place is None or (len(place) == 2 and _are_places(place, MAXIMUM_ROW)) for place in places)  # noqa: PLR2004
     )

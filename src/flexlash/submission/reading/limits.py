@@ -28,6 +28,8 @@ class ReadingLimits:
     attributes: int = _limit(256, "the number of attributes of one element")
     sheets: int = _limit(100, "the number of sheets")
     cells: int = _limit(1_000_000, "the number of cells")
+    table_rows: int = _limit(1_048_576, "the number of rows of a table")
+    table_cells: int = _limit(3_000_000, "the number of cells of a table")
     merged_areas: int = _limit(100_000, "the number of merged areas")
     characters: int = _limit(32_767, "the length of one cell's text", "characters")
     rows: int = _limit(20_000, "the number of rows with data")

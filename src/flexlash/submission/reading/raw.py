@@ -74,7 +74,8 @@ class Manner:
     """How a delimited text was written: whatever of it was recognised rather than known.
 
     `comma_number` and `foreign_text` are the addresses, row and column, of the first number with a decimal comma
-    and of the first text that another encoding would show otherwise; None where there is none.
+    and of the first text that another encoding would show otherwise; None where there is none. `longer` are rows of
+    more cells than the header row has, blank ones included, where an unquoted decimal comma may have made two of one.
     """
 
     delimiter: str
@@ -82,6 +83,7 @@ class Manner:
     file: str = ""
     comma_number: tuple[int, int] | None = None
     foreign_text: tuple[int, int] | None = None
+    longer: frozenset[int] = frozenset()
 
 
 @dataclass(frozen=True, kw_only=True)

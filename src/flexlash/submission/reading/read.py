@@ -68,7 +68,7 @@ class Reading:
             raise self.refusal
         digest = hashlib.sha256(self.data).hexdigest()
         if self.asked is None:
-            sheets = {"Variants": read_table(self.data, "Variants", self.name)}
+            sheets = {"Variants": read_table(self.data, "Variants", self.name, self.limits)}
             return Submission(name=self.name, sha256=digest, kind=self.kind, sheets=sheets, data=self.data)
         answer = self.asked.answer()[0]
         try:

@@ -60,7 +60,7 @@ def to_wire(cells: Cells) -> dict[str, Any]:
                 "hidden_rows": sorted(sheet.hidden_rows),
                 "merged": sheet.merged,
                 "numbers_are_texts": sheet.numbers_are_texts,
-                "manner": asdict(sheet.manner) if sheet.manner else None,
+                "manner": asdict(sheet.manner) | {"longer": sorted(sheet.manner.longer)} if sheet.manner else None,
             }
             for sheet in cells.sheets
         ],
@@ -106,7 +106,7 @@ def _manner(written: dict[str, Any] | None) -> Manner | None:
     if written is None:
         return None
     places = {name: place and tuple(place) for name, place in written.items() if name in _PLACES}
-    return Manner(**(written | places))
+    return Manner(**(written | places | {"longer": frozenset(written.get("longer", ()))}))
 
 
 def _read(value: Any) -> RawValue:
