@@ -268,6 +268,16 @@ def test_only_numbers_tell_what_a_point_is(variant, revision):
     assert sheet.manner.comma_number is None
 
 
+def test_own_columns_are_in_doubt_as_well():
+    """A number of a column that is not the template's own proves nothing, but is in doubt like the others."""
+    sheet = _read(NAMED.format("A", "1.050", "1.200"))
+    assert {place for place, cell in sheet.rows[2].items() if type(cell) is DoubtfulNumber} == {3, 5}
+    sheet = _read(NAMED.format("A", "800", "1.200"))
+    assert type(sheet.rows[2][5]) is DoubtfulNumber
+    sheet = _read(NAMED.format("1,5", "1,6", "1,7"))
+    assert [type(sheet.rows[2][place]) for place in (1, 3, 5)] == [str, CommaNumber, CommaNumber]
+
+
 @pytest.mark.parametrize("comma", ["2", "2,5"])
 @pytest.mark.parametrize("point", ["2", "2.5"])
 def test_the_answer_never_depends_on_a_decimal_comma_elsewhere(comma, point):

@@ -37,11 +37,13 @@ class Settled(NamedTuple):
     has_decimal_point: bool = False
 
 
-def settle_numbers(rows: _Rows, columns: Collection[int] | None, *, delimiter: str) -> Settled:
+def settle_numbers(
+    rows: _Rows, columns: Collection[int] | None, others: Collection[int] = (), *, delimiter: str
+) -> Settled:
     """Mark the numbers with a decimal comma, and those in doubt; return what was settled.
 
-    `columns` are those that hold numbers, None for all: what stands elsewhere, such as 1.2 for a revision, tells
-    nothing.
+    `columns` are those that hold numbers, None for all, and `others` those that hold none. What stands elsewhere, such
+    as 1.2 for a revision, is marked and tells nothing.
 
     A point before three digits is taken as decimal only where another number can have nothing but a decimal point
     and no comma contradicts. In a table separated by commas it is decimal unless a quoted number has a decimal comma.
@@ -53,12 +55,13 @@ def settle_numbers(rows: _Rows, columns: Collection[int] | None, *, delimiter: s
         first = next((number, place) for number, place, _, kind in _numbers(rows, columns) if kind == "comma")
         open_commas = DoubtfulNumber if points or counts["open_point"] else CommaNumber
         doubtful = dict.fromkeys(("point", "thousands_commas", "open_point"), DoubtfulNumber)
-        _mark(rows, columns, {"comma": CommaNumber, "open_comma": open_commas, **doubtful})
+        _mark(rows, others, {"comma": CommaNumber, "open_comma": open_commas, **doubtful})
         return settled._replace(comma_number=first)
     is_proven = points and points >= _PREVAILING * commas
-    if counts["open_point"] and not is_proven and (commas or delimiter != ","):
+    if not is_proven and (commas or delimiter != ","):
         # The commas may be the only sign of the doubt: mended, they would leave 1.200 behind as an ordinary number.
-        _mark(rows, columns, dict.fromkeys(("comma", "thousands_points", "open_point"), DoubtfulNumber))
+        commas_too = ("comma", "thousands_points") if counts["open_point"] else ()
+        _mark(rows, others, dict.fromkeys(("open_point", *commas_too), DoubtfulNumber))
     return settled
 
 
@@ -71,10 +74,8 @@ def _numbers(rows: _Rows, columns: Collection[int] | None) -> Iterator[tuple[int
                 yield number, place, cell, match.lastgroup or ""
 
 
-def _mark(
-    rows: _Rows, columns: Collection[int] | None, marks: Mapping[str, type[CommaNumber | DoubtfulNumber]]
-) -> None:
+def _mark(rows: _Rows, others: Collection[int], marks: Mapping[str, type[CommaNumber | DoubtfulNumber]]) -> None:
     """Put numbers in the place of texts, by the kind of each."""
-    for number, place, text, kind in _numbers(rows, columns):
-        if kind in marks:
+    for number, place, text, kind in _numbers(rows, None):
+        if kind in marks and place not in others:
             rows[number][place] = marks[kind](text)

@@ -56,11 +56,11 @@ def read_table(data: bytes, name: str, file: str = "", limits: ReadingLimits | N
     read = _rows(_records(text, delimiter, limits), limits)
     if "#" in text:
         _mark_errors(read.rows)
-    header, columns = _header(read.rows, name)
+    header, columns, others = _header(read.rows, name)
     longer = read.longer_than(header) if delimiter == "," and header else frozenset()
     # Without a quote no cell of a table that is separated by commas holds one.
     is_settled = delimiter == "," and '"' not in text and not longer
-    settled = Settled() if is_settled else settle_numbers(read.rows, columns, delimiter=delimiter)
+    settled = Settled() if is_settled else settle_numbers(read.rows, columns, others, delimiter=delimiter)
     manner = Manner(
         delimiter=delimiter,
         encoding=encoding,
@@ -192,16 +192,20 @@ def _mark_errors(rows: _Rows) -> None:
                 cells[place] = ErrorCell(text.strip())
 
 
-def _header(rows: _Rows, schema: str) -> tuple[int, frozenset[int] | None]:
-    """Return the row of the headers and the columns that hold numbers by them; 0 and None where none is known."""
+def _header(rows: _Rows, schema: str) -> tuple[int, frozenset[int] | None, frozenset[int]]:
+    """Return the row of the headers and the columns that hold numbers and texts by them.
+
+    Where no header is known, the row is 0 and every column may hold numbers, which None stands for.
+    """
     columns = columns_of(schema) if schema in ENTRY_SHEETS else {}
     names = known_names(columns)
     top = {number: rows[number] for number in range(1, LAST_HEADER_ROW + 1) if number in rows}
     known = {number: _known(cells, names) for number, cells in top.items()}
     best = max(known, key=lambda number: len(known[number]), default=0)
     if not best or len(known[best]) < min(2, len(columns)):
-        return 0, None
-    return best, frozenset(place for place, key in known[best].items() if columns[key].is_number)
+        return 0, None, frozenset()
+    numbers = frozenset(place for place, key in known[best].items() if columns[key].is_number)
+    return best, numbers, frozenset(known[best]) - numbers
 
 
 def _known(cells: Mapping[int, RawValue], names: Mapping[str, str]) -> dict[int, str]:
