@@ -2,19 +2,24 @@
 
 Radius and thickness are plain functions of the place on the meridian; adaptive quadrature adds up
 U = T/(2πG) · ∫ ds/(r³ t) between the kinks. A fillet's arc rises as a square root of the distance from where it is
-steep, so there the distance is a square, and the square's root is what the quadrature steps in.
+steep, so there the distance is a square, and the square's root is what the quadrature steps in. Near its other end the
+distance is counted from there, decade by decade, since a thin wall may be all that is left.
 """
 
 import math
+from itertools import pairwise
 
 from scipy.integrate import quad
 
 __all__ = ["slow_windup"]
 
+_DECADES = 12
+"""How near to the thin end of a fillet the decades go, as a power of ten of its radius."""
 
-def _arc(fillet, distance):
-    """Return what a fillet adds to the thickness [m] at a distance [m] from its steep end."""
-    return fillet - math.sqrt(distance * (2 * fillet - distance)) if distance < fillet else 0.0
+
+def _arc(fillet, back):
+    """Return what a fillet adds to the thickness [m] at a distance [m] from where it ends on the thin side."""
+    return back * back / (fillet + math.sqrt(fillet * fillet - back * back)) if back > 0 else 0.0
 
 
 def _integral(integrand, start, end):
@@ -22,9 +27,13 @@ def _integral(integrand, start, end):
     return quad(integrand, start, end, epsabs=0, epsrel=1e-12, limit=500)[0] if end > start else 0.0
 
 
-def _steep_integral(integrand, end):
-    """Return an integral from 0, where the integrand changes as the square root of its argument does."""
-    return _integral(lambda root: 2 * root * integrand(root * root), 0.0, math.sqrt(end))
+def _fillet_integral(integrand, fillet):
+    """Return the integral over a fillet of a function of the distances [m] from its steep end and from its thin one."""
+    steep = _integral(lambda root: 2 * root * integrand(root * root, fillet - root * root), 0.0, math.sqrt(fillet / 2))
+    ends = [0.0] + [fillet / 2 * 10.0**-decade for decade in range(_DECADES, -1, -1)]
+    return steep + sum(
+        _integral(lambda back: integrand(fillet - back, back), start, end) for start, end in pairwise(ends)
+    )
 
 
 def _mean_radius(dimensions):
@@ -49,15 +58,17 @@ def _cylinder(dimensions):
     rim = dimensions.get("rim_thickness", wall)
     rim_start = length - dimensions.get("rim_length", 0.0)
 
-    def in_wall(height):
-        added = _arc(fillet, height)
+    def in_wall(_, back):
+        added = _arc(fillet, back)
         return 1 / ((mean - added / 2) ** 3 * (wall + added))
 
     def in_rim(_):
         return 1 / ((mean - wall / 2 + rim / 2) ** 3 * rim)
 
     return (
-        _steep_integral(in_wall, fillet) + _integral(in_wall, fillet, rim_start) + _integral(in_rim, rim_start, length)
+        _fillet_integral(in_wall, fillet)
+        + _integral(lambda height: in_wall(height, 0.0), fillet, rim_start)
+        + _integral(in_rim, rim_start, length)
     )
 
 
@@ -75,10 +86,10 @@ def _disk(dimensions):
         first = dimensions.get("disk_hub_thickness", last)
         return first + (last - first) * (distance / (outer - inner))
 
-    def in_disk(distance):
-        return 1 / ((inner + distance) ** 3 * (thickness(distance) + _arc(fillet, distance)))
+    def in_disk(distance, back):
+        return 1 / ((inner + distance) ** 3 * (thickness(distance) + _arc(fillet, back)))
 
-    flat = _steep_integral(in_disk, fillet) + _integral(in_disk, fillet, outer - inner)
+    flat = _fillet_integral(in_disk, fillet) + _integral(lambda place: in_disk(place, 0.0), fillet, outer - inner)
     return flat / math.sin(dimensions.get("disk_cone_angle", math.pi / 2))
 
 

@@ -133,6 +133,29 @@ def power_law_cups(draw):
     return cup
 
 
+@st.composite
+def extreme_cups(draw):
+    """Draw a cup unlike any that is made, yet a part: the widest fillets, a disk that thins by up to eight decades."""
+    hub = draw(multiples(1e-3, 0.99))
+    wall = draw(multiples(1e-5, 0.3))
+    cup = {
+        "torque": 1.0,
+        "shear_modulus": 1.0,
+        "mean_radius": 1.0,
+        "wall_thickness": wall,
+        "cylinder_length": draw(multiples(1e-2, 1e2)),
+        "disk_inner_radius": hub,
+        "hub_fillet_radius": (1 - hub) * draw(multiples(1e-4, 1.0) | st.just(1.0)),
+    }
+    cup["junction_fillet_radius"] = min(cup["cylinder_length"], 1 - wall / 2) * draw(multiples(1e-4, 1.0))
+    if draw(st.booleans()):
+        cup["disk_hub_thickness"] = wall * draw(multiples(1e-3, 1e3))
+        if draw(st.booleans()):
+            most = min(10.0, math.log(1e8) / -math.log(hub))
+            cup["disk_thickness_exponent"] = draw(st.just(most) | st.floats(0.0, most))
+    return cup
+
+
 cone_angles = st.floats(0.1, math.pi / 2) | st.just(math.pi / 2)
 
 shapes = st.one_of(
@@ -202,6 +225,37 @@ def test_slow_quadrature_of_known_disks(changes, disk):
 def test_cups_by_quadrature(cup):
     """Any valid cup winds up as slow quadrature along its meridian says."""
     assert_agrees("cup", cup)
+
+
+BOUND = 3e-7
+"""Relative error that the hub fillet's integral promises for every part, up to a fillet of 1000 hub radii."""
+
+
+@thorough
+@given(cup=extreme_cups())
+def test_extreme_cups_by_quadrature(cup):
+    """However wide the fillets and however the disk thins, disk and cylinder each keep their promised error."""
+    exact = slow_windup("cup", cup)
+    angles = {segment: float(angle) for segment, angle in windups("cup", cup).items()}
+    cylinder = sum(angle for segment, angle in angles.items() if segment in CYLINDER_SEGMENTS)
+    assert cylinder == pytest.approx(exact["cylinder"], rel=AGREEMENT)
+    assert sum(angles.values()) - cylinder == pytest.approx(exact["disk"], rel=BOUND)
+
+
+@pytest.mark.parametrize(("exponent", "angle"), [(4.0, 1.400463e-4), (10.0, 9.32717e-4)])
+def test_hub_fillet_on_a_strongly_thinning_disk(exponent, angle):
+    """A fillet of 38 mm on a disk of 2 mm at its hub that thins with a high power is told to the last digit known."""
+    thinning = {"disk_hub_thickness": 0.002, "disk_thickness_exponent": exponent, "hub_fillet_radius": 0.038}
+    assert float(windups("cup", B3_160 | thinning)["hub_fillet"]) == pytest.approx(angle, rel=4e-7)
+
+
+@brief
+@given(cup=extreme_cups(), data=st.data())
+def test_arrays_of_extreme_cups_have_the_bits_of_scalars(cup, data):
+    """Fillets by graded points beside such by few give each segment the very bits that scalars give."""
+    cup |= {"hub_fillet_radius": 0.9 * cup["hub_fillet_radius"]}  # room for what the other dimensions lose
+    pairs = data.draw(st.lists(st.booleans(), min_size=len(cup), max_size=len(cup)))
+    assert_same_bits("cup", cup, pairs)
 
 
 @brief

@@ -1,4 +1,10 @@
-"""Integrals of the two rings that a fillet thickens, by quadrature over the angle of its arc."""
+"""Integrals of the two rings that a fillet thickens, by quadrature along its arc.
+
+Usual fillets take few points over the angle of the arc. Where an end of the arc is steep beside what it joins, graded
+points follow: m is the tangent of half the angle from the end where the fillet adds nothing, 0 there and 1 at the
+steep end, so that a = 2 R m²/(1 + m²) is added at the distance R (1 − m)²/(1 + m²) from the steep end. Near either end
+the integrand changes over a width w that its thickness, or radius, gives, and m = w sinh v, v even, follows it.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +13,19 @@ from collections.abc import Callable, Iterable
 from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
+from scipy.special import boxcox, expm1
 
 from flexlash.arrays import Array
 
-__all__ = ["ARC_RULE", "FINE_RULE", "JUNCTION_RULE", "WIDE", "hub_fillet_integral", "junction_fillet_integral"]
+__all__ = [
+    "ARC_RULE",
+    "GRADED_RULE",
+    "JUNCTION_RULE",
+    "UNLIKE",
+    "WIDE",
+    "hub_fillet_integral",
+    "junction_fillet_integral",
+]
 
 Rule: TypeAlias = tuple[tuple[float, float, float], ...]
 """Sine, cosine and weight of angles from 0 to π/2."""
@@ -21,16 +35,22 @@ def _rule(angles_and_weights: Iterable[tuple[float, float]]) -> Rule:
     return tuple((math.sin(angle), math.cos(angle), weight) for angle, weight in angles_and_weights)
 
 
-def _quarter(points: int) -> Rule:
-    """Return the Gauss–Legendre rule from 0 to π/2."""
+def _gauss(points: int) -> list[tuple[float, float]]:
+    """Return places and weights of the Gauss–Legendre rule from 0 to 1."""
     nodes, weights = np.polynomial.legendre.leggauss(points)
-    return _rule(zip(((nodes + 1) * np.pi / 4).tolist(), (weights * np.pi / 4).tolist(), strict=True))
+    return list(zip(((nodes + 1) / 2).tolist(), (weights / 2).tolist(), strict=True))
 
 
-ARC_RULE, FINE_RULE = _quarter(12), _quarter(48)
+ARC_RULE = _rule((place * math.pi / 2, weight * math.pi / 2) for place, weight in _gauss(12))
 
-WIDE = 20.0
-"""Fillet radius over thickness above which an arc takes the fine rule."""
+GRADED_RULE = tuple(_gauss(32))
+"""Places and weights between either end of an arc and its middle, in the variable that follows the integrand."""
+
+WIDE = 19.7
+"""Fillet radius over the least thickness above which graded points follow the arc; no ratio of round dimensions."""
+
+UNLIKE = 4.87
+"""Greatest ratio of a hub fillet's radius to that of the hub, and of the thicknesses at its ends, without them."""
 
 JUNCTION_RULE = _rule(
     (
@@ -45,6 +65,9 @@ JUNCTION_RULE = _rule(
 )
 """Angles p from the wall and weights of a rule from 0 to π/2 fitted to the junction fillet's integrands."""
 
+_LEAST = 1e-30
+"""Thickness over fillet radius that a ring is taken to have at least."""
+
 
 def hub_fillet_integral(
     inner_radius: Array | float, fillet_radius: Array | float, thickness_at: Callable[[Array], Array | float]
@@ -53,25 +76,44 @@ def hub_fillet_integral(
 
     Equation: I = ∫ dr/(r³ (t + a)), r from r_ci to r_ci + R, a = R (1 − sin q), r = r_ci + R (1 − cos q)
     Arguments: inner_radius r_ci and fillet_radius R [m], of any one shape; thickness_at gives the thickness t of
-        the disk itself [m] at radii of that shape.
-    Valid: R up to the width of the disk; twelve Gauss–Legendre points in q, error below 1e-10 at R = 2t and below
-        2e-7 up to R = 20t, t at the hub; from there on 48 points.
+        the disk itself [m] at radii of that shape, rising or falling all the way.
+    Valid: R up to the width of the disk; error below 3e-7 of I up to R = 1000 r_ci, for any thickness (t_i at r_ci,
+        t_o at r_ci + R). Twelve Gauss–Legendre points in q, below 1e-10 at R = 2t; graded points where R > 19.7 t_i
+        or 19.7 t_o, R > 4.87 r_ci, or one of t_i and t_o is more than 4.87 times the other.
     Source: the meridian integral with the fillet on the inner face; the substitution tames the steep end.
 
     >>> f"{hub_fillet_integral(0.04, 0.0035, lambda _: 0.0016):.6e}"
     '2.202297e+04'
     """
+    inner, fillet = np.asarray(inner_radius), np.asarray(fillet_radius)
+    first, last = thickness_at(inner), thickness_at(inner + fillet)
+    least = np.minimum(first, last)
+    graded = (fillet > WIDE * least) | (fillet > UNLIKE * inner) | (np.maximum(first, last) > UNLIKE * least)
 
-    def by(rule: Rule) -> Array:
-        total: Array | float = 0.0
-        for sine, cosine, weight in rule:
-            radius = np.asarray(inner_radius + fillet_radius * (1 - cosine))
-            thickness = thickness_at(radius) + fillet_radius * (1 - sine)
-            total = total + weight * sine / (radius * radius * radius * thickness)
-        return np.asarray(total * fillet_radius)
+    def at_angle(sine: float, cosine: float) -> Array:
+        radius = inner + fillet * (1 - cosine)
+        return np.asarray(sine / (radius * radius * radius * (thickness_at(radius) + fillet * (1 - sine))))
 
-    wide = np.asarray(fillet_radius > WIDE * thickness_at(np.asarray(inner_radius)))
-    return _either(by, wide, ARC_RULE, FINE_RULE)
+    def radius_at(along: Array, back: Array) -> Array:
+        return np.asarray(inner + fillet * (back * back) / (1 + along * along))
+
+    def at_tangent(along: Array, back: Array) -> Array:
+        radius = radius_at(along, back)
+        return np.asarray(1 / (radius * radius * radius * (thickness_at(radius) + _added(fillet, along))))
+
+    def widths() -> tuple[Array, Array]:
+        # A far draw of the tolerances may let the fillet pass the edge of a taper, where nothing is left of it.
+        edge = np.maximum(last, _LEAST * fillet)
+        even = np.sqrt(edge / (edge + 2 * fillet))
+        rise = np.maximum(thickness_at(radius_at(even / 2, 1 - even / 2)) - edge, 0) / even
+        outer = edge / (edge + rise + np.sqrt(rise * rise + 2 * fillet * edge))
+        whole = first + fillet
+        steep = np.minimum(inner / (inner + fillet / 2), whole / (whole + np.abs(last - first) / 2))
+        return np.asarray(outer), np.asarray(np.sqrt(steep))
+
+    usual = sum((weight * at_angle(sine, cosine) for sine, cosine, weight in ARC_RULE), np.zeros(()))
+    found = np.where(graded, _graded(at_tangent, widths()), usual) if np.any(graded) else usual
+    return np.asarray(found * fillet)
 
 
 def junction_fillet_integral(
@@ -81,26 +123,47 @@ def junction_fillet_integral(
 
     Equation: I = ∫ dz/((r_m − a/2)³ (Δ + a)), z from 0 to R, a = R (1 − cos p), z = R (1 − sin p)
     Arguments: mean_radius r_m, thickness Δ and fillet_radius R [m], of any one shape.
-    Valid: R up to the radius of the bore; error below 1e-9 up to R = 3Δ and below 1e-6 up to R = 20Δ, by seven
-        points and weights fitted to integrands 1/((r_m − a/2)³ (Δ + a)) of this range; from there on 48 points.
+    Valid: R up to the radius of the bore; error below 1e-9 of I up to R = 3Δ and below 1e-6 at any R, by seven
+        points and weights fitted to integrands 1/((r_m − a/2)³ (Δ + a)) up to R = 19.7Δ; graded points from there on.
     Source: the meridian integral; the middle of the wall moves inwards by half of what the fillet adds.
 
     >>> f"{junction_fillet_integral(0.0808, 0.0016, 0.0035):.6e}"
     '3.119550e+03'
     """
+    wall, fillet = np.asarray(thickness), np.asarray(fillet_radius)
+    graded = fillet > WIDE * wall
 
-    def by(rule: Rule) -> Array:
-        total: Array | float = 0.0
-        for _, cosine, weight in rule:
-            added = fillet_radius * (1 - cosine)
-            radius = mean_radius - added * 0.5
-            total = total + weight * cosine / (radius * radius * radius * (thickness + added))
-        return np.asarray(total * fillet_radius)
+    def of_added(added: Array) -> Array:
+        radius = mean_radius - added * 0.5
+        return np.asarray(1 / (radius * radius * radius * (wall + added)))
 
-    return _either(by, np.asarray(fillet_radius > WIDE * thickness), JUNCTION_RULE, FINE_RULE)
+    usual = sum(
+        (weight * cosine * of_added(fillet * (1 - cosine)) for _, cosine, weight in JUNCTION_RULE), np.zeros(())
+    )
+    if np.any(graded):
+        widths = np.sqrt(wall / (wall + 2 * fillet)), np.ones(())
+        usual = np.where(graded, _graded(lambda along, _: of_added(_added(fillet, along)), widths), usual)
+    return np.asarray(usual * fillet)
 
 
-def _either(by: Callable[[Rule], Array], wide: npt.NDArray[np.bool_], usual: Rule, fine: Rule) -> Array:
-    """Return a quadrature by the usual rule, or by the fine one where a fillet is wide."""
-    found = by(usual)
-    return np.where(wide, by(fine), found) if np.any(wide) else found
+def _added(fillet_radius: Array, along: Array) -> Array:
+    """Return what a fillet adds to the thickness at the tangent of half the angle from where it adds nothing."""
+    square = along * along
+    return np.asarray(2 * fillet_radius * square / (1 + square))
+
+
+def _graded(integrand: Callable[[Array, Array], Array], widths: tuple[Array, Array]) -> Array:
+    """Return the integral along an arc of radius 1 of a function of m and of 1 − m, to the widths of both its ends."""
+    total = np.zeros(())
+    for thin, width in zip((True, False), widths, strict=True):
+        half = 0.5 / width
+        # Logarithm and exponential of SciPy, since NumPy's may round otherwise at another place of an array.
+        reach = boxcox(half + np.sqrt(half * half + 1), 0.0)
+        for place, weight in GRADED_RULE:
+            growth = expm1(reach * place) + 1
+            near, pace = width * (growth - 1 / growth) / 2, width * (growth + 1 / growth) / 2
+            along, back = (near, 1 - near) if thin else (1 - near, near)
+            square = 1 + along * along
+            arc = 2 * back * (1 + along) / (square * square)
+            total = total + weight * reach * pace * arc * integrand(along, back)
+    return np.asarray(total)

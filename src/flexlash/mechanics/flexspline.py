@@ -99,8 +99,9 @@ def _disk_profile(dimensions: Dimensions) -> Callable[[Array | float], Array | f
     hub_thickness, (inner, outer) = dimensions["disk_hub_thickness"], disk_radii(dimensions)
     if "disk_thickness_exponent" in dimensions:
         exponent = dimensions["disk_thickness_exponent"]
-        # expm1 of SciPy, since NumPy's exp may round otherwise at another place of an array.
-        return lambda radius: hub_thickness * (1 + expm1(-xlogy(exponent, radius / np.asarray(inner))))
+        # expm1 of SciPy, since NumPy's exp may round otherwise at another place of an array; of a growth, since a
+        # decay beside 1 would lose the digits of a disk that thins to nothing.
+        return lambda radius: hub_thickness / (1 + expm1(xlogy(exponent, radius / np.asarray(inner))))
     slope = (even - hub_thickness) / (outer - inner)
     return lambda radius: hub_thickness + slope * (radius - inner)
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from flexlash.mechanics.fillets import ARC_RULE, FINE_RULE, JUNCTION_RULE, WIDE
+from collections.abc import Callable, Sequence
+
+from flexlash.mechanics.fillets import ARC_RULE, GRADED_RULE, JUNCTION_RULE, UNLIKE, WIDE
 from flexlash.mechanics.strength import PASSES, STATIONS
 from flexlash.mechanics.windup import NEARLY, TAPER_PLACES, TAPER_WEIGHTS
 from flexlash.report.functions import (
     PI,
+    any_of,
     cosine,
     elsewhere,
     entry_of,
@@ -17,6 +20,7 @@ from flexlash.report.functions import (
     logarithm,
     magnitude,
     place_of_greatest,
+    root,
     sine,
     total,
 )
@@ -72,22 +76,26 @@ class Steps:
             "a = R (1 − cos p), r = r_m − a/2, t = Δ + a",
         )
         radius, wall, fillet = block.links(r_m="mean_radius", Δ="wall_thickness", R_j="junction_fillet_radius")
-        found = []
-        for rule in (JUNCTION_RULE, FINE_RULE):
-            block.heads("cos p", "weight w", "a", "r", "w cos p/(r³ t)")
-            summands = []
-            for _, cosine_, weight_ in rule:
-                block.row += 1
-                turn, weight = block.cell(0, cosine_), block.cell(1, weight_)
-                added = block.cell(2, fillet * (1 - turn))
-                middle = block.cell(3, radius - added / 2)
-                summands.append(block.cell(4, weight * turn / (middle**3 * (wall + added))).number)
-            cells = block.column(4, len(rule))
-            found.append(block.entry(f"{len(rule)} points: R × sum", fillet * total(cells, summands)))
-        taken = block.entry(
-            f"Taken ({len(FINE_RULE)} if R > {WIDE:g} Δ)", when(fillet > WIDE * wall, found[1], found[0])
+        block.heads("cos p", "weight w", "a", "r", "w cos p/(r³ t)")
+        summands = []
+        for _, cosine_, weight_ in JUNCTION_RULE:
+            block.row += 1
+            turn, weight = block.cell(0, cosine_), block.cell(1, weight_)
+            added = block.cell(2, fillet * (1 - turn))
+            middle = block.cell(3, radius - added / 2)
+            summands.append(block.cell(4, weight * turn / (middle**3 * (wall + added))).number)
+        usual = block.entry(
+            f"{len(summands)} points: R × sum", fillet * total(block.column(4, len(summands)), summands)
         )
-        return elsewhere(STEPS, taken)
+
+        def height_at(along: Live, _: Live) -> Live:
+            added = block.cell(3, added_by(fillet, along))
+            return 1 / ((radius - added / 2) ** 3 * (wall + added))
+
+        thin = block.entry("Thin end: width of m", root(wall / (wall + 2 * fillet)))
+        ends = graded(block, (thin, live(1.0)), ("a",), height_at)
+        taken = when(fillet > WIDE * wall, fillet * (ends[0] + ends[1]), usual)
+        return elsewhere(STEPS, block.entry(f"Taken (graded if R > {WIDE:g} Δ)", taken))
 
     def hub_fillet(self) -> Live:
         """Return the integral of the hub fillet [1/mm³]."""
@@ -97,22 +105,30 @@ class Steps:
             f"r = r_ci + R (1 − cos q), t = {_PROFILE_WORDS} + R (1 − sin q)",
         )
         fillet, inner, *profile = block.links(R_h="hub_fillet_radius", **_PROFILE)
-        found = []
-        for rule in (ARC_RULE, FINE_RULE):
-            block.heads("sin q", "cos q", "weight w", "r", "t", "w sin q/(r³ t)")
-            summands = []
-            for sine_, cosine_, weight_ in rule:
-                block.row += 1
-                rise, turn, weight = (block.cell(place, one) for place, one in enumerate((sine_, cosine_, weight_)))
-                radius = block.cell(3, inner + fillet * (1 - turn))
-                thickness = block.cell(4, thickness_at(radius, inner, *profile) + fillet * (1 - rise))
-                summands.append(block.cell(5, weight * rise / (radius**3 * thickness)).number)
-            cells = block.column(5, len(rule))
-            found.append(block.entry(f"{len(rule)} points: R × sum", fillet * total(cells, summands)))
-        wide = fillet > WIDE * profile[0]
-        return elsewhere(
-            STEPS, block.entry(f"Taken ({len(FINE_RULE)} if R > {WIDE:g} t_1)", when(wide, found[1], found[0]))
+        block.heads("sin q", "cos q", "weight w", "r", "t", "w sin q/(r³ t)")
+        summands = []
+        for sine_, cosine_, weight_ in ARC_RULE:
+            block.row += 1
+            rise, turn, weight = (block.cell(place, one) for place, one in enumerate((sine_, cosine_, weight_)))
+            radius = block.cell(3, inner + fillet * (1 - turn))
+            thickness = block.cell(4, thickness_at(radius, inner, *profile) + fillet * (1 - rise))
+            summands.append(block.cell(5, weight * rise / (radius**3 * thickness)).number)
+        usual = block.entry(
+            f"{len(summands)} points: R × sum", fillet * total(block.column(5, len(summands)), summands)
         )
+        last = block.entry("t_e = t at r_ci + R", thickness_at(inner + fillet, inner, *profile))
+
+        def height_at(along: Live, back: Live) -> Live:
+            radius = block.cell(3, inner + fillet * back**2 / (1 + along**2))
+            thickness = block.cell(4, thickness_at(radius, inner, *profile) + added_by(fillet, along))
+            return 1 / (radius**3 * thickness)
+
+        ends = graded(block, _hub_widths(block, fillet, inner, profile, last), ("r", "t"), height_at)
+        first = profile[0]
+        unlike = any_of(fillet > UNLIKE * inner, greatest(first, last) > UNLIKE * least(first, last))
+        steep = any_of(fillet > WIDE * least(first, last), unlike)
+        words = f"Taken (graded if R > {WIDE:g} t or {UNLIKE:g} r_ci, or t_1, t_e unlike)"
+        return elsewhere(STEPS, block.entry(words, when(steep, fillet * (ends[0] + ends[1]), usual)))
 
     def taper(self) -> Live:
         """Return the integral of a disk that thins in a straight line [1/mm³]."""
@@ -189,6 +205,47 @@ class Steps:
         found = block.entry("Greatest shear", greatest_in(cells[3], values))
         radius = block.entry("at radius", entry_of(cells[1], best, [one.value for one in radii]))
         return elsewhere(STEPS, found), elsewhere(STEPS, radius)
+
+
+def _hub_widths(block: Block, fillet: Live, inner: Live, profile: Sequence[Live], last: Live) -> tuple[Live, Live]:
+    """Write over which widths of m the hub fillet's integrand changes, at its thin end and at its steep one."""
+    even = block.entry("Thin end: w_1 of an even disk", root(last / (last + 2 * fillet)))
+    radius = inner + fillet * (1 - even / 2) ** 2 / (1 + (even / 2) ** 2)
+    rise = block.entry("(t − t_e)/w_1 at m = w_1/2", greatest(thickness_at(radius, inner, *profile) - last, 0.0) / even)
+    thin = block.entry("Thin end: width of m", last / (last + rise + root(rise**2 + 2 * fillet * last)))
+    whole = profile[0] + fillet
+    share = least(inner / (inner + fillet / 2), whole / (whole + magnitude(last - profile[0]) / 2))
+    return thin, block.entry("Steep end: width of 1 − m", root(share))
+
+
+def graded(
+    block: Block, widths: tuple[Live, Live], heads: tuple[str, ...], height_at: Callable[[Live, Live], Live]
+) -> tuple[Live, Live]:
+    """Write the graded points between both ends of an arc and its middle; return the sum of either side."""
+    sums = []
+    for end, width in zip(("m", "1 − m"), widths, strict=True):
+        half = 0.5 / width
+        reach = block.entry(f"v at {end} = 1/2, {end} = width sinh v", logarithm(half + root(half**2 + 1)))
+        block.heads("place u", "weight w", end, *heads, "summand")
+        summands = []
+        for place_, weight_ in GRADED_RULE:
+            block.row += 1
+            place, weight = block.cell(0, place_), block.cell(1, weight_)
+            growth, decay = exponential(reach * place), exponential(-(reach * place))
+            near = block.cell(2, width * (growth - decay) / 2)
+            along, back = (near, 1 - near) if end == "m" else (1 - near, near)
+            height = height_at(along, back)
+            pace = weight * reach * width * (growth + decay) / 2
+            arc = 2 * back * (1 + along) / (1 + along**2) ** 2
+            summands.append(block.cell(3 + len(heads), pace * arc * height).number)
+        cells = block.column(3 + len(heads), len(summands))
+        sums.append(block.entry(f"Sum up to {end} = 1/2", total(cells, summands)))
+    return sums[0], sums[1]
+
+
+def added_by(fillet: Live, along: Live) -> Live:
+    """Return what a fillet adds to the thickness at the tangent m of half the angle from its thin end [mm]."""
+    return 2 * fillet * along**2 / (1 + along**2)
 
 
 _PROFILE = {"r_ci": "disk_inner_radius", "t_1": "hub_thickness", "k": "thinning", "n": "thinning_exponent"}
