@@ -239,3 +239,22 @@ def test_validity_without_scatter():
     """Where the first-order uncertainty is 0, only an interval that is a point next to the estimate is met."""
     assert first_order_valid(1e-3, 0.0, (1e-3, 1e-3), 0.95)
     assert not first_order_valid(1e-3, 0.0, (0.0, 1.0), 0.95)
+
+
+def test_validity_is_decided_by_the_figures_in_arcmin():
+    """A row whose ends miss by 1.0e-6′ with an uncertainty of 4.7e-5′ is not valid, though in radians it would be."""
+    estimate, uncertainty, low = 0.1048719406, 4.7137e-5, 0.1047805663
+    high = estimate + 1.959963985 * uncertainty
+    assert not first_order_valid(estimate, uncertainty, (low, high), 0.95)
+    radians = [math.radians(number / 60) for number in (estimate, uncertainty, low, high)]
+    assert first_order_valid(*radians[:2], tuple(radians[2:]), 0.95)
+
+
+@pytest.mark.parametrize(
+    ("uncertainty", "half_unit"), [(0.0994, 0.0005), (0.09951, 0.005), (1e-3, 5e-5), (9.5e-7, 5e-9), (9.96e-7, 5e-8)]
+)
+def test_the_uncertainty_is_rounded_in_decimal_as_it_is_printed(uncertainty, half_unit):
+    """The unit is that of the uncertainty printed to two digits, whatever its logarithm rounds to."""
+    for part, valid in ((0.999, True), (1.001, False)):
+        reach = 1.959963984540054 * uncertainty
+        assert first_order_valid(0.0, uncertainty, (part * half_unit - reach, reach), 0.95) == valid

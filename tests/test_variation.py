@@ -1,6 +1,7 @@
 """One variant's tolerance spread: which statistics it holds and how they hang together, by every method."""
 
 import math
+from decimal import Decimal
 from functools import partial
 
 import numpy as np
@@ -13,8 +14,10 @@ from b3_160 import CUP, NOMINAL
 from flexlash.mechanics import flexspline
 from flexlash.tolerance.curves import CURVE_SCORES, curve_of
 from flexlash.tolerance.limits import Limits
+from flexlash.tolerance.sensitivity import first_order_valid
 from flexlash.tolerance.spreading import variations_of
 from flexlash.tolerance.variation import PERCENTILES, Draws
+from flexlash.units import ARCMIN
 
 thorough = settings(deadline=None, max_examples=30, derandomize=True)
 
@@ -317,3 +320,30 @@ def test_first_order_is_told_where_it_is_enough():
     ruled = {"wall_thickness": Limits(low=0.0012, high=0.0020, distribution="uniform")}
     assert spread(narrow).words["first_order_valid"] == "yes"
     assert spread(ruled).words["first_order_valid"] == "no"
+
+
+def _valid_as_printed(one, centre):
+    """Return the verdict of clause 8 worked out by hand, in decimal, from a row's figures in arcmin."""
+    row = {key: Decimal(one.statistics[key] / ARCMIN) for key in ("first_order_sd", "coverage_low", "coverage_high")}
+    step = Decimal(10) ** (int(f"{row['first_order_sd']:.1e}".split("e")[1]) - 1)
+    reach = Decimal("1.959963984540054") * row["first_order_sd"]
+    middle = Decimal(centre / ARCMIN)
+    off = max(abs(middle - reach - row["coverage_low"]), abs(middle + reach - row["coverage_high"]))
+    return "yes" if off <= step / 2 else "no"
+
+
+def test_first_order_verdicts_follow_from_the_figures_in_arcmin():
+    """Over many sizes of tolerance, every verdict is that of the printed figures, and in radians some would differ."""
+    tasks = []
+    for size in np.geomspace(0.002, 0.1, 200):
+        wall = NOMINAL["wall_thickness"]
+        limits = {"wall_thickness": Limits(low=wall * (1 - size), high=wall * (1 + size))}
+        tasks.append((CUP, NOMINAL, limits, None))
+    found = variations_of(tasks, Draws(method="line", samples=64, seed=0))
+    verdicts = [one.words["first_order_valid"] for one in found]
+    assert verdicts == [_valid_as_printed(one, EXACT) for one in found]
+    assert set(verdicts) == {"yes", "no"}
+    numbers = [[one.statistics[key] for one in found] for key in ("first_order_sd", "coverage_low", "coverage_high")]
+    uncertainty, low, high = map(np.array, numbers)
+    in_radians = first_order_valid(EXACT, uncertainty, (low, high), 0.95)
+    assert (in_radians != (np.array(verdicts) == "yes")).any()

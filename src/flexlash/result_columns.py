@@ -158,8 +158,8 @@ RESULTS = (
     _result(
         "first_order_valid",
         "First order enough",
-        "yes: the interval mean ± k·(first-order sd) meets the coverage interval within half a unit of the second "
-        "digit of the first-order sd (JCGM 101 clause 8).",
+        "yes: backlash at mid-limits ± k·(first-order sd) meets the coverage interval within half a unit in the second "
+        "digit of the first-order sd in arcmin (JCGM 101 clause 8).",
         type="choice",
         choices=("yes", "no"),
     ),

@@ -131,8 +131,8 @@ def _statistics(outcome: Outcome) -> Iterator[str]:
     yield "Worst case: every dimension at the tolerance limit that hurts, whatever k; normal units can lie beyond it."
     yield "First-order sd: root of the sum of squared (slope × sd) at mid-limits, as in the GUM."
     yield (
-        "First order enough: whether mean ± k·(first-order sd) meets the coverage interval within half a unit of its "
-        "second digit, JCGM 101 clause 8."
+        "First order enough: whether the backlash at mid-limits ± k·(first-order sd) meets the coverage interval "
+        "within half a unit in the second digit of the first-order sd in arcmin, JCGM 101 clause 8."
     )
     yield (
         "Shares: first-order Sobol' indices, each dimension's own part of the variance; total indices add every "

@@ -60,8 +60,10 @@ def first_order_valid(
 ) -> Number:
     """Return whether the first-order interval does as well as another to the digits of its uncertainty.
 
-    JCGM 101 clause 8: the ends must agree within half a unit in the last of `digits` significant digits of the
-    first-order standard uncertainty.
+    JCGM 101 clause 8: the ends of estimate ± k·(first-order uncertainty) must each agree with those of the interval
+    within half a unit in the last of `digits` significant digits of the uncertainty. It is rounded in decimal, as it is
+    printed: 0.0996 is 0.10 to two digits, and half a unit 0.005. All are to be in the unit that is printed, since the
+    same angle has its digits elsewhere in radians.
 
     >>> [bool(first_order_valid(0.0, 2.0, (-end, end), 0.95)) for end in (3.92, 3.88)]
     [True, True]
@@ -69,14 +71,19 @@ def first_order_valid(
     False
     """
     reach = float(ndtri((1 + coverage) / 2)) * first_order
-    positive = np.where(first_order > 0, first_order, 1.0)
-    # The uncertainty rounded to its digits may carry over to the next power of ten, as 0.0996 to 0.10.
-    power = np.floor(np.log10(positive)) - (digits - 1)
-    carried = np.round(positive / 10.0**power) >= 10.0**digits
-    unit = 10.0 ** (power + carried)
     low, high = interval
     off = np.maximum(np.abs(estimate - reach - low), np.abs(estimate + reach - high))
-    return off <= unit / 2
+    return off <= np.vectorize(_last_digit, otypes=[float])(first_order, digits) / 2
+
+
+def _last_digit(value: float, digits: int) -> float:
+    """Return one unit in the last of a number's significant digits.
+
+    >>> _last_digit(0.0754, 2), _last_digit(9.96, 2)
+    (0.001, 1.0)
+    """
+    power = int(f"{value or 1.0:.{digits - 1}e}".partition("e")[2])
+    return float(f"1e{power - digits + 1}")
 
 
 @dataclass(frozen=True, kw_only=True)

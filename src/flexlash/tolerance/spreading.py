@@ -19,6 +19,7 @@ from flexlash.tolerance.sampling import UnitPoints
 from flexlash.tolerance.sensitivity import first_order_sd, first_order_valid, worst_case
 from flexlash.tolerance.statistics import line_variations, point_variation
 from flexlash.tolerance.variation import PERCENTILES, Draws, Task, Variation
+from flexlash.units import ARCMIN
 from flexlash.workers import mapped
 
 __all__ = ["RowsAlike", "spread_rows", "variations_of"]
@@ -128,7 +129,8 @@ class RowsAlike:
         low, high = (
             np.array([one.statistics[f"coverage_{end}"] for one in spreads], dtype=float) for end in ("low", "high")
         )
-        valid = first_order_valid(self.backlash(self.centre), first_order, (low, high), coverage)
+        interval = low / ARCMIN, high / ARCMIN
+        valid = first_order_valid(self.backlash(self.centre) / ARCMIN, first_order / ARCMIN, interval, coverage)
         numbers = np.stack([worst.low, worst.high, first_order], axis=1).tolist()
         swings = {name: np.stack(pair, axis=1).tolist() for name, pair in worst.swings.items()}
         return [
