@@ -152,6 +152,7 @@ FURTHER_KEYS = [
     "resonance_speed_rpm",
     "catalogue_size",
     "catalogue_stiffness_Nm_per_rad",
+    "drive_lost_motion_arcmin",
     "skewness",
     "skewness_standard_error",
     "ppm_over_limit_low",

@@ -74,6 +74,8 @@ def test_lost_motion_at_a_share_of_the_rated_torque(share):
     """Lost motion is 2U at a few per cent of the rated torque, and absent without a rated torque."""
     without_rated, with_rated = nominal_numbers([variant(2), variant(3, rated_torque=1600.0)], share)
     assert "lost_motion" not in without_rated
+    assert "drive_lost_motion" not in without_rated
+    assert with_rated["drive_lost_motion"] == pytest.approx(2 * share * 1600 / 440_000, rel=1e-12)
     assert with_rated["lost_motion"] == pytest.approx(1.0725044299e-3 * 2 * share, rel=5e-11)
 
 

@@ -241,10 +241,15 @@ def test_calibration_multiplies_its_part(workbook, sound):
 
 
 def test_lost_motion_follows_the_set_per_cent(workbook, sound):
-    """Lost motion is the backlash at the set per cent of the rated torque."""
-    path = workbook([{**sound, "rated_torque_Nm": 1000.0}], settings={"lost_motion_percent": 3})
-    row = check(path).results.row(0, named=True)
+    """Lost motion is the backlash at a per cent of the rated torque; beside it a size 65 drive's, up to its T1."""
+    torques = {"within": 1000.0, "beyond": 8000.0, "none": None}
+    rows = [{**sound, "variant": name, "rated_torque_Nm": torque} for name, torque in torques.items()]
+    path = workbook(rows, settings={"lost_motion_percent": 3})
+    row, beyond, none = check(path).results.iter_rows(named=True)
     assert row["lost_motion_arcmin"] == pytest.approx(row["backlash_arcmin"] * 0.03 * 1000 / 800, rel=1e-12)
+    assert row["drive_lost_motion_arcmin"] == pytest.approx(2 * 30 / 440_000 * 10800 / math.pi, rel=1e-12)
+    assert beyond["lost_motion_arcmin"] == pytest.approx(8 * row["lost_motion_arcmin"], rel=1e-12)
+    assert [one["drive_lost_motion_arcmin"] for one in (beyond, none)] == [None, None]
 
 
 def test_wall_and_disk_share_one_dimension_when_blank(table, sound, tmp_path):

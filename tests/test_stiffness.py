@@ -176,3 +176,29 @@ def test_greatest_torque_where_ratios_differ(monkeypatch):
     assert stiffness.catalogue_torque(0.0254) == (20, 30.0)
     assert stiffness.catalogue_torque(0.0508) is None
     stiffness._greatest_torque.cache_clear()
+
+
+# By hand from the catalogue: size, 4 % of a rated torque [N·m], 2 M/K1 in arcmin with the least K1 of the size.
+LOST_MOTION = [
+    (14, 0.28, 2 * 0.28 / 1900 * 10800 / math.pi),
+    (32, 4.0, 1.1459155903),
+    (65, 32.0, 0.5000358939),
+    (100, 140.0, 0.5941784542),
+]
+
+
+@pytest.mark.parametrize(("size", "torque", "arcmin"), LOST_MOTION)
+def test_lost_motion_of_whole_drives(size, torque, arcmin):
+    """The drive of the nearest size loses 2 M/K1 on its softest ratio, K1 1900, 24 000, 440 000 and 1 620 000."""
+    for beside in (size, max(14, size - 0.4), min(100, size + 0.4)):
+        found = stiffness.drive_lost_motion(beside * 0.00254 / 2, torque)
+        assert found * 10800 / math.pi == pytest.approx(arcmin, rel=1e-9)
+
+
+@pytest.mark.parametrize(("size", "most"), [(14, 2.0), (32, 29.0), (65, 235.0), (100, 843.0)])
+def test_no_lost_motion_beyond_the_first_slope(size, most):
+    """Up to T1 the catalogue says what a drive loses, beyond it and outside its sizes it does not."""
+    assert stiffness.drive_lost_motion(size * 0.00127, most) is not None
+    assert stiffness.drive_lost_motion(size * 0.00127, math.nextafter(most, math.inf)) is None
+    for outside in (13.9, 100.1, math.nan, math.inf):
+        assert stiffness.drive_lost_motion(outside * 0.00127, 1.0) is None

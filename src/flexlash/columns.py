@@ -287,7 +287,7 @@ SETTINGS = (
     _setting(
         "lost_motion_percent",
         "lost_motion_percent",
-        "Share of the rated torque at which lost motion is stated.",
+        "Share of the rated torque at which lost motion is stated, of the flexspline alone and of a catalogue drive.",
         **_PERCENT | {"minimum": 0.1, "exclusive_minimum": False},
         maximum=100,
         default=4,

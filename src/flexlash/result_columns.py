@@ -60,7 +60,11 @@ RESULTS = (
     _result("stiffness_Nm_per_arcmin", "Stiffness", "Torque over wind-up.", "N·m/arcmin"),
     _result("wall_shear_MPa", "Wall shear", "T/(2π r_m² Δ).", "MPa", "stress"),
     _result("hub_shear_MPa", "Hub shear", "Greatest T/(2π r² t) in the disk.", "MPa", "stress"),
-    _angle("lost_motion", "Lost motion", "2U at the set per cent of the rated torque."),
+    _angle(
+        "lost_motion",
+        "Lost motion of the flexspline alone",
+        "2U at the set per cent of the rated torque: the flexspline's part; teeth, bearing and hub add theirs.",
+    ),
     _angle("mean", "Mean", "Mean backlash over the tolerances."),
     _angle("sd", "Standard deviation", "Standard deviation of the backlash over the tolerances."),
     _percentile("p0_135", "0.135"),
@@ -144,6 +148,12 @@ RESULTS = (
         "Catalogue stiffness",
         "Least K3 of whole drives of that size; the flexspline alone must be stiffer.",
         "N·m/rad",
+    ),
+    _angle(
+        "drive_lost_motion",
+        "Lost motion of a catalogue drive",
+        "Of the whole drive of the nearest catalogue size at the same torque: 2 p T_rated/K1, its least K1. Blank "
+        "outside sizes 14 to 100 and where that torque exceeds T1, the end of the first slope.",
     ),
     _error("mean", "Mean"),
     _error("sd", "Standard deviation"),

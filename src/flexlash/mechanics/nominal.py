@@ -11,7 +11,7 @@ import numpy as np
 
 from flexlash.arrays import Array
 from flexlash.mechanics import flexspline, strength, windup
-from flexlash.mechanics.stiffness import catalogue_stiffness, natural_frequency, resonance_speed
+from flexlash.mechanics.stiffness import catalogue_stiffness, drive_lost_motion, natural_frequency, resonance_speed
 from flexlash.variant import Variant
 
 __all__ = ["Numbers", "nominal_numbers"]
@@ -24,7 +24,7 @@ Numbers: TypeAlias = dict[str, float | str | None]
 def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> list[Numbers]:
     """Nominal results of each variant [SI] by result key without unit.
 
-    Equation: as in `flexspline.windups`, `strength`, `stiffness`; lost motion 2 p T_rated / K
+    Equation: as in `flexspline.windups`, `strength`, `stiffness`; lost motion of the flexspline 2 p T_rated / K
     Arguments: variants, and lost_motion_share p [-] of the rated torque at which lost motion is stated.
     Valid: as for the functions it calls; absurd dimensions give infinite numbers or NaN, without a warning.
     Source: as for the functions it calls.
@@ -130,7 +130,9 @@ def _beside(variant: Variant, numbers: Numbers, lost_motion_share: float) -> Num
         found["buckling_torque"] = float(torque * buckling / _of(numbers, "wall_shear"))
         found["buckling_range"] = _RANGES[int(strength.buckling_range(poisson, radius, wall, length))]
     if variant.rated_torque is not None:
-        found["lost_motion"] = float(np.divide(2 * lost_motion_share * variant.rated_torque, stiffness))
+        lost_at = lost_motion_share * variant.rated_torque
+        found["lost_motion"] = float(np.divide(2 * lost_at, stiffness))
+        found["drive_lost_motion"] = drive_lost_motion(radius, lost_at)
     listed = catalogue_stiffness(radius)
     if listed and variant.flexspline_type != "cylinder":
         found |= {"catalogue_size": float(listed.size), "catalogue_stiffness": listed.stiffness}

@@ -15,6 +15,7 @@ __all__ = [
     "WholeDrive",
     "catalogue_stiffness",
     "catalogue_torque",
+    "drive_lost_motion",
     "natural_frequency",
     "resonance_speed",
 ]
@@ -107,6 +108,25 @@ def catalogue_torque(mean_radius: float) -> DriveTorque | None:
     return None if nearest is None or torque is None else DriveTorque(size=nearest, torque=torque)
 
 
+def drive_lost_motion(mean_radius: float, torque: float) -> float | None:
+    """Lost motion of the whole drive of the nearest catalogue size [rad]; None where its catalogue does not say.
+
+    Equation: φ = 2 M/K1, K1 the least over the listed ratios
+    Arguments: mean_radius r_m of the wall [m]; torque M = p T_rated [N·m] to either side at which it is stated.
+    Valid: sizes 14 to 100, up to the torque T1 where the first slope ends.
+    Source: a maker's catalogue, `tables/catalogue_stiffness.csv`.
+
+    >>> f"{drive_lost_motion(0.08, 32.0):.4e}", drive_lost_motion(0.08, 236.0)
+    ('1.4545e-04', None)
+    """
+    listed = _first_slopes()
+    nearest = _nearest(mean_radius, listed)
+    if nearest is None:
+        return None
+    stiffness, most = listed[nearest]
+    return 2 * torque / stiffness if torque <= most else None
+
+
 def _nearest(mean_radius: float, listed: Collection[int]) -> int | None:
     """Return the listed size nearest to a mean radius [m], the smaller of two; None beyond the listed ones."""
     size = 2 * mean_radius / _METRES_PER_SIZE
@@ -128,6 +148,13 @@ def _least_stiffness() -> dict[int, float | None]:
 def _greatest_torque() -> dict[int, float | None]:
     """Return the greatest T2 [N·m] of each size over its ratios, None where none is listed."""
     return {size: max(listed, default=None) for size, listed in _listed("T2_Nm").items()}
+
+
+@cache
+def _first_slopes() -> dict[int, tuple[float, float]]:
+    """Return the least K1 [N·m/rad] of each size over its ratios, and the torque T1 [N·m] up to which it holds."""
+    torques = _listed("T1_Nm")
+    return {size: (min(listed), min(torques[size])) for size, listed in _listed("K1_Nm_per_rad").items()}
 
 
 def _listed(column: str) -> dict[int, list[float]]:

@@ -31,6 +31,8 @@ _COLUMNS = (
     ("stiffness_Nm_per_rad", "Stiffness [N·m/rad]", "count"),
     ("catalogue_size", "Nearest catalogue size", "count"),
     ("catalogue_stiffness_Nm_per_rad", "Whole drives [N·m/rad]", "count"),
+    ("lost_motion_arcmin", "Lost motion, flexspline alone [arcmin]", "arcmin"),
+    ("drive_lost_motion_arcmin", "Lost motion, catalogue drive [arcmin]", "arcmin"),
     ("natural_frequency_Hz", "Natural frequency [Hz]", "stress"),
     ("resonance_speed_rpm", "Resonance at input [rpm]", "count"),
 )
@@ -40,6 +42,8 @@ _NOTES = (
     "option --elasticity gives those of the fillets.",
     "Buckling of the wall: NASA SP-8007 with its knock-down factor; for shorter cylinders a lower bound. A buckling "
     "stress above yield/√3 means that the wall yields first. The flexspline alone must be stiffer than whole drives.",
+    "Lost motion of the flexspline alone is its part of a drive's; beside it the catalogue's for the whole drive of "
+    "the nearest size at the same torque, 2 p T_rated/K1; blank beyond the torque T1 where the first slope ends.",
     "The natural frequency is that of the load inertia on the flexspline alone, an upper bound; the input meets it by "
     "its two torque ripples per turn.",
 )

@@ -43,7 +43,7 @@ PROGRAM: dict[str, tuple[str, float]] = {
     "stiffness": ("Stiffness, program [N·m/rad]", 1.0),
     "cylinder_only_backlash": ("Cylinder-only backlash, program [rad]", 1.0),
     "two_term_backlash": ("Two-term backlash, program [rad]", 1.0),
-    "lost_motion": ("Lost motion, program [arcmin]", ARCMIN),
+    "lost_motion": ("Lost motion of the flexspline, program [arcmin]", ARCMIN),
     **{
         f"{name}_shear": (f"{words} shear, program [MPa]", _MEGAPASCAL)
         for name, words in (("wall", "Wall"), ("rim", "Rim"), ("hub", "Disk"))

@@ -139,7 +139,7 @@ def write_sums(page: Page) -> None:
     words = ("Two-term formula", "2U_1", "", "2U_0 + 2 T/(2πG) · (1/r_ci² − 1/r_co²) / (2 t_o)")
     page.line("two_term_backlash", page["cylinder_only_backlash"] + added, words, "angle")
     lost = 2 * (page["lost_motion_percent"] / 100) * page["rated_torque"] / stiffness / _ARCMIN
-    page.line("lost_motion", lost, ("Lost motion", "", "arcmin", "2 p T_r / K"))
+    page.line("lost_motion", lost, ("Lost motion, flexspline alone", "", "arcmin", "2 p T_r / K"))
     limit = page["backlash_limit"]
     reserve = only(limit > 0, page["backlash"] / _ARCMIN / limit)
     page.line("limit_share", reserve, ("Backlash over its limit", "", "", "2U / limit; without tolerances"), "share")
