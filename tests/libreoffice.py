@@ -8,12 +8,35 @@ from pathlib import Path
 
 import pytest
 
-__all__ = ["convert", "convert_all", "needs_libreoffice"]
+__all__ = ["convert", "convert_all", "needs_libreoffice", "needs_pages"]
+
+_POPPLER = ("pdfinfo", "pdftotext", "pdftoppm")
+_CALIBRI = ("Calibri", "Carlito")
+"""The reports' font, and the free one whose letters are as wide."""
+
+
+def _has_letters_of_calibri() -> bool:
+    """Whether LibreOffice sets texts as wide as Excel does, by a font that came with it or one of the system."""
+    beside = Path(shutil.which("soffice") or "").resolve().parent.parent
+    if any(
+        (beside / place / "truetype" / "Carlito-Regular.ttf").exists() for place in ("share/fonts", "Resources/fonts")
+    ):
+        return True
+    if not shutil.which("fc-list"):
+        return False
+    families = subprocess.run(["fc-list", ":", "family"], check=False, capture_output=True, text=True).stdout
+    return any(name in families for name in _CALIBRI)
+
 
 needs_libreoffice = pytest.mark.skipif(
-    not all(map(shutil.which, ("soffice", "pdfinfo", "pdftotext"))),
-    reason="LibreOffice (soffice) or poppler-utils are not installed here",
+    not shutil.which("soffice"), reason="LibreOffice (soffice) is not installed here"
 )
+
+needs_pages = pytest.mark.skipif(
+    not all(map(shutil.which, ("soffice", *_POPPLER))) or not _has_letters_of_calibri(),
+    reason="LibreOffice (soffice), poppler-utils or the font Carlito are not installed here",
+)
+"""For tests that look at printed pages, whose breaks depend on the width of the letters."""
 
 _PROFILE = """<?xml version="1.0" encoding="UTF-8"?>
 <oor:items xmlns:oor="http://openoffice.org/2001/registry">

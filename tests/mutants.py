@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import os
 import re
 import sys
 import time
@@ -35,7 +36,7 @@ PARTS_FROM = 1_000
 """Mutants from this number on are mutated inside their parts, those before it as files."""
 
 _ROOT = Path(__file__).parent.parent
-_CORPUS = _ROOT.parent / "shared" / "corpus"
+_CORPUS = Path(os.environ.get("FLEXLASH_CORPUS", "no such folder"))
 _LARGE_EVERY = 50
 """One mutant in so many is of a workbook with thousands of prepared rows, which takes ten times as long to read."""
 

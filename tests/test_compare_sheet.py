@@ -20,7 +20,7 @@ from flexlash.report.compare.contributions_sheet import write_contributions
 from flexlash.report.compare.ranking_sheet import write_ranking
 from flexlash.report.selection import drawn_variants
 from flexlash.report.styles import Book
-from libreoffice import convert_all, needs_libreoffice
+from libreoffice import convert_all, needs_pages
 from report_charts import chart_titled, points_of
 
 AROUND = "Spread around the median of each variant"
@@ -145,7 +145,7 @@ def _alone(outcome, path):
     return path
 
 
-@needs_libreoffice
+@needs_pages
 def test_the_comparison_prints_on_whole_pages(study, many, tmp_path):
     """Compare and Contributions print on one page each, Ranking of a few dozen rows on one or two."""
     paths = [_alone(outcome, tmp_path / f"{place}.xlsx") for place, (outcome, _) in enumerate((study, many))]

@@ -366,11 +366,10 @@ def test_same_input_same_bytes():
 
 def test_nothing_is_made_up_for_a_workbook_without_dates():
     """Author and dates that the original lacks are not the day's, nor the library's name."""
-    with zipfile.ZipFile(io.BytesIO(own_workbook())) as archive:
+    data = own_workbook()
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
         core = archive.read("docProps/core.xml")
-    data = rewritten(
-        own_workbook(), "docProps/core.xml", core, re.sub(rb"(<cp:core[^>]*>).*(</cp:core)", rb"\1\2", core)
-    )
+    data = rewritten(data, "docProps/core.xml", core, re.sub(rb"(<cp:core[^>]*>).*(</cp:core)", rb"\1\2", core))
     with zipfile.ZipFile(io.BytesIO(_marked(data))) as archive:
         made = archive.read("docProps/core.xml")
     assert b"openpyxl" not in made

@@ -10,7 +10,7 @@ import pytest
 
 import regenerate
 from flexlash.pipeline import run
-from libreoffice import convert_all, needs_libreoffice
+from libreoffice import convert_all, needs_pages
 
 PAPERS = {"A4": (9, 595, 842), "Letter": (1, 612, 792)}
 EXAMPLES = ("b3-160-study", "needs-fixing", "catalogue-sizes")
@@ -65,7 +65,7 @@ def _footers(pdf, sizes):
     return [feet[size][place] for place, size in enumerate(sizes)]
 
 
-@needs_libreoffice
+@needs_pages
 @pytest.mark.parametrize("paper", PAPERS)
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_every_page_is_whole(printed, tmp_path, name, paper):

@@ -22,7 +22,7 @@ from flexlash.report.summary.summary_sheet import write_summary
 from flexlash.report.verdict import RULES, light
 from flexlash.report.wrapping import LINE_HEIGHT, lines_of
 from flexlash.summary import dimension_words, share_words
-from libreoffice import convert_all, needs_libreoffice
+from libreoffice import convert_all, needs_pages
 
 _ASCENT_AND_DESCENT = 1.22
 """Height of a word's box over the size of its letters, in Calibri and Carlito."""
@@ -293,7 +293,7 @@ def _words(document):
     return "".join(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split())
 
 
-@needs_libreoffice
+@needs_pages
 def test_the_summary_prints_whole_on_one_page_of_either_paper(study, table, sound, tmp_path, monkeypatch):
     """On A4 and Letter the Summary is one page that holds every sentence whole, to its last line, in readable size."""
     data = regenerate.ROOT / "data"

@@ -11,7 +11,7 @@ import regenerate
 from flexlash.columns import ENTRY_SHEETS, VARIANTS
 from flexlash.submission.templating.entry_rules import FIRST_ROW, HEADER_ROW
 from flexlash.submission.templating.template import Filling, study, template_bytes
-from libreoffice import convert, needs_libreoffice
+from libreoffice import convert, needs_libreoffice, needs_pages
 
 STATUS_ROWS = [
     ({}, "complete"),
@@ -188,7 +188,7 @@ def test_the_live_sentence_counts_complete_rows(filled, tmp_path):
         assert sheet.cell(2, 10).value == f"{complete} of {len(STATUS_ROWS) + 2} rows complete"
 
 
-@needs_libreoffice
+@needs_pages
 def test_the_template_prints_on_whole_pages(tmp_path):
     """Every sheet of the filled template prints one page wide: no page holds a cut-off column."""
     import subprocess

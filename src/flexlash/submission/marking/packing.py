@@ -18,8 +18,9 @@ from openpyxl.drawing.spreadsheet_drawing import SpreadsheetDrawing
 from openpyxl.packaging.custom import StringProperty
 from openpyxl.worksheet._writer import WorksheetWriter
 from openpyxl.writer.excel import ExcelWriter
-from openpyxl.xml.constants import ARC_WORKBOOK, XML_NS
+from openpyxl.xml.constants import ARC_STYLE, ARC_WORKBOOK, XML_NS
 
+from flexlash.submission.marking.schema_order import fonts_in_order
 from flexlash.submission.reading.workbook import PROPERTY
 
 __all__ = ["CHECKED", "pack"]
@@ -125,4 +126,6 @@ class _Archive(zipfile.ZipFile):
         elif entry.filename == ARC_WORKBOOK:
             # openpyxl numbers the sheets that names belong to as if there were no chart sheets.
             data = _OWNER.sub(lambda match: b'localSheetId="%d"' % self.tabs[int(match[1])], data)
+        elif entry.filename == ARC_STYLE:
+            data = fonts_in_order(data)
         super().writestr(entry, data)
