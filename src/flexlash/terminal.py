@@ -29,8 +29,8 @@ def named(path: object) -> str:
 
 
 def colour() -> bool | None:
-    """Return False where colours are not wanted or would not be drawn, None to let the stream decide."""
-    return False if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb" else None
+    """Return False where colours are not wanted or cannot be drawn, None to let the stream decide."""
+    return False if os.environ.get("NO_COLOR") or not _can_draw() else None
 
 
 def complain(text: str) -> None:
@@ -73,7 +73,7 @@ def reason(fault: OSError, path: Path | None = None) -> str:
 @contextmanager
 def progress(*, quiet: bool) -> Iterator[Progress | None]:
     """Yield a callback that draws a progress bar, or None where none can be drawn or is wanted."""
-    if quiet or not _can_draw():
+    if quiet or not (sys.stderr.isatty() and _can_draw()):
         yield None
         return
     with click.progressbar(length=1, label="Computing", file=sys.stderr, show_pos=True) as bar:
@@ -86,6 +86,5 @@ def progress(*, quiet: bool) -> Iterator[Progress | None]:
 
 
 def _can_draw() -> bool:
-    """Whether standard error is a terminal on which a line can be drawn again and again."""
-    terminal = os.environ.get("TERM", "" if os.name == "posix" else "windows")
-    return sys.stderr.isatty() and terminal not in {"", "dumb"}
+    """Whether a terminal knows colours and lines that are drawn again; systems other than POSIX do not say."""
+    return os.environ.get("TERM", "" if os.name == "posix" else "unknown") not in {"", "dumb"}

@@ -197,7 +197,7 @@ class Submissions:
         if self.as_json and (ended.outcome or ended.error):
             print_json(ended.as_dictionary())
         for line in lines:
-            click.secho(line.text, fg=line.colour, err=line.is_message)
+            click.echo(click.style(line.text, fg=line.colour) if line.colour else line.text, err=line.is_message)
         if ended.outcome is None and ended.error:
             name = named(ended.path)
             complain(ended.error if name in ended.error else f"{name}: {ended.error}")
