@@ -7,7 +7,7 @@ import math
 import re
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from flexlash.catalogue import CATALOGUE, Level
@@ -36,7 +36,7 @@ class Finding:
 
     def as_dictionary(self) -> dict[str, str]:
         """Return the fields in the order of the Findings sheet."""
-        return {key: value for key, value in asdict(self).items() if key != "repair"}
+        return {key: value for key, value in vars(self).items() if key != "repair"}
 
     @property
     def place(self) -> str:
@@ -114,8 +114,9 @@ def shown(value: Any, longest: int = 60) -> str:
     if isinstance(value, bool):
         return str(value).upper()
     text = f"{value:.10g}" if isinstance(value, float) else str(value)
-    plain = "".join(character if character.isprintable() else "·" for character in readable(text))
-    return plain if len(plain) <= longest else plain[: longest - 1] + "…"
+    text = readable(text)
+    text = text if len(text) <= longest else text[: longest - 1] + "…"
+    return text if text.isprintable() else "".join(letter if letter.isprintable() else "·" for letter in text)
 
 
 def spelled_out(value: float, digits: int = 4) -> str:

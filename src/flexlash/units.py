@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 __all__ = ["ARCMIN", "ARCSEC", "RPM", "Unit", "as_entered", "find_unit"]
 
@@ -141,6 +142,14 @@ def _plain(text: str) -> str:
     return "".join(character for character in kept if character not in " \u00a0·⋅*.-–^") or text.strip()
 
 
+@cache
+def _spellings(quantity: str) -> dict[str, Unit]:
+    """Return the units of a quantity by every spelling of them."""
+    units = _UNITS[quantity]
+    aliases = {_plain(alias): units[name] for alias, name in _ALIASES.items() if name in units}
+    return {_plain(name): unit for name, unit in units.items()} | aliases
+
+
 def find_unit(text: str, quantity: str) -> Unit | None:
     """Return the unit of a quantity that a text names, or None.
 
@@ -153,12 +162,7 @@ def find_unit(text: str, quantity: str) -> Unit | None:
     >>> find_unit("furlong", "length") is None
     True
     """
-    spellings: dict[str, Unit] = {}
-    for name, unit in _UNITS[quantity].items():
-        spellings[_plain(name)] = unit
-    for alias, name in _ALIASES.items():
-        if name in _UNITS[quantity]:
-            spellings[_plain(alias)] = _UNITS[quantity][name]
+    spellings = _spellings(quantity)
     wanted = _plain(text)
     if wanted in spellings:
         return spellings[wanted]

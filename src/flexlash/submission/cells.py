@@ -14,7 +14,7 @@ from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCe
 
 __all__ = ["Fault", "as_number", "as_text"]
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII)
+_NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII)
 _TYPED_THIS_YEAR = 2020
 """Year from which on a date is taken for day and month; Excel adds the year in which they are typed."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 
 from flexlash.column import Column
@@ -25,7 +24,8 @@ _SHORT = {
 _LOST = frozenset({"?", "\ufffd"})
 """What other programs make of Δ and ν where their encoding has no such letter."""
 
-_BRACKETS = re.compile(r"^(.*?)\s*[\[(]([^\])]*)[\])]\s*$", re.DOTALL)
+_LONGEST = 200
+"""Most characters of a header that can name a column; a longer one is no name."""
 
 
 def known_names(columns: Mapping[str, Column]) -> dict[str, str]:
@@ -38,7 +38,16 @@ def known_names(columns: Mapping[str, Column]) -> dict[str, str]:
 
 
 def name_and_unit(header: str) -> tuple[str, str | None]:
-    """Return a header's name and the unit in its brackets, None without brackets."""
-    match = _BRACKETS.match(header)
-    name, unit = (match[1], match[2].strip()) if match else (header, None)
-    return " ".join(word for word in name.split(" ") if word not in _LOST), unit
+    """Return a header's name and the unit in the brackets at its end, None without brackets.
+
+    >>> name_and_unit("Wall (new) thickness [mm]"), name_and_unit("Wall thickness [mm")
+    (('Wall (new) thickness', 'mm'), ('Wall thickness [mm', None))
+    """
+    name, unit = header, None
+    text = header.rstrip() if len(header) <= _LONGEST else ""
+    if text.endswith(("]", ")")):
+        inside = max(text.rfind("]", 0, -1), text.rfind(")", 0, -1)) + 1
+        openings = [place for sign in "[(" if (place := text.find(sign, inside)) >= 0]
+        if openings:
+            name, unit = text[: min(openings)].rstrip(), text[min(openings) + 1 : -1].strip()
+    return " ".join(word for word in name[: _LONGEST + 1].split(" ") if word not in _LOST), unit

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
+from collections import Counter
 from collections.abc import Mapping
 
 from flexlash.column import Column
-from flexlash.submission.spellings import plain, words
+from flexlash.submission.spellings import likeness, plain, words
 
 __all__ = ["likely_headers"]
 
@@ -50,10 +50,10 @@ def likely_headers(
         for place, name in unknown.items()
         for key in missing
     )
+    rivals = Counter((opposite, place) for opposite, place, _ in pairs)
     found: dict[int, list[str]] = {}
     for opposite, place, key in pairs:
-        rivals = [one for one in missing if (opposite, place, one) in pairs]
-        if -opposite < max(_MISSING, *alike[place].values()) or place in found or len(rivals) > 1:
+        if -opposite < max(_MISSING, *alike[place].values()) or place in found or rivals[opposite, place] > 1:
             continue
         if [key] not in found.values():
             found[place] = [key]
@@ -77,14 +77,14 @@ def _nearness(name: str, key: str, column: Column, spellings: Mapping[str, str])
     known = [spelling for spelling, meant in spellings.items() if meant == key]
     if key != "disk_inner_radius_mm":
         known += [word for word in words(column.plain_name) if len(word) > 3]  # noqa: PLR2004
-    return max(_likeness(wanted, spelling) for spelling in known)
+    return max(likeness(wanted, spelling) for spelling in known)
 
 
 def _likenesses(name: str, spellings: Mapping[str, str]) -> dict[str, float]:
     """Return how like a header is to each column by its letters."""
     found: dict[str, float] = {}
     for spelling, key in spellings.items():
-        found[key] = max(found.get(key, 0.0), _likeness(plain(name), spelling))
+        found[key] = max(found.get(key, 0.0), likeness(plain(name), spelling))
     return found
 
 
@@ -93,7 +93,3 @@ def _resembling(alike: Mapping[str, float], present: set[str]) -> list[str]:
     best = max(alike.values(), default=0.0)
     keys = [key for key, likeness in alike.items() if best >= _RESEMBLING and likeness > best - _EQUALLY]
     return sorted([key for key in keys if key not in present] or keys, key=lambda key: -alike[key])[:2]
-
-
-def _likeness(one: str, other: str) -> float:
-    return difflib.SequenceMatcher(None, other, one).ratio()

@@ -32,7 +32,8 @@ def stopped_by(validated: Validated) -> dict[int, list[Finding]]:
     headers = by_place[table.sheet, table.heading.row]
     named = {place for places in ledger.sources.values() for place in places}
     own = {(table.sheet, row) for row in table.frame["row"]}
-    general = [found for place, group in by_place.items() if place not in named | own for found in group]
+    of_rows = named | own
+    general = [found for place, group in by_place.items() if place not in of_rows for found in group]
     stops: dict[int, list[Finding]] = {}
     for row, material, tolerance_class in table.frame.select("row", "material", "tolerance_class").iter_rows():
         owners = (("material", plain(material or "")), ("class", plain(tolerance_class or "standard")))

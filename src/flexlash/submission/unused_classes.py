@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import islice
 
 from flexlash.columns import columns_of
 from flexlash.submission.ledger import Ledger
-from flexlash.submission.spellings import misspelt, plain
+from flexlash.submission.spellings import affordable, misspelt, plain
 from flexlash.submission.tabulate import Table
 
 __all__ = ["tell_unused_classes"]
@@ -25,19 +27,28 @@ def tell_unused_classes(tolerances: Table | None, variants: Table, known: Iterab
     entered = variants.frame[_KEY].fill_null("standard")
     used = {plain(name): name for name in reversed(entered.to_list())}
     candidates = {key: used[key] for key in known if key in used}
-    done = {"", "standard", *used}
-    for row, name in tolerances.frame.select("row", _KEY).iter_rows():
-        key = plain(name or "")
-        if key in done:
-            continue
-        done.add(key)
-        if meant := misspelt(name, candidates) or _swapped(key, candidates):
+    swapped = _by_letters(candidates)
+    for row, name in islice(_unused(tolerances, {"", "standard", *used}), affordable(candidates)):
+        if meant := misspelt(name, candidates) or swapped.get("".join(sorted(plain(name)))):
             cell = tolerances.address(row, _KEY)
             facts = {"column": _KEY, "name": column.name, "value": name, "suggestion": meant}
             ledger.add("W429", sheet=tolerances.sheet, cell=cell, **facts)
 
 
-def _swapped(key: str, names: Mapping[str, str]) -> str | None:
-    """Return the one name of the same letters in another order: in short names a swap of two weighs much."""
-    same = [name for other, name in names.items() if sorted(other) == sorted(key) and not any(map(str.isdigit, key))]
-    return same[0] if len(same) == 1 else None
+def _unused(tolerances: Table, done: set[str]) -> Iterator[tuple[int, str]]:
+    """Yield the first row and the name of each class whose plain name is not in `done`."""
+    for row, name in tolerances.frame.select("row", _KEY).iter_rows():
+        key = plain(name or "")
+        if key not in done:
+            done.add(key)
+            yield row, name
+
+
+def _by_letters(names: Mapping[str, str]) -> dict[str, str]:
+    """Return the names without digits whose letters no other has: in short names a swap of two weighs much."""
+    alike: dict[str, list[str]] = defaultdict(list)
+    for key, name in names.items():
+        alike["".join(sorted(key))].append(name)
+    return {
+        letters: same[0] for letters, same in alike.items() if len(same) == 1 and not any(map(str.isdigit, letters))
+    }

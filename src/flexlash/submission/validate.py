@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
+
+import polars as pl
 
 from flexlash.columns import columns_of
 from flexlash.submission.checks import check_cells, check_relations
@@ -15,7 +17,7 @@ from flexlash.submission.manners import tell_manner
 from flexlash.submission.overlooked import tell_overlooked
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.read import Submission
-from flexlash.submission.spellings import misspelt, plain, spelt_alike, suggested
+from flexlash.submission.spellings import affordable, misspelt, plain, spelt_alike, suggested
 from flexlash.submission.tables import (
     built_in_materials,
     materials_of,
@@ -131,30 +133,50 @@ def _check_rows(result: Validated, table: Table) -> None:
         return
     check_relations(table, ledger)
     _check_duplicates(table, ledger)
-    known_materials = [material.name for material in result.materials.values()]
-    known_classes = [rows[0].tolerance_class if rows else key for key, rows in result.classes.items()]
-    meant: dict[tuple[str, str], dict[str, str | None]] = {}
-    for record in table.frame.iter_rows(named=True):
-        row = record["row"]
-        for key, code, known, faulty, names in (
-            ("material", "E307", result.materials, ledger.materials, known_materials),
-            ("tolerance_class", "E309", result.classes, ledger.classes, known_classes),
-        ):
-            value = record[key]
-            if value is None or (row, key) in table.faulty or (ledger.everything and not known):
-                continue
-            if plain(value) not in known:
-                if (key, value) not in meant:
-                    repair = misspelt(value, spelt_alike(names))
-                    meant[key, value] = {"suggestion": suggested(value, names, _NEAR), "repair": repair}
-                _blame(table, ledger, code, row, key, value=value, **meant[key, value])
-            elif plain(value) in faulty:
-                ledger.rows.add(row)
-            elif value not in names:
-                name = spelt_alike(names)[plain(value)]
-                _blame(table, ledger, "I504", row, key, value=value, suggestion=name, repair=name)
-        if record["tolerance_class"] is None and "standard" in ledger.classes:
+    materials = [material.name for material in result.materials.values()]
+    classes = [rows[0].tolerance_class if rows else key for key, rows in result.classes.items()]
+    _check_references(table, ledger, "material", "E307", materials)
+    _check_references(table, ledger, "tolerance_class", "E309", classes)
+    if "standard" in ledger.classes:
+        ledger.rows.update(table.frame.filter(pl.col("tolerance_class").is_null())["row"])
+
+
+def _check_references(table: Table, ledger: Ledger, key: str, code: str, names: Sequence[str]) -> None:
+    """Check that every row names a material or a class that there is; rows of a faulty one are not computed."""
+    if ledger.everything and not names:
+        return
+    known, faulty = spelt_alike(names), ledger.materials if key == "material" else ledger.classes
+    meant = _Meant(names, known)
+    for row, value in table.frame.select("row", key).iter_rows():
+        if value is None or (row, key) in table.faulty:
+            continue
+        spelling = plain(value)
+        if spelling not in known:
+            _blame(table, ledger, code, row, key, value=value, **meant[value])
+        elif spelling in faulty:
             ledger.rows.add(row)
+        elif value != known[spelling]:
+            name = known[spelling]
+            _blame(table, ledger, "I504", row, key, value=value, suggestion=name, repair=name)
+
+
+class _Meant(dict[str, dict[str, str | None]]):
+    """What unknown names probably mean, looked up once each, for as many as can be compared with all known names."""
+
+    def __init__(self, names: Sequence[str], known: Mapping[str, str]) -> None:
+        super().__init__()
+        self.names = names
+        self.known = known
+        self.most = affordable(names)
+
+    def __missing__(self, value: str) -> dict[str, str | None]:
+        """Look a name up."""
+        self[value] = (
+            {"suggestion": suggested(value, self.names, _NEAR), "repair": misspelt(value, self.known)}
+            if len(self) < self.most
+            else {}
+        )
+        return self[value]
 
 
 def _check_duplicates(table: Table, ledger: Ledger) -> None:

@@ -20,7 +20,7 @@ MAXIMUM_ROW = 1_048_576
 MAXIMUM_COLUMN = 16_384
 """The corner of every sheet, XFD1048576."""
 
-_NUMBER = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
+_NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 _INDEX = re.compile(r"\s*\d{1,9}\s*", re.ASCII)
 _REFERENCE = re.compile(r"([A-Za-z]{1,3})([1-9]\d{0,6})", re.ASCII)
 _AREA = re.compile(r"([A-Za-z]{1,3}[1-9]\d{0,6})(?::([A-Za-z]{1,3}[1-9]\d{0,6}))?", re.ASCII)
