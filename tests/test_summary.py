@@ -132,6 +132,22 @@ def test_all_units_over_their_limit_are_no_part_of_them(table, sound, tmp_path):
     assert list(limit_lines(outcome))[1] == "  B3-160: all units are over 3.6′."
 
 
+@pytest.mark.parametrize("content", [b"lock", b"PK\x03\x04 damaged", b"%PDF-1.7", b""])
+def test_what_could_not_be_read_has_no_marked_copy(tmp_path, content):
+    """The workbook beside a file that could not be read is called by what it holds: the findings alone."""
+    path = tmp_path / "broken.xlsx"
+    path.write_bytes(content)
+    outcome = check(path, marked_copy=tmp_path / "broken-checked.xlsx")
+    lines = list(summary_lines(outcome, "broken.xlsx", ran=False))
+    assert lines[1] == f"Findings alone, since your file itself could not be marked: {outcome.marked_copy}"
+
+
+def test_what_was_marked_is_a_marked_copy(table, sound, tmp_path):
+    """A table that could be read has its marked copy."""
+    outcome = check(table([{**sound, "torque_Nm": ""}]), marked_copy=tmp_path / "checked.xlsx")
+    assert f"Marked copy of your file: {tmp_path / 'checked.xlsx'}" in summary_lines(outcome, "x", ran=False)
+
+
 def test_a_check_says_nothing_of_the_spread(table, sound):
     """A check alone has no spread to tell of."""
     outcome = check(table([sound]))

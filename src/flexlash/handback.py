@@ -48,10 +48,10 @@ def worth_marking(outcome: Outcome) -> bool:
     return not outcome.skipped and any(found.level != "info" for found in outcome.findings)
 
 
-def marked(outcome: Outcome, limits: ReadingLimits) -> tuple[bytes, tuple[str, ...]]:
+def marked(outcome: Outcome, limits: ReadingLimits) -> tuple[bytes, tuple[str, ...] | None]:
     """Return a workbook that marks every finding in the submission, and what of the submission it could not take over.
 
-    Where the submission cannot be marked, the workbook holds the findings alone and says why.
+    Where the submission cannot be marked, the workbook holds the findings alone and says why; then that is None.
     """
     from flexlash.submission.marking.marked_copy import findings_workbook, marked_table
 
@@ -67,7 +67,7 @@ def marked(outcome: Outcome, limits: ReadingLimits) -> tuple[bytes, tuple[str, .
             why = f"{submission.name} was read, but holds too much or too unusual things to be marked"
         else:
             return data, tuple(head["lost"])
-    return findings_workbook(outcome.findings, submission.name, why), ()
+    return findings_workbook(outcome.findings, submission.name, why), None
 
 
 def certain_repairs(findings: Iterable[Finding]) -> list[Repair]:

@@ -44,7 +44,8 @@ class Outcome:
     `pictured` holds, by variant, the elasticity checks that the report draws.
     `remedies` say what would bring the worst failing variants within their limit.
     `skipped` says that the file is a report or a marked copy, not a submission; `marked_copy` is
-    where its findings were marked, `not_carried` what of it that copy could not take over.
+    where its findings were marked, `not_carried` what of it that copy could not take over, None where it holds the
+    findings alone.
     """
 
     submission: Submission
@@ -60,7 +61,7 @@ class Outcome:
     remedies: list[Remedy] = field(default_factory=list)
     skipped: bool = False
     marked_copy: Path | None = None
-    not_carried: tuple[str, ...] = ()
+    not_carried: tuple[str, ...] | None = ()
 
     @property
     def counts(self) -> dict[str, int]:

@@ -101,6 +101,8 @@ def _written(outcome: Outcome, path: Path) -> str:
     named = shown(path, longest=4096)
     if path != outcome.marked_copy:
         return f"Written: {named}"
+    if outcome.not_carried is None:
+        return f"Findings alone, since your file itself could not be marked: {named}"
     without = f", without its {', '.join(outcome.not_carried)}" if outcome.not_carried else ""
     return f"Marked copy of your file{without}: {named}"
 
