@@ -16,6 +16,7 @@ from small_workbook import MAIN, SHEET, STRINGS, WORKBOOK, book_of, parts_of, sh
 
 PROMISED = {
     "file_mebibytes": 20,
+    "parquet_mebibytes": 100,
     "parts": 1_000,
     "part_mebibytes": 100,
     "unpacked_mebibytes": 200,
@@ -122,7 +123,7 @@ def test_compression_at_its_limit(tmp_path):
 def test_every_limit_has_a_test():
     """No limit is left out: those of the process and of tables are tested with them."""
     of_the_process = {"seconds", "processor_seconds", "memory_mebibytes"}
-    of_tables = {"table_rows", "table_cells"}
+    of_tables = {"parquet_mebibytes", "table_rows", "table_cells"}
     assert AT_LIMIT.keys() | of_the_process | of_tables | {"compression"} == PROMISED.keys()
 
 

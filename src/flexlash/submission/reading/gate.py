@@ -8,7 +8,9 @@ import stat
 from pathlib import Path
 from typing import Literal
 
+from flexlash.submission.reading.encodings import unmarked_utf_16
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.other_kinds import NEITHER, other_kind
 from flexlash.submission.reading.refusal import Refusal
 
 __all__ = ["Kind", "Refusal", "kind_of", "read_bytes"]
@@ -16,29 +18,14 @@ __all__ = ["Kind", "Refusal", "kind_of", "read_bytes"]
 Kind = Literal["workbook", "parquet", "csv"]
 
 _MEBI = 2**20
-_NEITHER = "the content is neither a workbook nor a table"
 _ARCHIVE = b"PK\x03\x04"
-_OLE2 = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _PARQUET = b"PAR1"
-_OTHERS = {
-    b"\x89PNG": "it is a picture",
-    b"\xff\xd8\xff": "it is a picture",
-    b"GIF8": "it is a picture",
-    b"II*\0": "it is a picture",
-    b"MM\0*": "it is a picture",
-    b"%PDF": "it is a PDF document",
-    b"{\\rtf": "it is a text document (RTF)",
-    b"<": "it is a web page or XML text",
-    b"PK": _NEITHER,
-}
-"""What files of other kinds begin with."""
-
 _LOCK = "~$"
 """What the name of the file begins with by which Excel marks a workbook as open."""
 
 _GREATEST_LOCK = 1024
-_SIGNS = frozenset(b",;\t|")
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+_SIGNS = (b",", b";", b"\t", b"|")
+_UNICODE = (b"\xff\xfe", b"\xfe\xff", b"\0\0\xfe\xff")
 _FLAGS = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 
 
@@ -53,11 +40,14 @@ def read_bytes(path: Path, limits: ReadingLimits | None = None) -> bytes:
         os.close(handle)
         raise FileNotFoundError(errno.ENOENT, "this is no file", str(path))
     with os.fdopen(handle, "rb") as file:
-        data = file.read(limits.file_mebibytes * _MEBI + 1)
-        if len(data) > limits.file_mebibytes * _MEBI:
-            if not data.startswith(_PARQUET):
-                raise limits.exceeded("file_mebibytes")
-            data += file.read()
+        beginning = file.read(len(_PARQUET))
+        setting = "parquet_mebibytes" if beginning == _PARQUET else "file_mebibytes"
+        most = getattr(limits, setting) * _MEBI
+        # A sparse file costs neither time nor memory; one that grows meanwhile is refused by what was read.
+        limits.require(setting, os.fstat(handle).st_size / _MEBI)
+        data = beginning + file.read(most + 1 - len(beginning))
+        if len(data) > most:
+            raise limits.exceeded(setting)
     if not data:
         raise Refusal("E101", found="the file is empty")
     if path.name.startswith(_LOCK) and len(data) <= _GREATEST_LOCK:
@@ -88,16 +78,14 @@ def _kind(data: bytes) -> Kind:
         return "workbook"
     if data.startswith(_PARQUET):
         return "parquet"
-    if data.startswith(_OLE2):
-        locked = "EncryptedPackage".encode("utf-16-le") in data
-        raise Refusal("E103") if locked else Refusal("E104", found="an old Excel file (.xls)")
-    if data.startswith(_UTF_16):
+    if refusal := other_kind(data):
+        raise refusal
+    if data.startswith(_UNICODE) or unmarked_utf_16(data):
         return "csv"
-    for beginning, found in _OTHERS.items():
-        if data.startswith(beginning):
-            raise Refusal("E101", found=found)
     if b"\0" in data[:4096]:
-        raise Refusal("E101", found=_NEITHER)
-    if len(data.split()) and len(data.strip().splitlines()) == 1 and _SIGNS.isdisjoint(data):
+        raise Refusal("E101", found=NEITHER)
+    text = data.strip()
+    is_line = text and b"\n" not in text and b"\r" not in text
+    if is_line and not any(sign in data for sign in _SIGNS):
         raise Refusal("E101", found="its text is a single line and no table")
     return "csv"

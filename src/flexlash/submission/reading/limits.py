@@ -20,6 +20,7 @@ class ReadingLimits:
     """The greatest number of each kind that is read; the field's name is the setting that changes it."""
 
     file_mebibytes: int = _limit(20, "the file's size", "MiB")
+    parquet_mebibytes: int = _limit(100, "the Parquet file's size", "MiB")
     parts: int = _limit(1_000, "the number of parts inside the file")
     part_mebibytes: int = _limit(100, "the unpacked size of one part", "MiB")
     unpacked_mebibytes: int = _limit(200, "the unpacked size", "MiB")

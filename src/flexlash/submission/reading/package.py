@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from flexlash.submission.reading.elements import MAIN, Elements, Listing, Texts, local
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.other_kinds import other_archive
 from flexlash.submission.reading.refusal import Refusal
 
 __all__ = ["Package", "SheetPart", "open_package"]
@@ -69,10 +70,8 @@ def open_package(parts: Mapping[str, bytes], limits: ReadingLimits) -> Package:
     for name, part in parts.items():
         if name.lower().endswith((".xml", ".rels")) and b"<!DOCTYPE" in part:
             raise Refusal("E105")
-    if "xl/workbook.bin" in parts:
-        raise Refusal("E104", found="a binary workbook (.xlsb)")
-    if "mimetype" in parts or {"content.xml", "META-INF/manifest.xml"} <= parts.keys():
-        raise Refusal("E104", found="an OpenDocument file (.ods)")
+    if refusal := other_archive(parts.keys(), parts.get("mimetype", b"")):
+        raise refusal
     usual = _usual_dialect(_without_dangling_types(parts, limits))
     workbook = _workbook_part(usual, limits)
     relations = _relations(usual, workbook, limits)
