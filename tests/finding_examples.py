@@ -241,6 +241,19 @@ def _elastic(folder: Path) -> Made:
     return _file(folder, _text(rows), elasticity=True)
 
 
+def _mended(folder: Path) -> Made:
+    """Write a table and what was mended in it."""
+    original = _file(folder, _text([CUP]))[0]
+    mended = _file(folder, _text([CUP]), "study-mended.csv")[0]
+    return mended, {"given": [original, mended]}
+
+
+def _results(folder: Path) -> Made:
+    """Write the results of a table."""
+    run(_file(folder, _text([CUP]))[0], folder / "results.csv", samples=16, method="random")
+    return folder / "results.csv", {}
+
+
 def _plain(content: str | bytes, name: str = "study.xlsx") -> Callable[[Path], Made]:
     return lambda folder: _file(folder, content, name)
 
@@ -267,6 +280,9 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "older report": lambda folder: (_marked("flexlash", "report")(folder)[0], {"from_report": True}),
     "altered report": lambda folder: (_book(folder, {"Carried": [["{"]]})[0], {"from_report": True}),
     "marked": _marked("flexlash", "checked"),
+    "mended": _mended,
+    "results": _results,
+    "lock": _plain(b"\x05Anna", "~$study.xlsx"),
     "older": _marked("flexlash_template_version", "1"),
     "newer": _marked("flexlash_template_version", "99"),
     "a document": _plain(b"%PDF-1.7", "drawing.pdf"),

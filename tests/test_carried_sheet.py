@@ -16,7 +16,6 @@ from finding_examples import SUBMISSIONS
 from flexlash.findings import finding
 from flexlash.pipeline import run
 from flexlash.report.carried_sheet import carried_text
-from flexlash.report.output import write_outcome
 from flexlash.submission.reading.carried import carried_submission
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import ErrorCell, RawSheet, Unstored
@@ -24,6 +23,7 @@ from flexlash.submission.reading.read import ReportReading, Submission
 from flexlash.submission.reading.workbook import read_workbook
 from flexlash.submission.templating.template import TEMPLATE_VERSION
 from libreoffice import convert, needs_libreoffice
+from written import write_outcome
 
 OPTIONS = {"samples": 64}
 

@@ -197,7 +197,7 @@ def test_an_unwritable_output_ends_with_five(table, sound, tmp_path, capsys, mai
     """An output whose folder does not exist ends with 5, by name."""
     target = tmp_path / "none" / "out.csv"
     assert main_in("run", table([sound]), "-o", target, "--samples", 256) == 5
-    assert f"{target} could not be opened or written: No such file or directory" in capsys.readouterr().err
+    assert f"{target} could not be opened or written: there is no folder {target.parent}" in capsys.readouterr().err
 
 
 def test_several_submissions_need_a_folder_and_get_distinct_names(table, sound, tmp_path, main_in, capsys):

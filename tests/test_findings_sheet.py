@@ -72,7 +72,7 @@ def test_nothing_found_is_said(table, sound, tmp_path):
     """Without findings the sheet says so and has neither rules nor filters."""
     outcome = run(table([sound]), tmp_path / "report.xlsx", samples=256)
     outcome.findings = []
-    from flexlash.report.output import write_outcome
+    from written import write_outcome
 
     sheet = openpyxl.load_workbook(write_outcome(outcome, tmp_path / "bare.xlsx"))["Findings"]
     assert [cell.value for cell in sheet["A"] if cell.value] == ["Findings", "Nothing was found."]

@@ -11,6 +11,7 @@ from flexlash.submission.mending.mended_table import mended_table
 from flexlash.submission.mending.mended_workbook import FIXES_SHEET, mended_workbook
 from flexlash.submission.mending.repair import Repair
 from flexlash.submission.mending.splices import before_end, cell_spans, cell_xml, spliced, xml_text
+from flexlash.submission.products import mended_role
 from flexlash.submission.reading.delimited import read_table
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.workbook import read_workbook
@@ -111,9 +112,11 @@ def test_cells_change_and_nothing_else(book):
     changed = {name for name in before if before[name] != after[name]}
     assert changed <= {
         "xl/worksheets/sheet1.xml", "xl/worksheets/sheet2.xml", "xl/workbook.xml", "[Content_Types].xml",
-        "xl/_rels/workbook.xml.rels",
+        "xl/_rels/workbook.xml.rels", "_rels/.rels",
     }  # fmt: skip
-    sheet = openpyxl.load_workbook(io.BytesIO(data))["Variants"]
+    workbook = openpyxl.load_workbook(io.BytesIO(data))
+    assert workbook.custom_doc_props["flexlash"].value == mended_role(book)
+    sheet = workbook["Variants"]
     assert [[cell.value for cell in row] for row in sheet] == [
         ["Variant", "Wall", "Sum"],
         ["A", 1.6, "=1+1"],

@@ -111,7 +111,7 @@ def test_the_report_is_made_anew_to_the_byte(what, tmp_path, sound):
     options = {"samples": 64, **options}
     original = run(path, tmp_path / "original.xlsx", **options)
     assert original.computed
-    found = recreate(tmp_path / "original.xlsx", tmp_path / "anew.xlsx", set())
+    found = recreate(tmp_path / "original.xlsx", tmp_path / "anew.xlsx")
     assert (tmp_path / "anew.xlsx").read_bytes() == (tmp_path / "original.xlsx").read_bytes()
     assert found.different == 0
     assert found.numbers > 30
@@ -133,7 +133,7 @@ def report(table, sound, tmp_path):
 
 def test_options_win_over_those_of_the_report(report):
     """What is said now holds, the rest is as it was; numbers that differ are counted."""
-    found = recreate(report, None, set(), seed=4, cross_check=False)
+    found = recreate(report, None, seed=4, cross_check=False)
     assert found.outcome.settings.seed == 4
     assert found.outcome.settings.samples == 64
     assert "cross_check" not in found.outcome.results.columns
@@ -143,7 +143,7 @@ def test_options_win_over_those_of_the_report(report):
 
 def test_an_option_can_be_taken_back(report):
     """Numbers of columns that one of the two lacks count as differing."""
-    found = recreate(report, None, set(), cross_check=False)
+    found = recreate(report, None, cross_check=False)
     lacking = [column for column in CROSS_CHECK if column.is_number]
     assert found.different == 2 * len(lacking)
 
@@ -157,16 +157,16 @@ def test_a_changed_number_of_the_report_is_counted(report, tmp_path):
     cell = sheet.cell(keys[0].row + 1, next(one.column for one in keys if one.value == "p50_arcmin"))
     cell.value += 1e-9
     book.save(tmp_path / "altered.xlsx")
-    assert recreate(tmp_path / "altered.xlsx", None, set()).different == 1
+    assert recreate(tmp_path / "altered.xlsx", None).different == 1
 
 
 def test_nothing_of_the_engineer_is_overwritten(report, tmp_path):
     """A recreated submission in which somebody has worked since is left alone; the new one gets a number."""
-    first = recreate(report, None, set()).outcome.outputs[0]
-    assert recreate(report, None, set()).outcome.outputs[0] == first
+    first = recreate(report, None).outcome.outputs[0]
+    assert recreate(report, None).outcome.outputs[0] == first
     first.write_bytes(first.read_bytes() + b"worked on")
     worked_on = first.read_bytes()
-    assert recreate(report, None, set()).outcome.outputs[0] == tmp_path / "gone-recreated (2).xlsx"
+    assert recreate(report, None).outcome.outputs[0] == tmp_path / "gone-recreated (2).xlsx"
     assert first.read_bytes() == worked_on
 
 
@@ -178,7 +178,7 @@ def test_there_is_no_file_to_mark(report, tmp_path):
 
 def test_the_recreated_template_is_of_this_version(report):
     """The recreated submission is a filled template that checks without a word about its version."""
-    outcome = check(recreate(report, None, set()).outcome.outputs[0])
+    outcome = check(recreate(report, None).outcome.outputs[0])
     assert [outcome.counts[one] for one in ("rows", "computed", "errors", "warnings")] == [2, 2, 0, 0]
     assert "I512" not in {found.code for found in outcome.findings}
 
@@ -186,7 +186,7 @@ def test_the_recreated_template_is_of_this_version(report):
 def test_a_file_that_is_none(tmp_path):
     """A file that cannot be opened is an OSError, as it is for every run."""
     with pytest.raises(OSError, match=os.strerror(2)):
-        recreate(tmp_path / "nothing.xlsx", None, set())
+        recreate(tmp_path / "nothing.xlsx", None)
 
 
 PIECES = ("a", "A", "b", " ", "\u00a0", "\x01", "_x000D_", "_x0041_", "x005F_", "_", "=", "'")
@@ -199,7 +199,7 @@ ODD = st.lists(st.sampled_from(PIECES), min_size=1, max_size=5).map("".join)
 def test_numbers_of_odd_names_are_compared_with_their_own(tmp_path, table, sound, names):
     """Whatever the names, the numbers computed anew are those of the report, and each variant's row is found."""
     run(table([{**sound, "variant": name} for name in [*names, "plain"]]), tmp_path / "r.xlsx", samples=64)
-    found = recreate(tmp_path / "r.xlsx", tmp_path / "anew.xlsx", set())
+    found = recreate(tmp_path / "r.xlsx", tmp_path / "anew.xlsx")
     assert (found.different, found.numbers > 30) == (0, True)
     assert (tmp_path / "anew.xlsx").read_bytes() == (tmp_path / "r.xlsx").read_bytes()
     side = side_of(tmp_path / "r.xlsx", ReadingLimits())

@@ -12,8 +12,8 @@ import polars as pl
 import pytest
 
 from flexlash.pipeline import run
-from flexlash.report.output import write_outcome
 from flexlash.report.results_table import csv_text, results_table
+from written import write_outcome
 
 SAMPLES = 64
 
@@ -39,7 +39,7 @@ def test_own_columns_reach_every_form(table, sound, tmp_path, ending):
     if ending == "csv":
         read = list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8"))))
     elif ending == "json":
-        read = json.loads(path.read_text(encoding="utf-8"))
+        read = json.loads(path.read_text(encoding="utf-8"))["results"]
     else:
         read = pl.read_parquet(path).to_dicts()
     assert list(read[0]) == [*outcome.results.columns, "Drawing", "Pieces"]

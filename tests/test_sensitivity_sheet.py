@@ -8,9 +8,9 @@ import zipfile
 import openpyxl
 
 from flexlash.pipeline import run
-from flexlash.report.output import write_outcome
 from flexlash.report.sensitivity_sheet import _HEADER
 from flexlash.summary import dimension_words
+from written import write_outcome
 
 
 def test_every_variant_has_its_shares_however_few_are_drawn(table, sound, tmp_path):

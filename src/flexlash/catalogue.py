@@ -842,4 +842,26 @@ CATALOGUE = _rules(
         "Nothing to do.",
         "Excel stores 5% as 0.05; where per cent are wanted, what the cell shows is read.",
     ),
+    (
+        "I525",
+        "lock file skipped",
+        "{file} is a lock file by which Excel marks a workbook as open; it was skipped.",
+        "Submit the workbook itself, whose name is the same without ~$.",
+        "Excel writes a small hidden file beside a workbook that is open and removes it when the workbook is closed.",
+    ),
+    (
+        "I526",
+        "mended file skipped",
+        "{file} is a mended copy of a file that is submitted as well; it was skipped.",
+        "To compute the mended file, submit it without its original.",
+        "Both hold the same variants. A mended workbook says of which file it was made, also when somebody worked in "
+        "it; a mended table is known by its name, <name>-mended.csv, beside <name>.csv.",
+    ),
+    (
+        "I527",
+        "results skipped",
+        "{file} is a table of results written by flexlash, not a submission; it was skipped.",
+        "Submit the filled template or table from which it was computed.",
+        "A table whose header row is that of Results holds what flexlash computed, not what it computes from.",
+    ),
 )

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import errno
 from collections.abc import Iterable
 from dataclasses import asdict
-from pathlib import Path
 
 from flexlash.findings import Finding
 from flexlash.outcome import Outcome
@@ -16,31 +14,7 @@ from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.repairs import repair_of
 
-__all__ = ["certain_repairs", "marked", "mended", "sealed", "unclaimed", "worth_marking"]
-
-_SEAL = b"as flexlash wrote it"
-"""Comment at the end of a workbook's archive, which every program drops that saves the workbook."""
-
-_COPIES = 1000
-
-
-def sealed(data: bytes) -> bytes:
-    """Return a workbook that can be told from one that somebody has saved since; other files as they are."""
-    if not data.startswith(b"PK") or data[-2:] != b"\0\0":
-        return data
-    return data[:-2] + len(_SEAL).to_bytes(2, "little") + _SEAL
-
-
-def unclaimed(path: Path, data: bytes) -> Path:
-    """Return the path, or that of a numbered copy where a file stands that somebody may have worked on."""
-    for copy in range(1, _COPIES):
-        target = path if copy == 1 else path.with_name(f"{path.stem} ({copy}){path.suffix}")
-        if not target.exists():
-            return target
-        found = target.read_bytes()
-        if found == data or found.endswith(_SEAL):
-            return target
-    raise FileExistsError(errno.EEXIST, "too many copies of this file", str(path))
+__all__ = ["certain_repairs", "marked", "mended", "worth_marking"]
 
 
 def worth_marking(outcome: Outcome) -> bool:

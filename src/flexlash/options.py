@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flexlash.submission.reading.limits import ReadingLimits
+
+if TYPE_CHECKING:
+    from flexlash.outputs.plan import Output
 
 __all__ = ["Options", "Progress"]
 
@@ -20,7 +23,8 @@ class Options:
     """What the caller decides; None leaves it to the submission's settings.
 
     `marked_copy` is where the submission goes with its errors and warnings marked, when there are any;
-    `marked_copies` takes such copies as submissions as well. `fail_over_limit` gives an exit code of its own where a
+    `marked_copies` takes such copies as submissions as well. `given` are the submissions that are given together: a
+    mended one is skipped when its original is among them. `fail_over_limit` gives an exit code of its own where a
     variant does not meet its limit. `from_report` says that the file is a report, of whose
     submission everything is computed anew; what is None is then as it was in that run.
     """
@@ -36,8 +40,9 @@ class Options:
     tolerances: str | Path | None = None
     materials: str | Path | None = None
     limits: ReadingLimits = field(default_factory=ReadingLimits)
-    marked_copy: str | Path | None = None
+    marked_copy: str | Path | Output | None = None
     marked_copies: bool = False
+    given: Sequence[Path] = ()
     from_report: bool = False
     progress: Progress | None = None
 

@@ -43,9 +43,10 @@ class Outcome:
     `curves` holds, by row number, the whole distribution of the variants that the report draws.
     `pictured` holds, by variant, the elasticity checks that the report draws.
     `remedies` say what would bring the worst failing variants within their limit.
-    `skipped` says that the file is a report or a marked copy, not a submission; `marked_copy` is
-    where its findings were marked, `not_carried` what of it that copy could not take over, None where it holds the
-    findings alone.
+    `skipped` says that flexlash itself wrote the file, or that it is a lock file; `marked_copy` is where its findings
+    were marked, `not_carried` what of it that copy could not take over, None where it holds the findings alone, `fault`
+    why it could not be written.
+    `remarks` say what stood at the place of an output and was left alone.
     """
 
     submission: Submission
@@ -62,6 +63,8 @@ class Outcome:
     skipped: bool = False
     marked_copy: Path | None = None
     not_carried: tuple[str, ...] | None = ()
+    fault: OSError | None = None
+    remarks: list[str] = field(default_factory=list)
 
     @property
     def counts(self) -> dict[str, int]:
@@ -93,6 +96,8 @@ class Outcome:
     def exit_code(self) -> ExitCode:
         """With which code a command ends that computes this submission alone."""
         counts = self.counts
+        if self.fault is not None:
+            return ExitCode.NO_FILE
         if not self.computed:
             return ExitCode.NOTHING
         if counts["computed"] < counts["rows"] or counts["errors"]:

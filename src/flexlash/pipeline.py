@@ -11,14 +11,17 @@ from typing import Any
 from flexlash.assessment import assess
 from flexlash.elasticity import MISSING, is_available
 from flexlash.findings import Finding, finding, readable
-from flexlash.handback import certain_repairs, marked, mended, sealed, unclaimed, worth_marking
+from flexlash.handback import certain_repairs, marked, mended, worth_marking
 from flexlash.options import Options
 from flexlash.outcome import DRAWN, PICTURED, Outcome
+from flexlash.outputs.naming import MENDED, REPORTS, WORKBOOK, named_output
+from flexlash.outputs.plan import Output, Plan
 from flexlash.remedies import remedies_of
 from flexlash.results import results_frame, results_of
 from flexlash.scatter import drawn_curves, scattered
 from flexlash.submission.mending.repair import Repair
-from flexlash.submission.reading.gate import kind_of, read_bytes
+from flexlash.submission.products import mended_role, require_submission
+from flexlash.submission.reading.gate import LOCK_FILE, kind_of, read_bytes
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import column_number
 from flexlash.submission.reading.read import RawSheet, Reading, ReportReading, Submission, read_table
@@ -36,24 +39,29 @@ _PASSES = 3
 def check(submission: str | Path | Reading, **options: Any) -> Outcome:
     """Return the outcome of validation and nominal calculation alone; nothing is sampled.
 
-    Nothing is written but the marked copy, when `marked_copy` says where. Raises OSError when a file cannot be opened
-    or written. A file that is no submission gives an outcome whose only finding says why.
+    Nothing is written but the marked copy, when `marked_copy` says where. Raises OSError when a file cannot be opened,
+    ValueError for an output that cannot be meant. A file that is no submission gives an outcome whose only finding says
+    why; of a marked copy that cannot be written, the outcome's `fault` does.
     """
     chosen = Options(**options)
-    reading = _reading(submission, chosen)
-    outcome = _examine(reading, chosen)
-    _mark(outcome, chosen, reading.path)
+    plan = _plan(submission, chosen)
+    copy = _copy(plan, chosen)
+    outcome = _examine(_reading(submission, chosen), chosen)
+    _mark(outcome, chosen, copy)
     return outcome
 
 
-def mend(submission: str | Path | Reading, output: str | Path, **options: Any) -> tuple[Outcome, list[Repair]]:
+def mend(submission: str | Path | Reading, output: str | Path | Output, **options: Any) -> tuple[Outcome, list[Repair]]:
     """Write a submission with the certain repairs made; return the outcome of checking that, and the repairs.
 
-    Nothing is written when there is no certain repair. Options are those of `check`. Raises OSError when a file cannot
-    be opened or written.
+    Nothing is written when there is no certain repair. Options and errors are those of `check`; OSError also says that
+    the file cannot be written.
     """
     chosen = Options(**options)
+    plan = _plan(submission, chosen)
+    new, copy = named_output(plan, output, MENDED), _copy(plan, chosen)
     reading = _reading(submission, chosen)
+    new.require()
     original = outcome = _examine(reading, chosen)
     repairs: dict[str, Repair] = {}
     for _ in range(_PASSES):
@@ -66,22 +74,31 @@ def mend(submission: str | Path | Reading, output: str | Path, **options: Any) -
             break
         outcome = _examine(Reading(reading.path, chosen.limits, data), chosen)
     if repairs:
-        outcome.outputs.append(_hand_back(data, Path(output)))
-    _mark(outcome, chosen, reading.path)
+        _write(outcome, new, data, mended_role(original.submission.data))
+    _mark(outcome, chosen, copy)
     return outcome, list(repairs.values())
 
 
-def run(submission: str | Path | Reading, output: str | Path | None = None, **options: Any) -> Outcome:
+def run(submission: str | Path | Reading, output: str | Path | Output | None = None, **options: Any) -> Outcome:
     """Return the outcome of a submission and write it to `output`, unless that is None.
 
     Options are those of the command line: seed, method, samples, cross_check, elasticity, strict, jobs,
     tolerances, materials, from_report. The output's ending decides its form: .xlsx, .csv, .parquet or .json.
 
-    Raises OSError when a file cannot be opened or written, ValueError for an unknown ending, ModuleNotFoundError
-    for elasticity without its libraries.
+    A file at the place of an output is replaced only if flexlash wrote it and nobody has changed it since; else the
+    output gets ` (2)`, and the outcome's `remarks` say so.
+
+    Raises OSError when a file cannot be opened or written, ValueError for an output that cannot be meant, such as the
+    submission itself, ModuleNotFoundError for elasticity without its libraries. Of a marked copy that cannot be
+    written, the outcome's `fault` says why.
     """
     chosen = Options(**options)
+    plan = _plan(submission, chosen)
+    report = None if output is None else named_output(plan, output, REPORTS)
+    copy = _copy(plan, chosen)
     reading = _reading(submission, chosen)
+    if report is not None:
+        report.require()
     outcome = _examine(reading, chosen)
     chosen = chosen.completed(outcome.submission.run_with)
     if chosen.elasticity and not is_available():
@@ -89,16 +106,27 @@ def run(submission: str | Path | Reading, output: str | Path | None = None, **op
     _spread(outcome, chosen)
     if chosen.elasticity:
         _verify(outcome, chosen)
-    if str(output).lower().endswith(".xlsx"):
+    if report is not None and report.ending == ".xlsx":
         _draw(outcome, chosen)
         if chosen.elasticity:
             _picture(outcome)
-    if output is not None and outcome.computed:
-        from flexlash.report.output import write_outcome
+    if report is not None and outcome.computed:
+        from flexlash.report.output import outcome_bytes
 
-        outcome.outputs.append(write_outcome(outcome, Path(output)))
-    _mark(outcome, chosen, reading.path)
+        _write(outcome, report, *outcome_bytes(outcome, report.ending))
+    _mark(outcome, chosen, copy)
     return outcome
+
+
+def _plan(given: str | Path | Reading, options: Options) -> Plan:
+    """Return the plan of one submission's outputs, none of which takes the place of what is read."""
+    submission = given.path if isinstance(given, Reading) else given
+    return Plan(inputs=[Path(path) for path in (submission, options.tolerances, options.materials) if path is not None])
+
+
+def _copy(plan: Plan, options: Options) -> Output | None:
+    """Return where the marked copy goes, when it is wanted."""
+    return None if options.marked_copy is None else named_output(plan, options.marked_copy, WORKBOOK)
 
 
 def _reading(given: str | Path | Reading, options: Options) -> Reading:
@@ -113,44 +141,40 @@ def _examine(reading: Reading, options: Options) -> Outcome:
     try:
         submission = reading.submission()
         options = options.completed(submission.run_with)
-        others = {"report"} | (set() if options.marked_copies else {"checked"})
-        if submission.run_with is None and submission.role in others:
-            skipped = [finding("I508" if submission.role == "report" else "I513", file=reading.name)]
-            return Outcome(
-                submission=submission,
-                results=results_frame([]),
-                findings=skipped,
-                settings=Settings(),
-                skipped=True,
-            )
+        require_submission(submission, reading.path, options.given, marked_copies=options.marked_copies)
         return _validated(_with_tables(submission, options), options)
     except Refusal as refusal:
         facts: dict[str, Any] = {"file": reading.name, **refusal.facts}
         digest = hashlib.sha256(reading.data).hexdigest() if reading.data else ""
+        found = finding(refusal.code, **facts)
         refused = Submission(name=reading.name, sha256=digest, kind="refused")
         return Outcome(
             submission=refused,
             results=results_frame([]),
-            findings=[finding(refusal.code, **facts)],
+            findings=[found],
             settings=Settings(),
+            skipped=found.level == "info",
         )
 
 
-def _mark(outcome: Outcome, options: Options, path: Path) -> None:
-    """Write the marked copy, when it is wanted and there is something to mark; that of a marked copy replaces it."""
-    if options.marked_copy is not None and worth_marking(outcome):
+def _mark(outcome: Outcome, options: Options, copy: Output | None) -> None:
+    """Write the marked copy, when it is wanted and there is something to mark; a failure loses nothing else."""
+    if copy is None or not worth_marking(outcome):
+        return
+    try:
+        copy.require()
         data, outcome.not_carried = marked(outcome, options.limits)
-        outcome.marked_copy = _hand_back(data, Path(options.marked_copy), path)
-        outcome.outputs.append(outcome.marked_copy)
+        outcome.marked_copy = _write(outcome, copy, data, "checked")
+    except OSError as fault:
+        outcome.fault = fault
 
 
-def _hand_back(data: bytes, path: Path, own: Path | None = None) -> Path:
-    """Write what goes back to the sender, never over a file in which somebody may have worked."""
-    from flexlash.report.output import write_bytes
-
-    new = sealed(data)
-    is_own = own is not None and path.exists() and path.samefile(own)
-    return write_bytes(new, path if is_own else unclaimed(path, new))
+def _write(outcome: Outcome, output: Output, data: bytes, role: str) -> Path:
+    """Write an output and note it, and what was left alone in its place."""
+    written = output.write(data, role)
+    outcome.outputs.append(written.path)
+    outcome.remarks += [written.remark] if written.remark else []
+    return written.path
 
 
 def _with_tables(submission: Submission, options: Options) -> Submission:
@@ -169,6 +193,8 @@ def _table_beside(path: Path, name: str, limits: ReadingLimits) -> RawSheet:
         kind_of(data, only="csv")
         return read_table(data, name, readable(path.name), limits)
     except Refusal as refusal:
+        if refusal.code == LOCK_FILE:
+            raise Refusal("E101", file=readable(path.name), found="it is a lock file") from refusal
         raise Refusal(refusal.code, **{"file": path.name, **refusal.facts}) from refusal
 
 

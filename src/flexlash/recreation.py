@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from flexlash.comparison.difference import changed_results
 from flexlash.comparison.sides import Name, by_variant, frame_rows, result_rows
-from flexlash.handback import sealed, unclaimed
 from flexlash.outcome import Outcome
+from flexlash.outputs.naming import recreated_outputs
+from flexlash.outputs.plan import Plan
 from flexlash.pipeline import run
 from flexlash.result_columns import result_columns
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.read import ReportReading
 from flexlash.submission.reading.refusal import Refusal
-from flexlash.targets import recreated_targets
 
 if TYPE_CHECKING:
     import polars as pl
@@ -37,11 +37,11 @@ class Recreation:
     different: int = 0
 
 
-def recreate(report: Path, output: Path | None, taken: set[Path], **options: Any) -> Recreation:
+def recreate(report: Path, output: Path | None, plan: Plan | None = None, **options: Any) -> Recreation:
     """Write the submission and the report anew; return what came of it.
 
-    `output` is a folder, the new report's path, or None for the folder of the given one; neither takes the place of
-    files in `taken`, to which they are added. Raises OSError when a file cannot be opened or written.
+    `output` is a folder, the new report's path, or None for the folder of the given one. Both take their places in a
+    `plan`, where several reports are made anew. Raises OSError when a file cannot be opened or written.
     """
     limits = options.get("limits") or ReadingLimits()
     reading = ReportReading(report, limits)
@@ -50,16 +50,17 @@ def recreate(report: Path, output: Path | None, taken: set[Path], **options: Any
     except Refusal:
         # Running it says why.
         name = reading.name
-    filled, anew = recreated_targets(report, output, name, taken)
+    filled, anew = recreated_outputs(plan or Plan(inputs=[report]), report, output, name)
+    filled.require()
     outcome = run(reading, anew, from_report=True, **options)
     if outcome.validated is None or outcome.validated.table is None or not outcome.computed:
         return Recreation(outcome=outcome)
-    from flexlash.report.output import write_bytes
     from flexlash.submission.templating.upgrade import refilled
 
     upgrade = refilled(outcome.submission, limits)
-    data = sealed(upgrade.data)
-    outcome.outputs.insert(0, write_bytes(data, unclaimed(filled, data)))
+    written = filled.write(upgrade.data, "recreated")
+    outcome.outputs.insert(0, written.path)
+    outcome.remarks += [written.remark] if written.remark else []
     anew_rows = frame_rows(_as_stored(outcome.results))
     numbers, different = _compared(by_variant(result_rows(reading.results), anew_rows), anew_rows)
     return Recreation(outcome=outcome, remarks=upgrade.remarks, numbers=numbers, different=different)

@@ -65,7 +65,7 @@ def print_json(fields: Mapping[str, Any]) -> None:
 def reason(fault: OSError, path: Path | None = None) -> str:
     """Return why a file, or the path that the fault names, could not be opened or written."""
     place = fault.filename or path
-    if isinstance(place, str | Path) and Path(place).is_dir():
+    if isinstance(place, str | Path) and os.path.isdir(place):  # noqa: PTH112
         return "this is a folder; give the files in it"
     return readable(fault.strerror or fault)
 

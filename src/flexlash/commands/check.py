@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,8 @@ import click
 
 from flexlash.commands.arguments import JSON, LIMITS, MARKED, QUIET, STRICT, SUBMISSIONS, planned, table_option
 from flexlash.commands.submissions import Submissions
-from flexlash.targets import beside, mended_targets
+from flexlash.outputs.naming import marked_outputs, mended_outputs
+from flexlash.outputs.plan import Plan
 
 __all__ = ["check"]
 
@@ -48,23 +50,23 @@ def check(
 
     if output and not (annotate or apply_fixes):
         raise click.UsageError("-o needs --apply-fixes or --annotate; check alone writes nothing.")
-    targets = planned(mended_targets, submissions, output)
-    copies = beside(submissions, targets)
-    if output in targets and not apply_fixes:
-        copies = targets
-        if output.suffix.lower() != ".xlsx":
-            raise click.UsageError("A marked copy is a workbook: OUT must end in .xlsx or be a folder.")
-    options["marked_copies"] |= annotate
+    # A marked copy alone is meant to be checked again; among others it is met on the way.
+    options["marked_copies"] |= annotate and len(submissions) == 1
+    beside = [path for path in (options["tolerances"], options["materials"]) if path]
+    plan = Plan(inputs=[*submissions, *beside], submissions=submissions, marked_copies=options["marked_copies"])
+    mended = planned(mended_outputs, plan, submissions, output) if apply_fixes else []
+    copies = planned(marked_outputs, plan, submissions, output, itself=not apply_fixes) if annotate else []
+    options["given"] = submissions
     all_of_them = Submissions(len(submissions), as_json=as_json, quiet=quiet)
-    for path, target, copy in zip(submissions, targets, copies, strict=True):
+    for path, target, copy in zip_longest(submissions, mended, copies):
         with all_of_them.one(path) as ended:
             reading = Reading(path, options["limits"])
             # Loading the libraries takes as long as reading the file does: both at once.
             from flexlash.pipeline import check as check_one
             from flexlash.pipeline import mend
 
-            if apply_fixes:
-                ended.outcome, ended.repairs = mend(reading, target, marked_copy=copy if annotate else None, **options)
+            if target:
+                ended.outcome, ended.repairs = mend(reading, target, marked_copy=copy, **options)
             else:
-                ended.outcome = check_one(reading, marked_copy=copy if annotate else None, **options)
+                ended.outcome = check_one(reading, marked_copy=copy, **options)
     sys.exit(all_of_them.end())

@@ -10,6 +10,7 @@ from flexlash.commands.submissions import Submissions
 from flexlash.comparison.difference_lines import comparison_line
 from flexlash.exit_codes import ExitCode
 from flexlash.findings import shown
+from flexlash.outputs.plan import Plan
 from flexlash.recreation import recreate
 from flexlash.terminal import progress
 
@@ -21,10 +22,11 @@ def recreate_all(
 ) -> ExitCode:
     """Write the submission and the report of each report anew and say whether they are the same; return the code."""
     all_of_them = Submissions(len(reports), as_json=as_json, quiet=quiet, ran=True)
-    taken = {report.resolve() for report in reports}
+    beside = [Path(options[name]) for name in ("tolerances", "materials") if options.get(name)]
+    plan = Plan(inputs=[*reports, *beside])
     for report in reports:
         with all_of_them.one(report) as ended, progress(quiet=quiet or as_json) as advance:
-            found = recreate(report, output, taken, progress=advance, **options)
+            found = recreate(report, output, plan, progress=advance, **options)
             ended.outcome = found.outcome
             ended.further = {"compared": {"numbers": found.numbers, "different": found.different}}
             if found.numbers:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,8 @@ import click
 
 from flexlash.commands.arguments import JSON, LIMITS, MARKED, QUIET, STRICT, SUBMISSIONS, planned, table_option
 from flexlash.commands.submissions import Submissions
-from flexlash.targets import beside, report_targets
+from flexlash.outputs.naming import marked_outputs, report_outputs
+from flexlash.outputs.plan import Plan
 from flexlash.terminal import progress
 
 __all__ = ["run"]
@@ -67,17 +69,24 @@ def run(
 
     if options["elasticity"] and not is_available():
         raise click.UsageError(MISSING)
-    targets = planned(report_targets, submissions, output)
+    beside = [path for path in (options["tolerances"], options["materials"]) if path]
+    plan = Plan(
+        inputs=[*submissions, *beside],
+        submissions=() if from_report else submissions,
+        marked_copies=options["marked_copies"],
+    )
+    reports = planned(report_outputs, plan, submissions, output)
     if from_report:
         from flexlash.commands.recreate import recreate_all
 
         sys.exit(recreate_all(submissions, output, as_json=as_json, quiet=quiet, **options))
+    copies = planned(marked_outputs, plan, submissions, output) if annotate else []
+    options["given"] = submissions
     all_of_them = Submissions(len(submissions), as_json=as_json, quiet=quiet, ran=True)
-    for path, target, copy in zip(submissions, targets, beside(submissions, targets), strict=True):
+    for path, report, copy in zip_longest(submissions, reports, copies):
         with all_of_them.one(path) as ended, progress(quiet=quiet or as_json) as advance:
             reading = Reading(path, options["limits"])
             from flexlash.pipeline import run as run_one
 
-            options["marked_copy"] = copy if annotate else None
-            ended.outcome = run_one(reading, target, progress=advance, **options)
+            ended.outcome = run_one(reading, report, marked_copy=copy, progress=advance, **options)
     sys.exit(all_of_them.end())

@@ -162,7 +162,9 @@ class Submissions:
             ended.code = ExitCode.FINE if self.several else ExitCode.NOTHING
             return
         ended.code = outcome.exit_code
-        if outcome.submission.kind == "refused":
+        if outcome.fault is not None:
+            ended.error = f"{named(outcome.fault.filename)} could not be written: {reason(outcome.fault)}"
+        elif outcome.submission.kind == "refused":
             ended.error = outcome.findings[0].message
 
     @staticmethod
@@ -198,6 +200,10 @@ class Submissions:
             print_json(ended.as_dictionary())
         for line in lines:
             click.echo(click.style(line.text, fg=line.colour) if line.colour else line.text, err=line.is_message)
+        for remark in ended.outcome.remarks if ended.outcome else ():
+            click.echo(click.style(remark, fg="yellow"), err=True)
+        if ended.outcome is not None and ended.outcome.fault is not None:
+            complain(ended.error or "")
         if ended.outcome is None and ended.error:
             name = named(ended.path)
             complain(ended.error if name in ended.error else f"{name}: {ended.error}")

@@ -11,7 +11,7 @@ import click
 from flexlash.commands.arguments import planned
 from flexlash.exit_codes import ExitCode
 from flexlash.findings import finding, shown
-from flexlash.targets import template_target
+from flexlash.outputs.naming import template_output
 from flexlash.terminal import named, print_refusal
 
 __all__ = ["template"]
@@ -32,14 +32,12 @@ def template(output: Path | None, *, example: bool, old: Path | None, force: boo
     """Write the Excel template that submissions are made from."""
     if example and old:
         raise click.UsageError("--example and --upgrade both fill the template; choose one.")
-    target = planned(template_target, output, old, force=force)
-    from flexlash.report.output import write_bytes
+    target = planned(template_output, output, old, force=force)
+    target.require()
     from flexlash.submission.templating.template import study, template_bytes
 
-    if old:
-        written = write_bytes(_upgraded(old), target)
-    else:
-        written = write_bytes(template_bytes(study() if example else None), target)
+    data = _upgraded(old) if old else template_bytes(study() if example else None)
+    written = target.write(data).path
     click.echo(f"Template written: {named(written)}")
     follow = "Look it over, then: flexlash check" if old else "Fill it in, then: flexlash run"
     click.echo(f"{follow} {named(written)}", err=True)

@@ -7,12 +7,15 @@ import re
 from collections import defaultdict
 from collections.abc import Sequence
 
+from flexlash.submission.mending.property import with_property
 from flexlash.submission.mending.repair import Repair
 from flexlash.submission.mending.splices import before_end, cell_spans, cell_xml, spliced, xml_text
+from flexlash.submission.products import mended_role
 from flexlash.submission.reading.archive import packed, unpacked
 from flexlash.submission.reading.elements import MAIN, Listing
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.package import open_package
+from flexlash.submission.reading.workbook import PROPERTY
 
 __all__ = ["FIXES_SHEET", "mended_workbook"]
 
@@ -28,8 +31,9 @@ _OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
 def mended_workbook(data: bytes, repairs: Sequence[Repair], limits: ReadingLimits) -> tuple[bytes, list[Repair]]:
     """Return the workbook with the repairs made, and the repairs that were made.
 
-    A cell that holds a formula, or that stands in a part of unusual encoding, is left as it is. Nothing else changes:
-    every other byte of every part is the submission's own.
+    A cell that holds a formula, or that stands in a part of unusual encoding, is left as it is. Nothing else changes
+    but a document property, which says what the workbook was made of: every other byte of every part is the
+    submission's own.
     """
     parts = unpacked(data, limits)
     package = open_package(parts, limits)
@@ -46,6 +50,7 @@ def mended_workbook(data: bytes, repairs: Sequence[Repair], limits: ReadingLimit
         parts[package.workbook] = _recalculated(parts[package.workbook])
         if not package.mended:
             parts = _with_list(parts, package.workbook, made, limits)
+            parts = with_property(parts, PROPERTY, mended_role(data), limits)
     return packed(parts, compressed=True), made
 
 

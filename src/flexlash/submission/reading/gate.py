@@ -13,13 +13,14 @@ from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.other_kinds import NEITHER, other_kind
 from flexlash.submission.reading.refusal import Refusal
 
-__all__ = ["Kind", "Refusal", "kind_of", "read_bytes"]
+__all__ = ["LOCK_FILE", "Kind", "Refusal", "kind_of", "read_bytes"]
 
 Kind = Literal["workbook", "parquet", "csv"]
 
 _MEBI = 2**20
 _ARCHIVE = b"PK\x03\x04"
 _PARQUET = b"PAR1"
+LOCK_FILE = "I525"
 _LOCK = "~$"
 """What the name of the file begins with by which Excel marks a workbook as open."""
 
@@ -32,9 +33,12 @@ _FLAGS = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 
 def read_bytes(path: Path, limits: ReadingLimits | None = None) -> bytes:
     """Return the bytes of a regular file of acceptable size; what is judged later is this copy.
 
-    Raises OSError when it cannot be opened, is a link, a folder or a device, Refusal when it is empty or too large.
+    Raises OSError when it cannot be opened, is a link, a folder or a device, Refusal when it is empty,
+    too large, or a lock file.
     """
     limits = limits or ReadingLimits()
+    if _is_lock(path):
+        raise Refusal(LOCK_FILE)
     handle = _open(path)
     if not stat.S_ISREG(os.fstat(handle).st_mode):
         os.close(handle)
@@ -50,9 +54,15 @@ def read_bytes(path: Path, limits: ReadingLimits | None = None) -> bytes:
             raise limits.exceeded(setting)
     if not data:
         raise Refusal("E101", found="the file is empty")
-    if path.name.startswith(_LOCK) and len(data) <= _GREATEST_LOCK:
-        raise Refusal("E101", found="it is Excel's lock file of a workbook that is open; submit the workbook itself")
     return data
+
+
+def _is_lock(path: Path) -> bool:
+    """Whether a file is one by which Excel marks a workbook as open, which nobody may read meanwhile."""
+    if not path.name.startswith(_LOCK):
+        return False
+    status = path.lstat()
+    return stat.S_ISREG(status.st_mode) and status.st_size <= _GREATEST_LOCK
 
 
 def _open(path: Path) -> int:

@@ -60,7 +60,7 @@ def upgraded(path: Path, limits: ReadingLimits | None = None) -> Upgrade:
     """
     limits = limits or ReadingLimits()
     submission = read_submission(path, limits)
-    if submission.role not in {"", "template"}:
+    if submission.role.startswith(("report", "checked")):
         raise Refusal("E101", found="it is a report or a marked copy made by flexlash")
     if submission.kind != "workbook":
         return refilled(submission, limits)

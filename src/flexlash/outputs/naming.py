@@ -1,0 +1,146 @@
+"""What outputs are called: a place in the plan for each submission's report, marked copy and mended file."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from flexlash.outputs.plan import Output, Plan
+from flexlash.submission.products import CHECKED_NAME, MENDED_NAME, REPORT_NAME, is_made_by_name, made_of
+
+__all__ = [
+    "MENDED",
+    "REPORTS",
+    "WORKBOOK",
+    "marked_outputs",
+    "mended_outputs",
+    "named_output",
+    "recreated_outputs",
+    "report_outputs",
+    "template_output",
+]
+
+REPORTS = (".xlsx", ".csv", ".parquet", ".json")
+"""Forms in which results are written, by the ending of their path."""
+
+MENDED = (".xlsx", ".xlsm", ".csv")
+WORKBOOK = (".xlsx",)
+_RECREATED = "-recreated"
+_FORBIDDEN = re.compile(r'[<>:"/\\|?*\x00-\x1f\x7f]')
+"""What no name of a file can hold on every system."""
+
+
+def named_output(plan: Plan, path: str | Path | Output, endings: Sequence[str]) -> Output:
+    """Return the output that a caller names; raise ValueError where it cannot be meant."""
+    if isinstance(path, Output):
+        return path
+    path = Path(path)
+    if path.suffix.lower() not in endings:
+        raise ValueError(f"the output must end in {', '.join(endings)}, not {path.suffix or 'nothing'}")
+    return plan.claim(path, named=True)
+
+
+def report_outputs(plan: Plan, submissions: Sequence[Path], output: Path | None) -> list[Output]:
+    """Return where each submission's report goes; raise ValueError for an output that cannot be meant."""
+    return _outputs(plan, submissions, output, lambda path: f"{path.stem}{REPORT_NAME}.xlsx", REPORTS)
+
+
+def mended_outputs(plan: Plan, submissions: Sequence[Path], output: Path | None) -> list[Output]:
+    """Return where each mended submission goes; raise ValueError for an output that cannot be meant."""
+
+    def name(path: Path) -> str:
+        return f"{made_of(path, MENDED_NAME)}{MENDED_NAME}{path.suffix}"
+
+    return _outputs(plan, submissions, output, name, MENDED)
+
+
+def marked_outputs(
+    plan: Plan, submissions: Sequence[Path], output: Path | None, *, itself: bool = False
+) -> list[Output]:
+    """Return where each submission's marked copy goes; raise ValueError for an output that cannot be meant.
+
+    The marked copy of a marked copy is called like the first. `itself` says that OUT, where it is a file, is the marked
+    copy; else this goes beside it.
+    """
+
+    def name(path: Path) -> str:
+        return f"{made_of(path, CHECKED_NAME)}{CHECKED_NAME}.xlsx"
+
+    if output is None or itself or _is_folder(output):
+        return _outputs(plan, submissions, output, name, WORKBOOK)
+    return _claims(plan, submissions, output.parent, name)
+
+
+def recreated_outputs(plan: Plan, report: Path, output: Path | None, name: str) -> tuple[Output, Output]:
+    """Return where the submission goes that a report carries by this name, and where the report made anew."""
+    stem = Path(_FORBIDDEN.sub("_", name)).stem or "submission"
+    is_file = output is not None and not _is_folder(output)
+    folder = report.parent if output is None else output.parent if is_file else output
+    filled = plan.claim(folder / f"{stem}{_RECREATED}.xlsx")
+    if is_file:
+        return filled, plan.claim(output, named=True)  # type: ignore[arg-type]
+    return filled, plan.claim(folder / f"{stem}{_RECREATED}{REPORT_NAME}.xlsx")
+
+
+def template_output(output: Path | None, old: Path | None, *, force: bool) -> Output:
+    """Return where a template goes; raise ValueError where it would replace a file that may be filled."""
+    from flexlash.submission.versions import TEMPLATE_VERSION
+
+    default = old.parent / f"{old.stem}-v{TEMPLATE_VERSION}.xlsx" if old else Path("flexlash-template.xlsx")
+    target = output or default
+    plan = Plan(inputs=[old] if old else [])
+    plan.refuse_input(target)
+    if target.suffix.lower() != ".xlsx":
+        raise ValueError(f"A template is a workbook: -o must end in .xlsx, not {target.name}.")
+    claimed = plan.claim(target, named=True, forced=True)
+    if claimed.path != target:
+        raise ValueError(f"{target} cannot be written: {plan.in_the_way(target, named=True)}. Choose another -o.")
+    if os.path.lexists(target) and not force:
+        raise ValueError(f"{target} exists and may be filled; choose another -o, or --force.")
+    return claimed
+
+
+def _outputs(
+    plan: Plan,
+    submissions: Sequence[Path],
+    output: Path | None,
+    name: Callable[[Path], str],
+    endings: Sequence[str],
+) -> list[Output]:
+    """Return the output of each submission: in its own folder, in the folder that was named, or the one file named."""
+    if output is not None and not _is_folder(output):
+        if len(submissions) > 1:
+            raise ValueError("Several submissions need a folder as OUT.")
+        if output.suffix.lower() not in endings:
+            raise ValueError(f"OUT must end in {', '.join(endings)} or be a folder, not in {output.suffix}.")
+        return [plan.claim(output, named=True)]
+    if output is not None:
+        _make_folder(output)
+    return _claims(plan, submissions, output, name)
+
+
+def _claims(plan: Plan, submissions: Sequence[Path], folder: Path | None, name: Callable[[Path], str]) -> list[Output]:
+    """Return the output of each submission in a folder, or in its own.
+
+    What seems to be of our own making comes last: as a rule it is skipped, and it takes no name from a submission.
+    """
+    claimed: dict[int, Output] = {}
+    for place in sorted(range(len(submissions)), key=lambda place: is_made_by_name(submissions[place])):
+        path = submissions[place]
+        # Not with_name: `.` and `/` have no name; reading them says that they are folders.
+        claimed[place] = plan.claim((path.parent if folder is None else folder) / name(path))
+    return [claimed[place] for place in range(len(submissions))]
+
+
+def _is_folder(output: Path) -> bool:
+    # Not is_dir, which raises for a name that is too long.
+    return os.path.isdir(output) or not output.suffix or str(output).endswith(("/", "\\"))  # noqa: PTH112
+
+
+def _make_folder(output: Path) -> None:
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError) as fault:
+        raise ValueError(f"{fault.filename or output} is a file and no folder.") from fault

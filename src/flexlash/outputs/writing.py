@@ -1,0 +1,164 @@
+"""A file put in its place whole or not at all, by way of a temporary one beside it; and what killed runs left behind.
+
+While its writer lives, a temporary file is locked (`flock`); a later run removes those that nobody holds. Windows has
+no such lock, but does not let go of a file that is open.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import secrets
+import stat
+from collections.abc import Iterator
+from pathlib import Path
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
+__all__ = ["put_new", "remove_leftovers", "replace", "temporary"]
+
+_PREFIX, _SUFFIX = ".flexlash-", ".tmp"
+_OPENED = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+_HOLDS_OPEN_FILES = os.name == "nt"
+"""Whether this system refuses to move, replace or remove a file that a program holds open."""
+
+_NO_LINKS = {errno.EPERM, errno.EACCES, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK}
+"""What a file system says that cannot give a file a second name."""
+
+_TRIES = 100
+
+
+@contextlib.contextmanager
+def temporary(folder: Path, data: bytes) -> Iterator[Path]:
+    """Yield a temporary file with these bytes, safe on the disk, to be put in its place; what is left is removed."""
+    path, handle = _created(folder)
+    try:
+        with os.fdopen(handle, "wb", closefd=False) as file:
+            file.write(data)
+            file.flush()
+            os.fsync(handle)
+        if _HOLDS_OPEN_FILES:
+            os.close(handle)
+        yield path
+    finally:
+        path.unlink(missing_ok=True)
+        if not _HOLDS_OPEN_FILES:
+            os.close(handle)
+
+
+def _created(folder: Path) -> tuple[Path, int]:
+    """Create a temporary file, with the permissions that any new file of the user has, and lock it."""
+    for _ in range(_TRIES):
+        path = folder / f"{_PREFIX}{secrets.token_hex(8)}{_SUFFIX}"
+        handle = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY | _OPENED, 0o666)
+        _lock(handle, wait=True)
+        # Another run may have taken it for a leftover before it was locked.
+        if _is_still(path, handle):
+            return path, handle
+        os.close(handle)
+    raise FileNotFoundError(errno.ENOENT, "temporary files disappear from this folder", str(folder))
+
+
+def _lock(handle: int, *, wait: bool) -> bool:
+    """Lock a file; return whether it was locked. A file system without locks locks nothing."""
+    if fcntl is None:
+        return False
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+    except OSError:
+        return False
+    return True
+
+
+def _is_still(path: Path, handle: int) -> bool:
+    """Whether a path leads to the file that is open."""
+    with contextlib.suppress(FileNotFoundError):
+        return os.path.samestat(path.lstat(), os.fstat(handle))
+    return False
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Remove the temporary files of a folder that no living run holds; what cannot be judged stays."""
+    with contextlib.suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.name.startswith(_PREFIX) and entry.name.endswith(_SUFFIX):
+                with contextlib.suppress(OSError):
+                    _remove_unheld(Path(entry.path))
+
+
+def _remove_unheld(path: Path) -> None:
+    if not stat.S_ISREG(path.lstat().st_mode):
+        return
+    if _HOLDS_OPEN_FILES:
+        path.unlink()
+        return
+    handle = os.open(path, os.O_RDWR | _OPENED)
+    try:
+        if _lock(handle, wait=False) and _is_still(path, handle):
+            path.unlink()
+    finally:
+        os.close(handle)
+
+
+def put_new(temporary_file: Path, place: Path) -> bool:
+    """Put a temporary file in a place where nothing stands; return False, and do nothing, where something does."""
+    try:
+        if _HOLDS_OPEN_FILES:
+            temporary_file.rename(place)
+        else:
+            _link(temporary_file, place)
+    except FileExistsError:
+        return False
+    _sync_folder(place.parent)
+    return True
+
+
+def _link(temporary_file: Path, place: Path) -> None:
+    """Give the file its name, which fails where the name is taken; the temporary name goes later."""
+    try:
+        place.hardlink_to(temporary_file)
+    except OSError as fault:
+        if fault.errno not in _NO_LINKS or isinstance(fault, FileExistsError):
+            raise
+        # An empty file holds the place until the whole one takes it.
+        os.close(os.open(place, os.O_CREAT | os.O_EXCL | os.O_WRONLY | _OPENED, 0o666))
+        try:
+            temporary_file.replace(place)
+        except OSError:
+            place.unlink(missing_ok=True)
+            raise
+
+
+def replace(temporary_file: Path, place: Path, known: os.stat_result) -> bool:
+    """Put a temporary file in the place of a known file; return False where another program has it in use."""
+    now = place.lstat()
+    if (now.st_ino, now.st_size, now.st_mtime_ns) != (known.st_ino, known.st_size, known.st_mtime_ns):
+        return False
+    try:
+        temporary_file.replace(place)
+    except PermissionError:
+        if not _HOLDS_OPEN_FILES:
+            raise
+        return False
+    _sync_folder(place.parent)
+    return True
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make a new name durable where folders can be synchronised."""
+    if _HOLDS_OPEN_FILES:
+        return
+    try:
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+    except OSError as fault:
+        # Some network drives and folders without permission to list them cannot; the file is in its place all the same.
+        if fault.errno not in {errno.EINVAL, errno.EACCES, errno.EPERM, errno.ENOTSUP}:
+            raise

@@ -1,0 +1,81 @@
+"""The stamp inside a file that flexlash writes: it says what the file is, and that nobody has changed it since.
+
+A stamp is one line of plain letters, `flexlash stamp report 4f0c…`, whose last word is the SHA-256 of the whole file
+with that word's digits as 0. It stands where other programs do not look, and are not in the way of:
+
+- .xlsx, .xlsm: the comment at the end of the archive, which every program drops that saves the workbook;
+- .parquet: the metadata of the footer, under the key `flexlash`;
+- .json: the key `stamp`, the last of the file.
+
+A .csv has no such place.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import stat
+from pathlib import Path
+from typing import BinaryIO
+
+__all__ = ["placeholder", "stamp_at", "stamped"]
+
+_DIGITS = 64
+_STAMP = re.compile(rb"flexlash stamp (?P<role>[a-z]+(?: [0-9a-f]{64})?) (?P<sum>[0-9a-f]{64})")
+_TAIL = 2**20
+"""How near its end a file holds its stamp [bytes]; the footer of a table with many columns is long."""
+
+_ARCHIVE = b"PK\x03\x04"
+_FLAGS = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+
+
+def placeholder(role: str) -> str:
+    """Return the stamp of a file that is still to be written; `stamped` puts the sum in."""
+    return f"flexlash stamp {role} {'0' * _DIGITS}"
+
+
+def stamped(data: bytes, role: str) -> bytes:
+    """Return a file's bytes with its stamp, where they have room for one; the same bytes for the same bytes.
+
+    `role` says what the file is: `report`, `results`, `checked`, `recreated`, or `mended` and the SHA-256 of the
+    submission that was mended.
+    """
+    empty = placeholder(role).encode()
+    if data.startswith(_ARCHIVE) and data.endswith(b"\0\0"):
+        data = data[:-2] + len(empty).to_bytes(2, "little") + empty
+    place = data.rfind(empty)
+    if place < 0:
+        return data
+    end = place + len(empty)
+    return data[: end - _DIGITS] + hashlib.sha256(data).hexdigest().encode() + data[end:]
+
+
+def stamp_at(path: Path) -> str:
+    """Return the role in the stamp of a file that nobody has changed since flexlash wrote it, else an empty text.
+
+    What is no regular file, a link among it, has no stamp. Raises OSError when the file cannot be read.
+    """
+    handle = os.open(path, _FLAGS)
+    with os.fdopen(handle, "rb") as file:
+        return _stamp_of(file) if stat.S_ISREG(os.fstat(handle).st_mode) else ""
+
+
+def _stamp_of(file: BinaryIO) -> str:
+    size = file.seek(0, os.SEEK_END)
+    start = file.seek(max(0, size - _TAIL))
+    stamps = list(_STAMP.finditer(file.read()))
+    if not stamps:
+        return ""
+    found = stamps[-1]
+    file.seek(0)
+    digest = hashlib.sha256()
+    left = start + found.start("sum")
+    while left > 0 and (piece := file.read(min(left, _TAIL))):
+        digest.update(piece)
+        left -= len(piece)
+    file.seek(_DIGITS, os.SEEK_CUR)
+    digest.update(b"0" * _DIGITS)
+    while piece := file.read(_TAIL):
+        digest.update(piece)
+    return found["role"].decode() if digest.hexdigest().encode() == found["sum"] else ""
