@@ -262,6 +262,12 @@ def _sheets(**sheets: Sequence[Sequence[Any]]) -> Callable[[Path], Made]:
     return lambda folder: _book(folder, {name.replace("_", " "): rows for name, rows in sheets.items()})
 
 
+def _with_units(units: str) -> str:
+    """Return a table with a row of units below its headers."""
+    header, row = _text([CUP], delimiter=";").splitlines()
+    return f"{header}\n;;;{units}\n{row}\n"
+
+
 GERMAN = _text(_numbered({"wall_thickness_mm": "1,6", "notes": "für Müller"}), delimiter=";")
 FOREIGN = parts_of()[WORKBOOK].replace(MAIN, "http://example.com/main")
 
@@ -293,6 +299,8 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "old Excel": _plain(OLE2 + b"Workbook", "study.xls"),
     "other letters": _plain(b"a,b\n\x81,2\n", "study.csv"),
     "German": _plain(GERMAN.replace("Δ", "?").encode("cp1252"), "study.csv"),
+    "a row of units": _plain(_with_units("[N·m];[mm];[mm];[µm];[mm]"), "study.csv"),
+    "digits for notes": _plain(_text([{**CUP, "notes": 5}]), "study.csv"),
     "no sheet": _sheets(Overview=[["a"]]),
     "no header": _sheets(Variants=[["a", "b"]]),
     "no rows": _sheets(Variants=_lines([CUP])[:1]),

@@ -180,6 +180,14 @@ def test_tables_keep_their_manner(what):
     assert mended_table(read_table(data, "Variants"), [_repair("B2", 1.6)]).decode() == expected
 
 
+def test_a_row_of_more_cells_than_headers_stays_one():
+    """Mending one cell of a table never hides that a decimal comma may have split another."""
+    sheet = read_table(b"variant,material,torque_Nm,notes\nA,s,1,6,\nB,s ,8,x\n", "Variants")
+    again = read_table(mended_table(sheet, [_repair("B3", "s")]), "Variants")
+    assert again.manner.longer == sheet.manner.longer == frozenset({2})
+    assert again.rows[3][2] == "s"
+
+
 def test_a_cell_whose_address_is_in_small_letters_is_mended():
     """A workbook whose program writes b2 for B2 is mended at B2."""
     part = SHEET.replace(b'"B2"', b'"b2"')

@@ -211,7 +211,7 @@ CATALOGUE = _rules(
         "E202",
         "text instead of a number",
         '{place} {name} = "{value}": {requirement} is required.',
-        "Type the number alone, without unit or thousands sign, with the decimal sign that your program uses.",
+        "Type the number alone, without unit, with the decimal sign that your program uses.",
         "A cell can look like a number and be text: a comma where Excel expects a point, a unit behind the "
         "number, a stray space, a leading apostrophe. In a table separated by semicolons, tabs or bars 1.050 may be "
         "1.05 or 1050, unless a number with one, two or more than three decimals shows that the point is the decimal "
@@ -316,6 +316,14 @@ CATALOGUE = _rules(
         "{place} {name} shows {value}: {requirement} is required.",
         "Format the cell as Number and type the value; for a tolerance in per cent choose % as its deviation unit.",
         "Excel stores 5% as 0.05. For a length, torque or modulus it is not certain which of the two is meant.",
+    ),
+    (
+        "E219",
+        "units differ",
+        "{place}: the row of units gives {value}, but the header {other} of {name} names another unit.",
+        "Write the unit in the header's brackets, then delete the row of units.",
+        "A row of units below the headers is read only to compare it with them. Rows that hold a value in such a "
+        "column are not computed, since it is not certain which of the two holds.",
     ),
     (
         "E301",
@@ -742,6 +750,14 @@ CATALOGUE = _rules(
         "from everybody. An unused class with a name of its own is no fault.",
     ),
     (
+        "W430",
+        "digits instead of remarks",
+        '{place} {name} = "{value}": nothing but short digits stands in this column, as behind split decimal commas.',
+        "Write decimal points, or separate the columns by semicolons; if the digits are meant, add a word.",
+        "In a table separated by commas 40,5 without quotes fills two cells. Where the last cell of a row was left "
+        "out, the row has as many cells as there are headers, and the digits of the decimals stand in its last column.",
+    ),
+    (
         "I501",
         "unit converted",
         "{place}: {name} is given in {value} and was converted to {unit}.",
@@ -841,6 +857,13 @@ CATALOGUE = _rules(
         "{place} {name} shows {value} and was read as {detail} %.",
         "Nothing to do.",
         "Excel stores 5% as 0.05; where per cent are wanted, what the cell shows is read.",
+    ),
+    (
+        "I515",
+        "row of units",
+        "{place}: this row holds the units of the columns ({value}) and was not read as data.",
+        "Nothing to do. A unit belongs into its header's brackets.",
+        "A row of units right below the headers is skipped when its units are those that the headers name or imply.",
     ),
     (
         "I525",

@@ -1,7 +1,8 @@
-"""What is easily overlooked in a filled sheet: merged cells, hidden rows or sheets, a row far below the others."""
+"""What is easily overlooked in a filled sheet: merged cells, hidden rows or sheets, a row far away, split numbers."""
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from itertools import pairwise
@@ -16,6 +17,7 @@ __all__ = ["tell_overlooked"]
 _EMPTY_ROWS = 60
 """So many empty rows between two rows fill more than a screen: who scrolls does not see both."""
 
+_DIGITS = re.compile(r"\d{1,3}", re.ASCII)
 _REMARKS = frozenset(("notes", "source"))
 """Columns whose text may well be merged over the rows that it is about."""
 
@@ -34,6 +36,17 @@ def tell_overlooked(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
         if row - above > _EMPTY_ROWS:
             cell = f"{_first_letter(table)}{row}"
             ledger.add("W427", sheet=sheet.name, cell=cell, detail=row - above - 1, other=above)
+    _tell_digits(sheet, table, ledger)
+
+
+def _tell_digits(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
+    """Warn of remarks that are nothing but short digits, as where decimal commas have split numbers."""
+    for key in sorted(_REMARKS & table.heading.places.keys()) if sheet.manner and sheet.manner.delimiter == "," else ():
+        filled = table.frame.select("row", key).drop_nulls().rows()
+        if filled and all(_DIGITS.fullmatch(text) for _, text in filled):
+            row, text = filled[0]
+            name = columns_of(table.schema)[key].name
+            ledger.add("W430", sheet=sheet.name, cell=table.address(row, key), column=key, name=name, value=text)
 
 
 def _first_letter(table: Table) -> str:

@@ -16,6 +16,7 @@ from flexlash.submission.headers import Heading, find_headings, plain
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.number_texts import Measure
 from flexlash.submission.reading.raw import Percentage, RawSheet, RawValue, Unstored, column_letters
+from flexlash.submission.units_row import take_units_row
 from flexlash.units import find_unit
 
 __all__ = ["Table", "tabulate"]
@@ -71,6 +72,7 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
     if heading is None:
         return None
     columns = columns_of(schema)
+    units = take_units_row(sheet, heading, schema, ledger)
     table = Table(
         sheet=sheet.name,
         schema=schema,
@@ -82,6 +84,8 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
     records: list[dict[str, Any]] = []
     first_key = next(iter(columns))
     for number, cells in _data_rows(sheet, heading, first_key, ledger):
+        if number == units:
+            continue
         record: dict[str, Any] = {"row": number}
         if surplus := _surplus(sheet, heading, number):
             _blame_surplus(table, number, surplus, sheet, ledger)
@@ -102,11 +106,12 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
 
 
 def _surplus(sheet: RawSheet, heading: Heading, row: int) -> list[int]:
-    """Return the places of a delimited text's row that lie beyond the last header, as behind an unquoted comma."""
+    """Return the places of a delimited text's row that lie beyond the last header, blank ones where they may count."""
     if sheet.manner is None:
         return []
     last = max(sheet.rows[heading.row])
-    return [place for place, value in sheet.rows[row].items() if place > last and _as_shown(value)]
+    found = [place for place, value in sheet.rows[row].items() if place > last and _as_shown(value)]
+    return found or ([last + 1] if row in sheet.manner.longer else [])
 
 
 def _blame_surplus(table: Table, row: int, surplus: list[int], sheet: RawSheet, ledger: Ledger) -> None:
@@ -117,7 +122,7 @@ def _blame_surplus(table: Table, row: int, surplus: list[int], sheet: RawSheet, 
         "E215",
         sheet=table.sheet,
         cell=f"{column_letters(surplus[0])}{row}",
-        value=_as_shown(sheet.rows[row][surplus[0]]),
+        value=_as_shown(sheet.rows[row].get(surplus[0], "")),
         detail="an unquoted decimal comma makes two cells of one" if comma else "a separator stands once too often",
         rows=[row] if table.schema == "Variants" else [],
     )

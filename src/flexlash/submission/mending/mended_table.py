@@ -26,7 +26,8 @@ def mended_table(sheet: RawSheet, repairs: Sequence[Repair]) -> bytes:
     for number in range(1, max(sheet.rows, default=0) + 1):
         cells = sheet.rows.get(number, {})
         own = [now.get(f"{letter}{number}", _text(cells.get(place))) for place, letter in enumerate(letters, start=1)]
-        writer.writerow(own)
+        # A row of one cell more than the headers stays one: its numbers may be split by decimal commas.
+        writer.writerow([*own, ""] if sheet.manner and number in sheet.manner.longer else own)
     return buffer.getvalue().encode("utf-8-sig")
 
 
