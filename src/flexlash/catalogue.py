@@ -320,7 +320,7 @@ CATALOGUE = _rules(
     (
         "E219",
         "units differ",
-        "{place}: the row of units gives {value}, but the header {other} of {name} names another unit.",
+        "{place}: the row of units gives {value} for {name}, but its header is read in {other}.",
         "Write the unit in the header's brackets, then delete the row of units.",
         "A row of units below the headers is read only to compare it with them. Rows that hold a value in such a "
         "column are not computed, since it is not certain which of the two holds.",

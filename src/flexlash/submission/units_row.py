@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from flexlash.column import Column
 from flexlash.columns import columns_of
+from flexlash.submission.header_names import name_and_unit
 from flexlash.submission.headers import Heading
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.reading.raw import RawSheet, RawValue, column_letters
@@ -72,6 +73,8 @@ def _bare(entry: RawValue) -> str | None:
 def _blame(sheet: RawSheet, heading: Heading, row: int, column: Column, ledger: Ledger) -> None:
     """Record a unit that is another than the one a column is read in, and take the column out of the heading."""
     place = heading.places.pop(column.key)
+    header = str(sheet.rows[heading.row][place])
+    named = name_and_unit(header)[1] if heading.factors[column.key] != 1 else None
     heading.doubtful[place] = column.key
     ledger.add(
         "E219",
@@ -80,5 +83,5 @@ def _blame(sheet: RawSheet, heading: Heading, row: int, column: Column, ledger: 
         column=column.key,
         name=column.name,
         value=str(sheet.rows[row][place]).strip(),
-        other=str(sheet.rows[heading.row][place]).strip(),
+        other=named or column.unit,
     )
