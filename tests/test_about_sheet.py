@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
+
 import openpyxl
+import polars as pl
 import pytest
 
 from filled import SOUND, filled
 from flexlash.pipeline import run
-from flexlash.report.about_sheet import SHEETS, TABS
+from flexlash.report.about_sheet import CHECKSUMS, SHEETS, TABS
 from flexlash.report.verdict import RULES
 from flexlash.result_columns import RESULTS
 
@@ -66,3 +69,23 @@ def test_long_texts_have_rows_high_enough(book):
         text, width = (row[1].value, 88) if row[1].value else (row[0].value, 114)
         if text and len(text) > width:
             assert sheet.row_dimensions[row[0].row].height >= 15 * (1 + (len(text) - 3) // width)
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet"])
+def test_what_tells_whether_a_file_came_through_unchanged(kind, tmp_path, book):
+    """About names the digest of what was read, and says whether a file of its kind carries checksums."""
+    path, report = tmp_path / f"study.{kind}", tmp_path / "report.xlsx"
+    frame = pl.DataFrame([{key: value for key, value in SOUND.items() if value is not None}])
+    if kind == "csv":
+        frame.write_csv(path)
+    else:
+        frame.write_parquet(path)
+    run(path, report, samples=256)
+    told = {
+        name: text for name, text, _ in _section(openpyxl.load_workbook(report)["About"], "Provenance and settings")
+    }
+    assert told["sha256"] == hashlib.sha256(path.read_bytes()).hexdigest()
+    assert told["Checksums"] == CHECKSUMS[kind]
+    assert "sha256 above" in CHECKSUMS[kind]
+    said = {name: text for name, text, _ in _section(book["About"], "Provenance and settings")}
+    assert said["Checksums"] == CHECKSUMS["workbook"]

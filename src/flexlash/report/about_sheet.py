@@ -19,7 +19,7 @@ from flexlash.tolerance.line_nets import LINE_REPLICATES
 from flexlash.tolerance.line_spread import MOST_LINES, OF_PROBABILITY, OF_SD
 from flexlash.tolerance.sampling import REPLICATES
 
-__all__ = ["ERRATA", "LEFT_OUT", "MODEL", "PROOF", "SHEETS", "TABS", "write_about"]
+__all__ = ["CHECKSUMS", "ERRATA", "LEFT_OUT", "MODEL", "PROOF", "SHEETS", "TABS", "write_about"]
 
 SHEETS = {
     "Summary": "One page: what was computed, what fails, by how much, why and what to tighten.",
@@ -89,6 +89,14 @@ ERRATA = (
     "and 8.72 %.",
 )
 
+CHECKSUMS = {
+    "workbook": "Every part of the workbook was compared with the checksum that its archive holds for it.",
+    "csv": "A text table carries no checksum: a digit changed on the way is another number. The sha256 above is that "
+    "of the bytes that were read; compare it with the sender's.",
+    "parquet": "Pages are compared with their checksums where a Parquet file has them; many programs, Polars among "
+    "them, write none. The sha256 above is that of the bytes that were read; compare it with the sender's.",
+}
+"""What tells whether a file of each kind was read as it was written."""
 
 _SAMPLING = {
     "line": (
@@ -244,6 +252,7 @@ def _identity(outcome: Outcome) -> dict[str, str]:
         "Submission": outcome.submission.name,
         "sha256": outcome.submission.sha256,
         "Kind": outcome.submission.kind,
+        "Checksums": CHECKSUMS[outcome.submission.kind],
         "flexlash version": __version__,
         **{column.key: _text(settings[column.key]) for column in SETTINGS},
     }

@@ -42,11 +42,11 @@ def _report(data: bytes, limits: ReadingLimits) -> Answer:
     return read_report(data, limits), b""
 
 
-def _parquet(data: bytes, limits: ReadingLimits) -> Answer:  # noqa: ARG001
+def _parquet(data: bytes, limits: ReadingLimits) -> Answer:
     from flexlash.submission.reading.parquet import read_parquet
     from flexlash.submission.reading.wire import to_wire
 
-    return to_wire(read_parquet(data)), b""
+    return to_wire(read_parquet(data, limits)), b""
 
 
 def _leftovers(data: bytes, limits: ReadingLimits) -> Answer:
