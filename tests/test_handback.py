@@ -204,8 +204,7 @@ def test_work_saved_in_a_marked_copy_is_never_overwritten(workbook, sound, tmp_p
     outcome = check(path, marked_copy=copy)
     assert outcome.marked_copy == tmp_path / "copy (2).xlsx"
     assert outcome.remarks == [
-        f"{copy} was left alone, since flexlash did not write it, or it was changed since; "
-        "written instead: copy (2).xlsx"
+        f"{copy} was left alone: flexlash did not write it, or somebody has changed it. Written instead: copy (2).xlsx"
     ]
     assert openpyxl.load_workbook(copy)["Variants"]["D5"].value == 800
     assert check(copy, marked_copies=True).exit_code == 0

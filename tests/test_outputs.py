@@ -119,7 +119,10 @@ WRONG = {
     "several submissions, one file": (["a.xlsx", "b.xlsx"], "x.xlsx", "folder"),
     "an unknown ending": (["a.xlsx"], "x.pdf", r"\.pdf"),
     "the submission itself": (["a.xlsx"], "a.xlsx", "never overwrites"),
-    "a file for a folder": (["a.xlsx"], "afile", "a file and no folder"),
+    "a file for a folder": (["a.xlsx"], "afile", "a file that is no folder"),
+    "a file in a path": (["a.xlsx"], "afile/out", "a file that is no folder"),
+    "standard output": (["a.xlsx"], "-", "or be a folder; - is neither"),
+    "an ending left out": (["a.xlsx"], "results.", r"results\. is neither"),
 }
 
 
@@ -313,6 +316,17 @@ def test_the_old_file_of_an_upgrade_is_not_replaced(tmp_path, workbook, sound):
     assert old.read_bytes() == before
 
 
+@pytest.mark.parametrize("what", ["a link", "a pipe", "a folder"])
+def test_a_template_is_written_to_a_file_alone(what, tmp_path):
+    """Where a pipe, a link or a folder stands no template is written, whatever --force says, and nothing hangs."""
+    IN_THE_WAY[what][0](tmp_path / "t.xlsx")
+    before = (tmp_path / "t.xlsx").lstat()
+    with pytest.raises(ValueError, match=IN_THE_WAY[what][1]):
+        template_output(tmp_path / "t.xlsx", None, force=True)
+    assert (tmp_path / "t.xlsx").lstat().st_ino == before.st_ino
+    assert not (tmp_path / "nothing").exists()
+
+
 # Only what flexlash wrote and nobody changed is replaced
 
 
@@ -328,7 +342,7 @@ def test_a_foreign_or_changed_file_is_left_alone(ending, tmp_path, table, sound,
         target.write_bytes(other)
         capsys.readouterr()
         assert _run(path, "-o", target, "--quiet") == 0
-        assert f"{target} was left alone, since flexlash did not write it, or it was changed" in capsys.readouterr().err
+        assert f"{target} was left alone: flexlash did not write it, or somebody has" in capsys.readouterr().err
         assert target.read_bytes() == other
         assert (tmp_path / f"out (2).{ending}").read_bytes() == first
     assert len(_contents(tmp_path)) == 3
@@ -407,7 +421,7 @@ def test_whatever_stands_there_is_neither_followed_nor_waited_for(what, name, tm
     assert (tmp_path / name).lstat().st_ino == before.st_ino
     assert not (tmp_path / "nothing").exists()
     assert stamp_at(tmp_path / f"{Path(name).stem} (2).xlsx")
-    assert f"{tmp_path / name} was left alone, since {words}" in capsys.readouterr().err
+    assert f"{tmp_path / name} was left alone: {words}" in capsys.readouterr().err
 
 
 # Once more, with everything that is in the folder
@@ -489,13 +503,17 @@ def test_a_mended_workbook_knows_its_original_by_content(tmp_path, workbook, sou
 
 
 def test_results_are_no_submission(tmp_path, table, sound):
-    """Results as CSV or Parquet are skipped by their header row; nothing but skipped files ends with 4."""
+    """Results as CSV, Parquet or JSON are skipped by what stands in them; nothing but skipped files ends with 4."""
     path = table([{**sound, "Drawing": "D-17"}])
-    for ending in ("csv", "parquet"):
+    for ending in ("csv", "parquet", "json"):
         run(path, tmp_path / f"r.{ending}", **FEW)
         assert [found.code for found in check(tmp_path / f"r.{ending}").findings] == ["I527"]
     assert _call("check", path, tmp_path / "r.csv") == 0
     assert _call("check", tmp_path / "r.csv", tmp_path / "r.parquet") == 4
+    for name in ("r.json", "~$t.csv"):
+        (tmp_path / "~$t.csv").write_bytes(b"x")
+        found = check(path, tolerances=tmp_path / name)
+        assert (found.skipped, [one.code for one in found.findings]) == (False, ["E101"]), "a table that is none"
 
 
 def test_marked_copies_can_still_be_submitted(tmp_path, workbook, sound):

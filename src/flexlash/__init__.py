@@ -26,16 +26,16 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from flexlash.outcome import Outcome
-    from flexlash.pipeline import check, run
+    from flexlash.pipeline import check, mend, run
 
-__all__ = ["Outcome", "__version__", "check", "run"]
+__all__ = ["Outcome", "__version__", "check", "mend", "run"]
 
 __version__ = "0.1.0"
 
 
 def __getattr__(name: str) -> Any:
     """Load the pipeline only when it is used, so that the command line answers at once."""
-    if name in {"Outcome", "check", "run"}:
+    if name in {"Outcome", "check", "mend", "run"}:
         from flexlash import pipeline
 
         return getattr(pipeline, name)

@@ -21,7 +21,7 @@ from flexlash.results import results_frame, results_of
 from flexlash.scatter import drawn_curves, scattered
 from flexlash.submission.mending.repair import Repair
 from flexlash.submission.products import mended_role, require_submission
-from flexlash.submission.reading.gate import LOCK_FILE, kind_of, read_bytes
+from flexlash.submission.reading.gate import kind_of, read_bytes
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import column_number
 from flexlash.submission.reading.read import RawSheet, Reading, ReportReading, Submission, read_table
@@ -193,8 +193,8 @@ def _table_beside(path: Path, name: str, limits: ReadingLimits) -> RawSheet:
         kind_of(data, only="csv")
         return read_table(data, name, readable(path.name), limits)
     except Refusal as refusal:
-        if refusal.code == LOCK_FILE:
-            raise Refusal("E101", file=readable(path.name), found="it is a lock file") from refusal
+        if refusal.code.startswith("I"):
+            raise Refusal("E101", file=readable(path.name), found="a csv file is required here") from refusal
         raise Refusal(refusal.code, **{"file": path.name, **refusal.facts}) from refusal
 
 

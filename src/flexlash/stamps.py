@@ -19,7 +19,7 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
-__all__ = ["placeholder", "stamp_at", "stamped"]
+__all__ = ["has_stamp", "placeholder", "stamp_at", "stamped"]
 
 _DIGITS = 64
 _STAMP = re.compile(rb"flexlash stamp (?P<role>[a-z]+(?: [0-9a-f]{64})?) (?P<sum>[0-9a-f]{64})")
@@ -49,6 +49,11 @@ def stamped(data: bytes, role: str) -> bytes:
         return data
     end = place + len(empty)
     return data[: end - _DIGITS] + hashlib.sha256(data).hexdigest().encode() + data[end:]
+
+
+def has_stamp(data: bytes) -> bool:
+    """Whether a file's bytes end with a stamp, whoever has changed them since."""
+    return _STAMP.search(data[-_TAIL:]) is not None
 
 
 def stamp_at(path: Path) -> str:

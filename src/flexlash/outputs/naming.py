@@ -110,6 +110,8 @@ def _outputs(
     endings: Sequence[str],
 ) -> list[Output]:
     """Return the output of each submission: in its own folder, in the folder that was named, or the one file named."""
+    if output is not None and (output.name == "-" or (output.name.endswith(".") and output.name.strip("."))):
+        raise ValueError(f"OUT must end in {', '.join(endings)} or be a folder; {output.name} is neither.")
     if output is not None and not _is_folder(output):
         if len(submissions) > 1:
             raise ValueError("Several submissions need a folder as OUT.")
@@ -117,7 +119,7 @@ def _outputs(
             raise ValueError(f"OUT must end in {', '.join(endings)} or be a folder, not in {output.suffix}.")
         return [plan.claim(output, named=True)]
     if output is not None:
-        _make_folder(output)
+        _make_folder(output, endings)
     return _claims(plan, submissions, output, name)
 
 
@@ -139,8 +141,10 @@ def _is_folder(output: Path) -> bool:
     return os.path.isdir(output) or not output.suffix or str(output).endswith(("/", "\\"))  # noqa: PTH112
 
 
-def _make_folder(output: Path) -> None:
+def _make_folder(output: Path, endings: Sequence[str]) -> None:
     try:
         output.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError) as fault:
-        raise ValueError(f"{fault.filename or output} is a file and no folder.") from fault
+        raise ValueError(
+            f"{output} leads to a file that is no folder; OUT must end in {', '.join(endings)} or be a folder."
+        ) from fault

@@ -133,7 +133,7 @@ class Plan:
             may_go = forced or _is_ours(place, data, named=named)
         except OSError:
             return "it cannot be read"
-        return "" if may_go else "flexlash did not write it, or it was changed since"
+        return "" if may_go else "flexlash did not write it, or somebody has changed it"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -191,7 +191,7 @@ class Output:
         if self.path == self.wanted or _full(self.wanted) in self.plan.claimed:
             return ""
         if self.plan.is_input(self.wanted):
-            return "it is one of the given files"
+            return "it is one of the files given to flexlash"
         return self.plan.in_the_way(self.wanted, named=self.named)
 
     def _candidates(self) -> Iterator[Path]:
@@ -205,7 +205,7 @@ class Output:
             return ""
         before = place.lstat()
         if self.plan.is_input(place):
-            return "it is one of the given files"
+            return "it is one of the files given to flexlash"
         named = self.named and place == self.wanted
         if obstacle := self.plan.in_the_way(place, named=named, forced=self.forced, data=data):
             return obstacle
@@ -214,7 +214,7 @@ class Output:
     def _remark(self, why: str, place: Path) -> str:
         if not why:
             return ""
-        return f"{shown(self.wanted, 4096)} was left alone, since {why}; written instead: {shown(place.name, 255)}"
+        return f"{shown(self.wanted, 4096)} was left alone: {why}. Written instead: {shown(place.name, 255)}"
 
 
 def _numbered(wanted: Path) -> Iterator[Path]:

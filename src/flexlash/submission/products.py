@@ -75,7 +75,7 @@ def require_submission(submission: Submission, path: Path, given: Iterable[Path]
 
     `given` are all files given with it: a mended file is skipped when its original is among them.
     """
-    if code := _product(submission, path, given, marked_copies=marked_copies):
+    if code := _product(submission, path, [Path(one) for one in given], marked_copies=marked_copies):
         raise Refusal(code)
 
 

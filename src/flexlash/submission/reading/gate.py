@@ -8,19 +8,19 @@ import stat
 from pathlib import Path
 from typing import Literal
 
+from flexlash.stamps import has_stamp
 from flexlash.submission.reading.encodings import unmarked_utf_16
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.other_kinds import NEITHER, other_kind
 from flexlash.submission.reading.refusal import Refusal
 
-__all__ = ["LOCK_FILE", "Kind", "Refusal", "kind_of", "read_bytes"]
+__all__ = ["Kind", "Refusal", "kind_of", "read_bytes"]
 
 Kind = Literal["workbook", "parquet", "csv"]
 
 _MEBI = 2**20
 _ARCHIVE = b"PK\x03\x04"
 _PARQUET = b"PAR1"
-LOCK_FILE = "I525"
 _LOCK = "~$"
 """What the name of the file begins with by which Excel marks a workbook as open."""
 
@@ -38,7 +38,7 @@ def read_bytes(path: Path, limits: ReadingLimits | None = None) -> bytes:
     """
     limits = limits or ReadingLimits()
     if _is_lock(path):
-        raise Refusal(LOCK_FILE)
+        raise Refusal("I525")
     handle = _open(path)
     if not stat.S_ISREG(os.fstat(handle).st_mode):
         os.close(handle)
@@ -88,6 +88,8 @@ def _kind(data: bytes) -> Kind:
         return "workbook"
     if data.startswith(_PARQUET):
         return "parquet"
+    if data.startswith(b"{") and has_stamp(data):
+        raise Refusal("I527")
     if refusal := other_kind(data):
         raise refusal
     if data.startswith(_UNICODE) or unmarked_utf_16(data):
