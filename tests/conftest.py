@@ -11,13 +11,10 @@ from typing import Any
 import pytest
 
 from filled import SOUND, filled
-from flexlash.submission.reading.isolated import Asked, ask
-from here import AskedHere, ask_here
+from flexlash.submission.reading import isolated
+from here import WHERE, answer_here
 
-_IN_A_PROCESS_OF_ITS_OWN = (
-    ("flexlash.submission.reading.read.Asked", Asked, AskedHere),
-    ("flexlash.handback.ask", ask, ask_here),
-)
+_APART = isolated._answer
 
 
 @pytest.hookimpl(wrapper=True)
@@ -45,8 +42,7 @@ def pytest_make_collect_report(collector):
 
 
 def _set(patch: pytest.MonkeyPatch, *, here: bool) -> None:
-    for name, apart, done_here in _IN_A_PROCESS_OF_ITS_OWN:
-        patch.setattr(name, done_here if here else apart)
+    patch.setattr(WHERE, answer_here if here else _APART)
 
 
 @pytest.fixture(scope="module", autouse=True)

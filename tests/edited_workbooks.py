@@ -16,7 +16,7 @@ from flexlash.columns import ENTRY_SHEETS
 from flexlash.submission.reading.raw import column_letters
 from flexlash.submission.templating.entry_rules import FIRST_ROW, HEADER_ROW
 from flexlash.submission.templating.template import Filling, template_bytes
-from here import AskedHere, ask_here
+from here import WHERE, answer_here
 from small_workbook import MAIN, archive_of
 
 __all__ = [
@@ -120,8 +120,7 @@ def last_row(sheet: str) -> int:
 def reading_here():
     """Read in this process; for fixtures that outlive a test."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flexlash.submission.reading.read.Asked", AskedHere)
-        patch.setattr("flexlash.handback.ask", ask_here)
+        patch.setattr(WHERE, answer_here)
         yield
 
 

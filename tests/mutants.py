@@ -12,6 +12,7 @@ import os
 import re
 import sys
 import time
+import traceback
 import warnings
 import zipfile
 from collections.abc import Callable, Iterator
@@ -23,11 +24,11 @@ import openpyxl
 from python_calamine import CalamineWorkbook, SheetTypeEnum
 
 from edited_workbooks import small_template
-from flexlash.submission.reading import child
-from flexlash.submission.reading.gate import kind_of
 from flexlash.submission.reading.limits import ReadingLimits
-from flexlash.submission.reading.read import Reading, read_table
+from flexlash.submission.reading.read import Source, Submission, submission_of
 from flexlash.submission.reading.refusal import Refusal
+from flexlash.submission.reading.wire import to_wire
+from flexlash.submission.reading.workbook import Cells
 from small_workbook import archive_of
 
 __all__ = ["PARTS_FROM", "main", "mutant", "originals", "outcome_of"]
@@ -303,14 +304,21 @@ _CHANGES: tuple[Callable[..., bytes | None], ...] = (
 def outcome_of(data: bytes) -> tuple[str, dict[str, object]]:
     """Return the code of the refusal, empty where the mutant was read, and the cells as they left the reader."""
     try:
-        kind = kind_of(data)
-        if kind == "csv":
-            read_table(data, "Variants")
-            return "csv", {}
-        head, _ = child.answer(kind, data, _LIMITS)
+        submission = submission_of(Source(name="mutant.xlsx", data=data), _LIMITS)
     except Refusal as refusal:
+        if refusal.code == "E118":
+            traceback.print_exc()
         return refusal.code, {}
-    return (head["refusal"][0], {}) if "refusal" in head else ("", json.loads(json.dumps(head)))
+    return ("csv", {}) if submission.kind == "csv" else ("", json.loads(json.dumps(to_wire(_cells_of(submission)))))
+
+
+def _cells_of(submission: Submission) -> Cells:
+    return Cells(
+        sheets=[*submission.sheets.values()],
+        modified=submission.modified,
+        role=submission.role,
+        template_version=submission.template_version,
+    )
 
 
 def _checked(data: bytes) -> str:
@@ -320,7 +328,7 @@ def _checked(data: bytes) -> str:
 
     try:
         with reading_here():
-            json.dumps(check(Reading(Path("mutant.xlsx"), data=data)).as_dictionary())
+            json.dumps(check(Source(name="mutant.xlsx", data=data)).as_dictionary())
     except Exception as fault:  # noqa: BLE001
         return repr(fault)
     return ""

@@ -27,7 +27,7 @@ from flexlash.columns import ENTRY_SHEETS, SETTINGS
 from flexlash.findings import cell_ranges
 from flexlash.pipeline import check, run
 from flexlash.submission.reading.raw import ErrorCell, RawSheet, Submission, Unstored, column_letters
-from flexlash.submission.reading.read import Reading
+from flexlash.submission.reading.read import ReadReport, Source
 from flexlash.summary import finding_lines, summary_lines
 
 EXAMPLES = 40
@@ -137,15 +137,9 @@ def _submission(cells, kind):
     return Submission(name="any {0} %s.xlsx", sha256="", kind=kind, sheets=sheets)
 
 
-class _Given(Reading):
-    """A submission that needs no reading."""
-
-    def __init__(self, submission):
-        super().__init__(Path("given.csv"), data=b"a,b\n")
-        self.given = submission
-
-    def submission(self):
-        return self.given
+def _given(submission):
+    """Return a submission that needs no reading."""
+    return ReadReport(name="given.csv", submission=submission, results=None, version="")
 
 
 def _is_plain(text):
@@ -191,7 +185,7 @@ def _unusable(submission):
 def test_any_cells_of_a_workbook(cells):
     """Whatever cells hold, findings are words at places that exist, and no row with an unusable number is computed."""
     submission = _submission(cells, "workbook")
-    outcome = check(_Given(submission))
+    outcome = check(_given(submission))
     _expect_words(outcome)
     assert not _unusable(submission) & outcome.computed.keys()
 
@@ -200,7 +194,7 @@ def test_any_cells_of_a_workbook(cells):
 @given(cells=_CELLS_AND_HEADERS, kind=st.sampled_from(("workbook", "csv", "parquet")))
 def test_any_headers(cells, kind):
     """Headers may hold anything as well, in every kind of submission."""
-    _expect_words(check(_Given(_submission(cells, kind))))
+    _expect_words(check(_given(_submission(cells, kind))))
 
 
 _WRITABLE = re.compile("[^\ud800-\udfff]*")
@@ -283,7 +277,7 @@ def test_any_cells_of_a_file(cells, write):
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder, "copy.xlsx")
         with reading_here():
-            outcome = check(Reading(Path("any.xlsx"), data=write(submission)), marked_copy=copy)
+            outcome = check(Source(name="any.xlsx", data=write(submission)), marked_copy=copy)
         _expect_words(outcome)
         if outcome.marked_copy and write is not _with_openpyxl:
             _expect_inert(copy.read_bytes(), (*ENTRY_SHEETS, "Findings"))
@@ -294,7 +288,7 @@ def test_any_cells_of_a_file(cells, write):
 def test_any_texts_in_the_marked_copy_of_a_table(cells):
     """A table's marked copy holds its texts as texts."""
     with tempfile.TemporaryDirectory() as folder:
-        outcome = check(_Given(_submission(cells, "csv")), marked_copy=Path(folder, "copy.xlsx"))
+        outcome = check(_given(_submission(cells, "csv")), marked_copy=Path(folder, "copy.xlsx"))
         if outcome.marked_copy:
             _expect_inert(outcome.marked_copy.read_bytes(), (*ENTRY_SHEETS, "Findings"))
 
@@ -312,7 +306,7 @@ def test_any_texts_in_the_report(cells, tmp_path):
     renamed = [(*cell[:3], f"{cell[3]} {cell[2]}") if cell[1] == 1 else cell for cell in cells]
     limits = [("Variants", _heads("Variants")["backlash_limit_arcmin"], row, 1.0) for row in range(2, 60)]
     submission = _submission([*rows, *named, *limits, *renamed, *own], "workbook")
-    outcome = run(_Given(submission), tmp_path / "report.xlsx", method="random", samples=256)
+    outcome = run(_given(submission), tmp_path / "report.xlsx", method="random", samples=256)
     _expect_words(outcome)
     assert outcome.counts["computed"] > 50
     _expect_inert(

@@ -35,6 +35,7 @@ ALLOWED = {
     "tolerance": CORE,
     "submission": CORE | {"tolerance.grades"},
     "assessment": CORE | {"mechanics", "submission", "tolerance"},
+    "examination": CORE | {"assessment", "options", "outcome", "results", "submission"},
     "verification": CORE | {"assessment", "elasticity", "mechanics", "submission"},
     "results": CORE | {"outcome", "submission", "tolerance"},
     "scatter": CORE | {"assessment", "mechanics", "options", "tolerance"},
@@ -50,6 +51,7 @@ ALLOWED = {
     | {
         "assessment",
         "elasticity",
+        "examination",
         "handback",
         "mechanics",
         "options",
@@ -90,6 +92,7 @@ EDGES = {
     "pandera": {"submission"},
     "click": {"cli", "commands", "terminal"},
     "scipy": {"mechanics", "report", "tolerance"},
+    "pebble": {"submission", "workers"},
     "skfem": {"elasticity"},
     "matplotlib": {"report"},
 }

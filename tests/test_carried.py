@@ -16,10 +16,10 @@ import regenerate
 from flexlash.findings import finding
 from flexlash.pipeline import check, run
 from flexlash.report.carried_sheet import carried_text
-from flexlash.submission.reading import read
 from flexlash.submission.reading.carried import FORM, carried_submission
+from flexlash.submission.reading.isolated import ask
 from flexlash.submission.reading.limits import ReadingLimits
-from flexlash.submission.reading.read import ReportReading
+from flexlash.submission.reading.read import Source, limits_of_reports, report_of
 from flexlash.submission.reading.refusal import Refusal
 
 STUDY = regenerate.ROOT / "data" / "b3-160-study.xlsx"
@@ -194,24 +194,28 @@ def test_a_table_is_no_report(table, sound):
     assert [found.code for found in outcome.findings] == ["E120"]
 
 
+def _read(path, limits=None):
+    limits = limits or ReadingLimits()
+    return ask(report_of, limits_of_reports(limits), Source.at(path, limits), limits)
+
+
 @pytest.mark.limited_process
 def test_the_limited_process_reads_the_report(tmp_path):
     """A report comes through the limited process with its Results; a text that fills its memory is refused there."""
     run(STUDY, tmp_path / "good.xlsx", samples=64)
-    reading = ReportReading(tmp_path / "good.xlsx")
-    assert (reading.submission().name, len(reading.results.rows)) == (STUDY.name, 13)
+    report = _read(tmp_path / "good.xlsx")
+    assert (report.submission.name, len(report.results.rows)) == (STUDY.name, 13)
     path = _book(tmp_path, {"Carried": ["[" + "[]," * 9_999, *["[]," * 9_999] * 2_000, "[]]"]})
     with pytest.raises(Refusal) as refusal:
-        ReportReading(path, ReadingLimits(memory_mebibytes=500)).submission()
+        _read(path, ReadingLimits(memory_mebibytes=300))
     assert refusal.value.code in {"E110", "E122"}
 
 
-def test_a_report_may_hold_more_than_a_submission(tmp_path, monkeypatch):
+def test_a_report_may_hold_more_than_a_submission(tmp_path):
     """A report has its results beside the submission: four times as many cells and seconds are allowed for it."""
     run(STUDY, tmp_path / "r.xlsx", samples=64)
-    asked = []
-    original = read.Asked
-    monkeypatch.setattr(read, "Asked", lambda *request: asked.append(request) or original(*request))
-    assert ReportReading(tmp_path / "r.xlsx", ReadingLimits(cells=3_000)).submission().sheets["Variants"].rows
-    limits = asked[0][2]
-    assert (limits.cells, limits.seconds, limits.processor_seconds) == (12_000, 80, 60)
+    assert _read(tmp_path / "r.xlsx", ReadingLimits(cells=3_000)).submission.sheets["Variants"].rows
+    limits = limits_of_reports(ReadingLimits(cells=3_000))
+    usual = ReadingLimits()
+    assert limits.cells == 12_000
+    assert (limits.seconds, limits.processor_seconds) == (4 * usual.seconds, 4 * usual.processor_seconds)

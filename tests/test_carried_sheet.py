@@ -19,7 +19,7 @@ from flexlash.report.carried_sheet import carried_text
 from flexlash.submission.reading.carried import carried_submission
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import ErrorCell, RawSheet, Unstored
-from flexlash.submission.reading.read import ReportReading, Submission
+from flexlash.submission.reading.read import ReadReport, Source, Submission, report_of
 from flexlash.submission.reading.workbook import read_workbook
 from flexlash.submission.templating.template import TEMPLATE_VERSION
 from libreoffice import convert, needs_libreoffice
@@ -30,7 +30,7 @@ OPTIONS = {"samples": 64}
 
 def _carried(path):
     """Return the submission that a report carries, without what only its run knew."""
-    return ReportReading(path).submission()
+    return report_of(Source(name=path.name, data=path.read_bytes()), ReadingLimits()).submission
 
 
 def _sheet(path):
@@ -138,21 +138,14 @@ def test_findings_on_other_sheets_are_found_again(name, tmp_path):
     path, options = SUBMISSIONS[name](tmp_path)
     outcome = run(path, **options, **OPTIONS)
     found = carried_submission(json.loads(carried_text(outcome)), ReadingLimits())
-    again = run(_Ready(found), **OPTIONS)
+    again = run(_ready(found), **OPTIONS)
     assert [one.code for one in again.findings if one.code in {"W428", "W406"}]
     assert again.findings == outcome.findings
 
 
-class _Ready(ReportReading):
-    """A submission that needs no reading."""
-
-    def __init__(self, submission):
-        self.carried = submission
-        self.refusal = None
-        self.path = regenerate.ROOT / submission.name
-
-    def submission(self):
-        return self.carried
+def _ready(submission):
+    """Return a submission that needs no reading."""
+    return ReadReport(name=submission.name, submission=submission, results=None, version="")
 
 
 def test_openpyxl_keeps_the_sheet(tmp_path):

@@ -14,9 +14,9 @@ import xlsxwriter
 
 from flexlash.pipeline import check
 from flexlash.submission.reading.raw import ErrorCell, Unstored, column_letters
-from flexlash.submission.reading.read import Reading, read_submission
+from flexlash.submission.reading.read import read_submission
 from flexlash.submission.reading.refusal import Refusal
-from here import AskedHere
+from here import WHERE, answer_here
 from libreoffice import convert, needs_libreoffice
 
 CORPUS = Path(os.environ.get("FLEXLASH_CORPUS", "no such folder"))
@@ -45,12 +45,12 @@ class Judged:
         self.sheets = None
         with warnings.catch_warnings(record=True) as self.warned:
             warnings.simplefilter("always")
-            reading = Reading(self.path)
             try:
-                self.sheets = reading.submission().sheets if reading.kind == "workbook" else None
+                submission = read_submission(self.path)
+                self.sheets = submission.sheets if submission.kind == "workbook" else None
             except Refusal:
                 self.sheets = None
-            self.outcome = check(reading)
+            self.outcome = check(self.path)
 
     @property
     def codes(self):
@@ -66,7 +66,7 @@ def judged():
     lines = (CORPUS / "MANIFEST.tsv").read_text(encoding="utf-8").splitlines()
     rows = csv.DictReader([line for line in lines if not line.startswith("#")], delimiter="\t")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flexlash.submission.reading.read.Asked", AskedHere)
+        patch.setattr(WHERE, answer_here)
         return [Judged(row) for row in rows]
 
 

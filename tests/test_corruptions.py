@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from random import Random
 
 import pytest
@@ -13,7 +12,7 @@ from edited_workbooks import FIRST, LETTERS, edited, reading_here, records, smal
 from flexlash.findings import Finding
 from flexlash.outcome import Outcome
 from flexlash.pipeline import check
-from flexlash.submission.reading.read import Reading
+from flexlash.submission.reading.read import Source
 
 CORRUPTIONS = 200
 MOST_AT_ONCE = 5
@@ -45,7 +44,7 @@ class Case:
 
 
 def _checked(data: bytes) -> Outcome:
-    return check(Reading(Path("corrupted.xlsx"), data=data))
+    return check(Source(name="corrupted.xlsx", data=data))
 
 
 def _case(seed: int, made: list[Corruption]) -> Case:

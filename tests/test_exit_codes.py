@@ -62,11 +62,10 @@ def test_rows_that_failed_weigh_more_than_a_limit(table, sound):
 
 def test_an_error_is_never_code_0(table, sound, monkeypatch):
     """Where an error stands, the code is 3 though every row was computed, and the next step is to mend it."""
-    from flexlash import pipeline
     from flexlash.findings import finding
 
     found = finding("E112", sheet="Variants", cell="Z1", value="Rim lenght", label="Tooth rim length [mm]", name="x")
-    monkeypatch.setattr(pipeline, "_in_order", lambda *_: [found])
+    monkeypatch.setattr("flexlash.examination.in_order", lambda *_: [found])
     for command in ("check", "run"):
         done = _call(command, table([sound]))
         assert done.exit_code == 3

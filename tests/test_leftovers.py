@@ -67,14 +67,14 @@ def test_each_kind_is_found():
 def test_parts_tell_what_they_hold(part, name):
     """What no cell shows is known by the name of its part."""
     found = leftovers(_with(_book(), {part: b"<x/>"}), ReadingLimits())
-    assert found["things"][name] == 1
+    assert found.things[name] == 1
 
 
 def test_the_limited_process_finds_the_same():
     """What comes back from the process of its own is what is found in this one."""
     data = (regenerate.ROOT / "data" / "needs-fixing.xlsx").read_bytes()
-    there = Leftovers.of(ask("leftovers", data, ReadingLimits())[0])
-    assert there == Leftovers.of(leftovers(data, ReadingLimits()))
+    there = ask(leftovers, ReadingLimits(), data, ReadingLimits())
+    assert there == leftovers(data, ReadingLimits())
     assert there.formulas["Variants"][13, 8] == "0.8*2"
     assert len(there.notes["Variants"]) == 24
 

@@ -86,14 +86,9 @@ def test_worker_processes_change_no_bit(table, sound, monkeypatch, how):
     path = table(_many(sound))
     here = run(path, **HOW[how]).results
     asked = []
-
-    class Pool(workers.ProcessPoolExecutor):
-        def __init__(self, count, **options):
-            asked.append(count)
-            super().__init__(count, **options)
-
+    start = workers.started
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
-    monkeypatch.setattr(workers, "ProcessPoolExecutor", Pool)
+    monkeypatch.setattr(workers, "started", lambda count: asked.append(count) or start(count))
     assert run(path, **HOW[how], jobs=2).results.equals(here)
     assert asked == [2]
 

@@ -11,7 +11,7 @@ from flexlash.tolerance import spreading
 from flexlash.tolerance.limits import Limits
 from flexlash.tolerance.spreading import spread_batch, spread_rows, variations_of
 from flexlash.tolerance.variation import Draws
-from worker_tasks import PoolHere
+from worker_tasks import fail
 
 ALIKE = {
     "wall_thickness": Limits(low=0.00155, high=0.00165),
@@ -94,13 +94,13 @@ def test_a_batch_has_no_more_rows_than_a_batch_may(monkeypatch, here):
 
 def test_few_rows_start_no_worker(here, monkeypatch):
     """Where rows are fewer than a worker is worth, none is started whatever jobs says."""
-    monkeypatch.setattr(workers, "ProcessPoolExecutor", None)
+    monkeypatch.setattr(workers, "started", None)
     assert _spread(TASKS, jobs=8) == here
 
 
 def test_one_job_starts_no_worker(here, monkeypatch):
     """With one job the rows are computed here however many they are."""
-    monkeypatch.setattr(workers, "ProcessPoolExecutor", None)
+    monkeypatch.setattr(workers, "started", None)
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
     assert _spread(TASKS, jobs=1) == here
 
@@ -109,16 +109,11 @@ def test_one_job_starts_no_worker(here, monkeypatch):
 def test_worker_processes_give_the_same_bits(monkeypatch, draws):
     """Two worker processes give every row the bits that it has here."""
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
-    started = []
-
-    class Pool(workers.ProcessPoolExecutor):
-        def __init__(self, workers, **options):
-            started.append(workers)
-            super().__init__(workers, **options)
-
-    monkeypatch.setattr(workers, "ProcessPoolExecutor", Pool)
+    asked = []
+    start = workers.started
+    monkeypatch.setattr(workers, "started", lambda count: asked.append(count) or start(count))
     elsewhere = _spread(TASKS, draws, jobs=2)
-    assert started == [2]
+    assert asked == [2]
     assert elsewhere == _spread(TASKS, draws, jobs=1)
 
 
@@ -134,34 +129,15 @@ def test_a_batch_is_what_its_rows_are(here):
     assert [told(one) for one in spread_batch(TASKS[:7], LINES)] == here[:7]
 
 
-@pytest.mark.parametrize("fault", [workers.BrokenProcessPool, OSError])
-@pytest.mark.parametrize("delivered", [0, 1, 3])
-def test_rows_of_a_lost_worker_are_computed_here(here, monkeypatch, fault, delivered):
-    """When workers cannot be started, or are lost on the way, the rows they leave are computed here, once each."""
-
-    class Pool(PoolHere):
-        def map(self, function, items):
-            yield from map(function, items[:delivered])
-            raise fault
-
-    monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
-    monkeypatch.setattr(workers, "ProcessPoolExecutor", Pool)
-    assert [place for place, _ in spread_rows(TASKS, LINES, jobs=2)] == [
-        place for batch in spreading._batches(TASKS) for place in batch
-    ]
-    assert _spread(TASKS, jobs=2) == here
-
-
 def test_workers_are_no_more_than_are_worth_it(monkeypatch):
     """There are as many workers as jobs allow and rows are worth, and no more."""
     asked = []
 
-    class Pool:
-        def __init__(self, count, **_):
-            asked.append(count)
-            raise OSError
+    def refuse(count):
+        asked.append(count)
+        raise OSError
 
-    monkeypatch.setattr(workers, "ProcessPoolExecutor", Pool)
+    monkeypatch.setattr(workers, "started", refuse)
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 7)
     for jobs in (2, 3, 8):
         list(spread_rows(TASKS, Draws("sobol", 16, 0), jobs=jobs))
@@ -170,15 +146,9 @@ def test_workers_are_no_more_than_are_worth_it(monkeypatch):
 
 def test_any_other_fault_of_a_worker_is_told(monkeypatch):
     """A defect of the model in a worker is raised, not computed again."""
-
-    class Pool(PoolHere):
-        def map(self, *_):
-            raise ValueError("the model failed")
-
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
-    monkeypatch.setattr(workers, "ProcessPoolExecutor", Pool)
     with pytest.raises(ValueError, match="the model failed"):
-        list(spread_rows(TASKS, LINES, jobs=2))
+        list(spread_rows([(fail, *task[1:]) for task in TASKS], LINES, jobs=2))
 
 
 def test_no_rows_give_nothing():

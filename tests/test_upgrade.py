@@ -21,11 +21,9 @@ from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import ErrorCell, Unstored
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.templating import template as template_module
-from flexlash.submission.templating import upgrade as upgrade_module
 from flexlash.submission.templating.entry_rules import FIRST_ROW
 from flexlash.submission.templating.template import Filling, study, template_bytes
 from flexlash.submission.templating.upgrade import upgraded
-from here import AskedHere
 from old_templates import LABELS, PLACES, old_workbook, put, rows_of
 
 SOUND = {
@@ -51,9 +49,8 @@ NASTY = (
 
 @pytest.fixture(autouse=True)
 def _here(monkeypatch):
-    """Few prepared rows and no second process, for speed."""
+    """Few prepared rows, for speed."""
     monkeypatch.setattr(template_module, "PREPARED_ROWS", 8)
-    monkeypatch.setattr(upgrade_module, "ask", lambda *request: AskedHere(*request).answer())
 
 
 def _moved(path):

@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import os
 import signal
+import time
+from pathlib import Path
 
-__all__ = ["PoolHere", "die_in_a_worker", "square"]
+from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.read import Source, submission_of
+from flexlash.submission.reading.refusal import Refusal
+
+__all__ = ["die", "die_once", "each_parquet", "fail", "obey", "own_number", "sleep", "square"]
 
 
 def square(number):
@@ -13,22 +19,52 @@ def square(number):
     return number * number, os.getpid()
 
 
-def die_in_a_worker(item):
-    """Return a number; the process of number 2 is killed unless it is the parent, which is named beside it."""
-    number, parent = item
-    if number == 2 and os.getpid() != parent:
+def die_once(item):
+    """Return a number; the first process that takes number 2 is killed and leaves a file."""
+    number, trace = item
+    if number == 2 and not Path(trace).exists():
+        Path(trace).touch()
         os.kill(os.getpid(), signal.SIGKILL)
-    return number, os.getpid()
+    return number
 
 
-class PoolHere:
-    """A pool of two workers that are this process."""
+def die(number):
+    """Kill every process that takes number 2, if it is not the one that is named beside it."""
+    if number[0] == 2 and os.getpid() != number[1]:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number[0]
 
-    def __init__(self, count, **_):
-        assert count == 2
 
-    def __enter__(self):
-        return self
+def fail(dimensions):
+    """Be a model that fails."""
+    raise ValueError(f"the model failed with {len(dimensions)} dimensions")
 
-    def __exit__(self, *_):
-        return False
+
+def sleep(seconds):
+    """Do nothing for some seconds."""
+    time.sleep(seconds)
+    return os.getpid()
+
+
+def own_number():
+    """Return the number of the process that does this."""
+    return os.getpid()
+
+
+def obey(text):
+    """Do what a text says, as if a file had taken its reader over."""
+    answer = {}
+    exec(text, {"answer": answer})  # noqa: S102
+    return answer
+
+
+def each_parquet(files):
+    """Return what became of each of these files: its refusal, or that it was read."""
+    ends = []
+    for data in files:
+        try:
+            submission_of(Source(name="a.parquet", data=data), ReadingLimits())
+            ends.append("read")
+        except Refusal as refusal:
+            ends.append(refusal.code)
+    return ends

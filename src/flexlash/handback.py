@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
-from dataclasses import asdict
+from dataclasses import replace
 
 from flexlash.findings import Finding
 from flexlash.outcome import Outcome
 from flexlash.submission.mending.mended_table import mended_table
+from flexlash.submission.mending.mended_workbook import mended_workbook
 from flexlash.submission.mending.repair import Repair
-from flexlash.submission.reading.isolated import ask
+from flexlash.submission.reading.isolated import ProcessFaultError, ask
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.repairs import repair_of
@@ -27,21 +29,26 @@ def marked(outcome: Outcome, limits: ReadingLimits) -> tuple[bytes, tuple[str, .
 
     Where the submission cannot be marked, the workbook holds the findings alone and says why; then that is None.
     """
-    from flexlash.submission.marking.marked_copy import findings_workbook, marked_table
+    from flexlash.submission.marking.marked_copy import findings_workbook, marked_copy, marked_table
 
-    submission = outcome.submission
+    submission, findings = outcome.submission, outcome.findings
+    within = _rest(limits, outcome.processor_seconds)
     why = f"flexlash could not read {submission.name}, so that nothing in it could be marked"
-    if submission.kind in {"csv", "parquet"}:
-        return marked_table(submission.sheets, outcome.findings, submission.name), ()
-    if submission.kind == "workbook":
-        try:
-            findings = [asdict(found) for found in outcome.findings]
-            head, data = ask("mark", submission.data, limits, findings=findings, name=submission.name)
-        except Refusal:
-            why = f"{submission.name} was read, but holds too much or too unusual things to be marked"
-        else:
-            return data, tuple(head["lost"])
-    return findings_workbook(outcome.findings, submission.name, why), None
+    try:
+        if submission.kind == "workbook":
+            copy = ask(marked_copy, within, submission.data, findings, submission.name)
+            return copy.data, copy.lost
+        if submission.kind in {"csv", "parquet"}:
+            return ask(marked_table, within, submission.sheets, findings, submission.name), ()
+    except (Refusal, ProcessFaultError):
+        why = f"{submission.name} was read, but holds too much or too unusual things to be marked"
+    return findings_workbook(findings, submission.name, why), None
+
+
+def _rest(limits: ReadingLimits, used: float) -> ReadingLimits:
+    """Return the limits of marking: what reading has left of its processor time, and a third of that time more."""
+    seconds = limits.processor_seconds
+    return replace(limits, processor_seconds=max(math.ceil(seconds / 5), math.floor(seconds * 4 / 3 - used)))
 
 
 def certain_repairs(findings: Iterable[Finding]) -> list[Repair]:
@@ -59,12 +66,10 @@ def mended(outcome: Outcome, repairs: list[Repair], limits: ReadingLimits) -> tu
     Raises Refusal when the submission cannot be written anew.
     """
     submission = outcome.submission
-    if submission.kind == "csv":
-        own = [repair for repair in repairs if repair.sheet in submission.sheets]
-        (sheet,) = (sheet for sheet in submission.sheets.values() if sheet.manner == submission.manner)
-        return mended_table(sheet, own), own
-    if submission.kind != "workbook" or not repairs:
+    if not repairs or submission.kind not in {"csv", "workbook"}:
         return submission.data, []
-    facts = [repair.as_dictionary() for repair in repairs]
-    head, data = ask("mend", submission.data, limits, repairs=facts)
-    return data, [Repair(**repair) for repair in head["made"]]
+    if submission.kind == "workbook":
+        return ask(mended_workbook, limits, submission.data, repairs, limits)
+    own = [repair for repair in repairs if repair.sheet in submission.sheets]
+    (sheet,) = (sheet for sheet in submission.sheets.values() if sheet.manner == submission.manner)
+    return ask(mended_table, limits, sheet, own), own

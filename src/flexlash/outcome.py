@@ -47,6 +47,7 @@ class Outcome:
     were marked, `not_carried` what of it that copy could not take over, None where it holds the findings alone, `fault`
     why it could not be written.
     `remarks` say what stood at the place of an output and was left alone.
+    `processor_seconds` is how much computing it took to come this far.
     """
 
     submission: Submission
@@ -65,6 +66,7 @@ class Outcome:
     not_carried: tuple[str, ...] | None = ()
     fault: OSError | None = None
     remarks: list[str] = field(default_factory=list)
+    processor_seconds: float = 0.0
 
     @property
     def counts(self) -> dict[str, int]:

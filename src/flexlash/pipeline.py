@@ -1,34 +1,28 @@
-"""The one natural way through: read → validate → limits → nominal → spread → results → report."""
+"""The one natural way through: examine (read → validate → limits → nominal) → spread → results → report."""
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from flexlash.assessment import assess
 from flexlash.elasticity import MISSING, is_available
-from flexlash.findings import Finding, finding, readable
+from flexlash.examination import examine, in_order, refused
+from flexlash.findings import readable
 from flexlash.handback import certain_repairs, marked, mended, worth_marking
 from flexlash.options import Options
 from flexlash.outcome import DRAWN, PICTURED, Outcome
 from flexlash.outputs.naming import MENDED, REPORTS, WORKBOOK, named_output
 from flexlash.outputs.plan import Output, Plan
 from flexlash.remedies import remedies_of
-from flexlash.results import results_frame, results_of
+from flexlash.results import results_of
 from flexlash.scatter import drawn_curves, scattered
 from flexlash.submission.mending.repair import Repair
-from flexlash.submission.products import mended_role, require_submission
-from flexlash.submission.reading.gate import kind_of, read_bytes
-from flexlash.submission.reading.limits import ReadingLimits
-from flexlash.submission.reading.raw import column_number
-from flexlash.submission.reading.read import RawSheet, Reading, ReportReading, Submission, read_table
+from flexlash.submission.products import mended_role
+from flexlash.submission.reading.isolated import ask
+from flexlash.submission.reading.read import ReadReport, Source, limits_of_reports, of_table
 from flexlash.submission.reading.refusal import Refusal
-from flexlash.submission.validate import Validated, validate
 from flexlash.summary import worst_first
-from flexlash.variant import Settings
 
 __all__ = ["Options", "Outcome", "check", "mend", "run"]
 
@@ -36,7 +30,7 @@ _PASSES = 3
 """Most times that a mended submission is looked at again, since one repair may uncover another fault."""
 
 
-def check(submission: str | Path | Reading, **options: Any) -> Outcome:
+def check(submission: str | Path | Source | ReadReport, **options: Any) -> Outcome:
     """Return the outcome of validation and nominal calculation alone; nothing is sampled.
 
     Nothing is written but the marked copy, when `marked_copy` says where. Raises OSError when a file cannot be opened,
@@ -46,12 +40,14 @@ def check(submission: str | Path | Reading, **options: Any) -> Outcome:
     chosen = Options(**options)
     plan = _plan(submission, chosen)
     copy = _copy(plan, chosen)
-    outcome = _examine(_reading(submission, chosen), chosen)
+    outcome = _examined(_source(submission, chosen), chosen)
     _mark(outcome, chosen, copy)
     return outcome
 
 
-def mend(submission: str | Path | Reading, output: str | Path | Output, **options: Any) -> tuple[Outcome, list[Repair]]:
+def mend(
+    submission: str | Path | Source | ReadReport, output: str | Path | Output, **options: Any
+) -> tuple[Outcome, list[Repair]]:
     """Write a submission with the certain repairs made; return the outcome of checking that, and the repairs.
 
     Nothing is written when there is no certain repair. Options and errors are those of `check`; OSError also says that
@@ -60,9 +56,9 @@ def mend(submission: str | Path | Reading, output: str | Path | Output, **option
     chosen = Options(**options)
     plan = _plan(submission, chosen)
     new, copy = named_output(plan, output, MENDED), _copy(plan, chosen)
-    reading = _reading(submission, chosen)
+    source = _source(submission, chosen)
     new.require()
-    original = outcome = _examine(reading, chosen)
+    original = outcome = _examined(source, chosen)
     repairs: dict[str, Repair] = {}
     for _ in range(_PASSES):
         wanted = {repair.place: repair for repair in certain_repairs(outcome.findings)}
@@ -72,14 +68,16 @@ def mend(submission: str | Path | Reading, output: str | Path | Output, **option
         repairs |= {repair.place: repair for repair in made}
         if not made:
             break
-        outcome = _examine(Reading(reading.path, chosen.limits, data), chosen)
+        outcome = _examined(Source(name=original.submission.name, data=data), chosen)
     if repairs:
         _write(outcome, new, data, mended_role(original.submission.data))
     _mark(outcome, chosen, copy)
     return outcome, list(repairs.values())
 
 
-def run(submission: str | Path | Reading, output: str | Path | Output | None = None, **options: Any) -> Outcome:
+def run(
+    submission: str | Path | Source | ReadReport, output: str | Path | Output | None = None, **options: Any
+) -> Outcome:
     """Return the outcome of a submission and write it to `output`, unless that is None.
 
     Options are those of the command line: seed, method, samples, cross_check, elasticity, strict, jobs,
@@ -96,10 +94,10 @@ def run(submission: str | Path | Reading, output: str | Path | Output | None = N
     plan = _plan(submission, chosen)
     report = None if output is None else named_output(plan, output, REPORTS)
     copy = _copy(plan, chosen)
-    reading = _reading(submission, chosen)
+    source = _source(submission, chosen)
     if report is not None:
         report.require()
-    outcome = _examine(reading, chosen)
+    outcome = _examined(source, chosen)
     chosen = chosen.completed(outcome.submission.run_with)
     if chosen.elasticity and not is_available():
         raise ModuleNotFoundError(MISSING)
@@ -118,9 +116,9 @@ def run(submission: str | Path | Reading, output: str | Path | Output | None = N
     return outcome
 
 
-def _plan(given: str | Path | Reading, options: Options) -> Plan:
+def _plan(given: str | Path | Source | ReadReport, options: Options) -> Plan:
     """Return the plan of one submission's outputs, none of which takes the place of what is read."""
-    submission = given.path if isinstance(given, Reading) else given
+    submission = given.path if isinstance(given, Source | ReadReport) else given
     return Plan(inputs=[Path(path) for path in (submission, options.tolerances, options.materials) if path is not None])
 
 
@@ -129,32 +127,40 @@ def _copy(plan: Plan, options: Options) -> Output | None:
     return None if options.marked_copy is None else named_output(plan, options.marked_copy, WORKBOOK)
 
 
-def _reading(given: str | Path | Reading, options: Options) -> Reading:
-    """Return a submission being read."""
-    if isinstance(given, Reading):
+def _source(given: str | Path | Source | ReadReport, options: Options) -> Source | ReadReport | Refusal:
+    """Return a submission's bytes, or why its name or size alone refuse it; raise OSError when it cannot be opened."""
+    if isinstance(given, Source | ReadReport):
         return given
-    return (ReportReading if options.from_report else Reading)(Path(given), options.limits)
-
-
-def _examine(reading: Reading, options: Options) -> Outcome:
-    """Read, validate and compute at the entered dimensions."""
     try:
-        submission = reading.submission()
-        options = options.completed(submission.run_with)
-        require_submission(submission, reading.path, options.given, marked_copies=options.marked_copies)
-        return _validated(_with_tables(submission, options), options)
+        return Source.at(Path(given), options.limits)
     except Refusal as refusal:
-        facts: dict[str, Any] = {"file": reading.name, **refusal.facts}
-        digest = hashlib.sha256(reading.data).hexdigest() if reading.data else ""
-        found = finding(refusal.code, **facts)
-        refused = Submission(name=reading.name, sha256=digest, kind="refused")
-        return Outcome(
-            submission=refused,
-            results=results_frame([]),
-            findings=[found],
-            settings=Settings(),
-            skipped=found.level == "info",
-        )
+        return Refusal(refusal.code, **{"file": readable(Path(given).name), **refusal.facts})
+
+
+def _examined(source: Source | ReadReport | Refusal, options: Options) -> Outcome:
+    """Return what the limited process finds in a submission."""
+    if isinstance(source, Refusal):
+        return refused(str(source.facts["file"]), b"", source)
+    limits = limits_of_reports(options.limits) if options.from_report else options.limits
+    try:
+        asked = replace(options, progress=None, marked_copy=None)
+        outcome = ask(examine, limits, source, _tables(options), asked)
+    except Refusal as refusal:
+        return refused(source.name, source.data, refusal)
+    outcome.submission = replace(outcome.submission, data=source.data)
+    return outcome
+
+
+def _tables(options: Options) -> dict[str, Source]:
+    """Return the tables given beside a submission by the sheet that each replaces."""
+    found = {}
+    for name, path in (("Tolerances", options.tolerances), ("Materials", options.materials)):
+        if path is not None:
+            try:
+                found[name] = Source.at(Path(path), options.limits)
+            except Refusal as refusal:
+                raise of_table(refusal, readable(Path(path).name)) from refusal
+    return found
 
 
 def _mark(outcome: Outcome, options: Options, copy: Output | None) -> None:
@@ -175,63 +181,6 @@ def _write(outcome: Outcome, output: Output, data: bytes, role: str) -> Path:
     outcome.outputs.append(written.path)
     outcome.remarks += [written.remark] if written.remark else []
     return written.path
-
-
-def _with_tables(submission: Submission, options: Options) -> Submission:
-    """Put the tables given beside a submission in the place of its own."""
-    given: dict[str, RawSheet] = {}
-    for name, path in (("Tolerances", options.tolerances), ("Materials", options.materials)):
-        if path is not None:
-            given[name] = _table_beside(Path(path), name, options.limits)
-    return replace(submission, sheets=submission.sheets | given)
-
-
-def _table_beside(path: Path, name: str, limits: ReadingLimits) -> RawSheet:
-    """Return a CSV table given beside a submission; raise Refusal, by its own name, when it is none."""
-    try:
-        data = read_bytes(path, limits)
-        kind_of(data, only="csv")
-        return read_table(data, name, readable(path.name), limits)
-    except Refusal as refusal:
-        if refusal.code.startswith("I"):
-            raise Refusal("E101", file=readable(path.name), found="a csv file is required here") from refusal
-        raise Refusal(refusal.code, **{"file": path.name, **refusal.facts}) from refusal
-
-
-def _validated(submission: Submission, options: Options) -> Outcome:
-    """Validate, set the limits and compute at the entered dimensions."""
-    validated = validate(submission, options.limits)
-    overrides = {
-        name: getattr(options, name) for name in ("seed", "method", "samples") if getattr(options, name) is not None
-    }
-    settings = replace(validated.settings, **overrides)
-    computed = assess(validated, settings)
-    findings = _in_order(validated, submission)
-    if options.strict and len(computed) < len(validated.submitted):
-        computed = {}
-    outcome = Outcome(
-        submission=submission,
-        results=results_frame([]),
-        findings=findings,
-        settings=settings,
-        options=options,
-        validated=validated,
-        computed=computed,
-    )
-    outcome.results = results_of(outcome)
-    return outcome
-
-
-def _place_order(submission: Submission) -> Callable[[Finding], tuple[int, int, int, str]]:
-    """Return the sort key of findings: sheet, row, column, code."""
-    sheets = {name: place for place, name in enumerate(submission.sheets)}
-
-    def key(found: Finding) -> tuple[int, int, int, str]:
-        letters = found.cell.rstrip("0123456789")
-        row = int(found.cell[len(letters) :] or 0)
-        return sheets.get(found.sheet, -1), row, column_number(letters), found.code
-
-    return key
 
 
 def _spread(outcome: Outcome, options: Options) -> None:
@@ -270,7 +219,7 @@ def _verify(outcome: Outcome, options: Options) -> None:
         jobs=options.jobs,
         progress=(lambda done, total: progress(rows + done, rows + total)) if progress else None,
     )
-    outcome.findings = _in_order(outcome.validated, outcome.submission)
+    outcome.findings = in_order(outcome.validated.ledger.findings, outcome.submission)
     outcome.results = results_of(outcome, cross_check=bool(options.cross_check), elasticity=True)
 
 
@@ -281,8 +230,3 @@ def _picture(outcome: Outcome) -> None:
     by_name = {one.variant.name: one for one in outcome.computed.values()}
     worst = [by_name[row["variant"]] for row in worst_first(outcome)]
     outcome.pictured = pictured([one for one in worst if "elasticity_windup" in one.nominal][:PICTURED])
-
-
-def _in_order(validated: Validated, submission: Submission) -> list[Finding]:
-    """Return the findings in the order of the submission."""
-    return sorted(validated.ledger.findings, key=_place_order(submission))

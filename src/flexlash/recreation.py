@@ -14,8 +14,9 @@ from flexlash.outputs.naming import recreated_outputs
 from flexlash.outputs.plan import Plan
 from flexlash.pipeline import run
 from flexlash.result_columns import result_columns
+from flexlash.submission.reading.isolated import ask
 from flexlash.submission.reading.limits import ReadingLimits
-from flexlash.submission.reading.read import ReportReading
+from flexlash.submission.reading.read import ReadReport, Source, limits_of_reports, report_of
 from flexlash.submission.reading.refusal import Refusal
 
 if TYPE_CHECKING:
@@ -44,25 +45,26 @@ def recreate(report: Path, output: Path | None, plan: Plan | None = None, **opti
     `plan`, where several reports are made anew. Raises OSError when a file cannot be opened or written.
     """
     limits = options.get("limits") or ReadingLimits()
-    reading = ReportReading(report, limits)
+    source = Source.at(report, limits)
     try:
-        name = reading.submission().name
+        given: ReadReport | Source = ask(report_of, limits_of_reports(limits), source, limits)
     except Refusal:
         # Running it says why.
-        name = reading.name
+        given = source
+    name = given.submission.name if isinstance(given, ReadReport) else source.name
     filled, anew = recreated_outputs(plan or Plan(inputs=[report]), report, output, name)
     filled.require()
-    outcome = run(reading, anew, from_report=True, **options)
-    if outcome.validated is None or outcome.validated.table is None or not outcome.computed:
+    outcome = run(given, anew, from_report=True, **options)
+    if not outcome.computed or not isinstance(given, ReadReport):
         return Recreation(outcome=outcome)
     from flexlash.submission.templating.upgrade import refilled
 
-    upgrade = refilled(outcome.submission, limits)
+    upgrade = ask(refilled, limits_of_reports(limits), outcome.submission, limits)
     written = filled.write(upgrade.data, "recreated")
     outcome.outputs.insert(0, written.path)
     outcome.remarks += [written.remark] if written.remark else []
     anew_rows = frame_rows(_as_stored(outcome.results))
-    numbers, different = _compared(by_variant(result_rows(reading.results), anew_rows), anew_rows)
+    numbers, different = _compared(by_variant(result_rows(given.results), anew_rows), anew_rows)
     return Recreation(outcome=outcome, remarks=upgrade.remarks, numbers=numbers, different=different)
 
 

@@ -46,7 +46,7 @@ def check(
 
     Nothing is written without --annotate or --apply-fixes.
     """
-    from flexlash.submission.reading.read import Reading
+    from flexlash.submission.reading.isolated import begin
 
     if output and not (annotate or apply_fixes):
         raise click.UsageError("-o needs --apply-fixes or --annotate; check alone writes nothing.")
@@ -57,16 +57,16 @@ def check(
     mended = planned(mended_outputs, plan, submissions, output) if apply_fixes else []
     copies = planned(marked_outputs, plan, submissions, output, itself=not apply_fixes) if annotate else []
     options["given"] = submissions
+    # The process that reads loads its libraries while this one loads its own.
+    begin()
     all_of_them = Submissions(len(submissions), as_json=as_json, quiet=quiet)
     for path, target, copy in zip_longest(submissions, mended, copies):
         with all_of_them.one(path) as ended:
-            reading = Reading(path, options["limits"])
-            # Loading the libraries takes as long as reading the file does: both at once.
             from flexlash.pipeline import check as check_one
             from flexlash.pipeline import mend
 
             if target:
-                ended.outcome, ended.repairs = mend(reading, target, marked_copy=copy, **options)
+                ended.outcome, ended.repairs = mend(path, target, marked_copy=copy, **options)
             else:
-                ended.outcome = check_one(reading, marked_copy=copy, **options)
+                ended.outcome = check_one(path, marked_copy=copy, **options)
     sys.exit(all_of_them.end())

@@ -65,7 +65,7 @@ def run(
 ) -> None:
     """Validate, compute the tolerance spread, write the report."""
     from flexlash.elasticity import MISSING, is_available
-    from flexlash.submission.reading.read import Reading
+    from flexlash.submission.reading.isolated import begin
 
     if options["elasticity"] and not is_available():
         raise click.UsageError(MISSING)
@@ -82,11 +82,12 @@ def run(
         sys.exit(recreate_all(submissions, output, as_json=as_json, quiet=quiet, **options))
     copies = planned(marked_outputs, plan, submissions, output) if annotate else []
     options["given"] = submissions
+    # The process that reads loads its libraries while this one loads its own.
+    begin()
     all_of_them = Submissions(len(submissions), as_json=as_json, quiet=quiet, ran=True)
     for path, report, copy in zip_longest(submissions, reports, copies):
         with all_of_them.one(path) as ended, progress(quiet=quiet or as_json) as advance:
-            reading = Reading(path, options["limits"])
             from flexlash.pipeline import run as run_one
 
-            ended.outcome = run_one(reading, report, marked_copy=copy, progress=advance, **options)
+            ended.outcome = run_one(path, report, marked_copy=copy, progress=advance, **options)
     sys.exit(all_of_them.end())

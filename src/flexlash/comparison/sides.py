@@ -14,9 +14,10 @@ from flexlash.assessment import assess
 from flexlash.columns import DIMENSIONS, MATERIALS, columns_of
 from flexlash.findings import shown
 from flexlash.result_columns import result_columns
+from flexlash.submission.reading.isolated import ask
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import RawSheet, Submission
-from flexlash.submission.reading.read import Reading, ReportReading
+from flexlash.submission.reading.read import Source, limits_of_reports, report_of, submission_of
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.spellings import plain
 from flexlash.submission.stops import stopped_by
@@ -181,21 +182,25 @@ def side_of(path: Path, limits: ReadingLimits) -> Side:
 
     Raises OSError when the file cannot be opened, Refusal when it is neither.
     """
-    reading: Reading = ReportReading(path, limits)
+    return ask(_side, limits_of_reports(limits), Source.at(path, limits), limits)
+
+
+def _side(source: Source, limits: ReadingLimits) -> Side:
+    """Return a file to compare, read and validated."""
     try:
-        submission = reading.submission()
+        report = report_of(source, limits)
+        submission = report.submission
     except Refusal as refusal:
         if refusal.code != "E120":
             raise
-        reading = Reading(path, limits, reading.data)
-        submission = reading.submission()
+        report, submission = None, submission_of(source, limits)
     validated = validate(submission, limits)
     if validated.table is None:
         raise Refusal("E109", sheet="Variants", cell="A1")
-    side = Side(file=reading.name, submission=submission, validated=validated)
-    if not isinstance(reading, ReportReading):
+    side = Side(file=source.name, submission=submission, validated=validated)
+    if report is None:
         return side
-    return replace(side, results=by_variant(result_rows(reading.results), side.records), version=reading.version)
+    return replace(side, results=by_variant(result_rows(report.results), side.records), version=report.version)
 
 
 def by_variant(rows: Mapping[Name, Mapping[str, Any]], names: Iterable[Name]) -> dict[Name, Mapping[str, Any]]:

@@ -13,7 +13,7 @@ from flexlash.findings import shown
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import ErrorCell, Manner, Percentage, RawSheet, RawValue, Submission
 from flexlash.submission.reading.refusal import Refusal
-from flexlash.submission.reading.wire import from_wire, to_wire
+from flexlash.submission.reading.wire import from_wire
 from flexlash.submission.reading.workbook import Cells, read_workbook
 from flexlash.submission.reading.worksheet import MAXIMUM_COLUMN, MAXIMUM_ROW
 
@@ -37,19 +37,21 @@ _LONGEST_NAME = 255
 _ALTERED = "they were altered or damaged"
 
 
-def read_report(data: bytes, limits: ReadingLimits) -> dict[str, Any]:
-    """Return what a report carries, and its Results, as JSON can hold it; nothing else of it is read.
+def read_report(
+    data: bytes, limits: ReadingLimits, limits_of_file: ReadingLimits
+) -> tuple[Submission, RawSheet | None, str]:
+    """Return the submission that a report carries, its Results and its version; nothing else of it is read.
+
+    `limits` hold for the submission, `limits_of_file` for the report.
 
     Raises Refusal when the workbook is unsafe, is no report, or carries nothing that makes a submission.
     """
-    cells = read_workbook(data, limits, only=(SHEET, RESULTS))
+    cells = read_workbook(data, limits_of_file, only=(SHEET, RESULTS))
     sheets = {sheet.name: sheet for sheet in cells.sheets}
     if SHEET not in sheets:
         raise Refusal("E121" if cells.role == "report" else "E120")
     found = _parsed(sheets[SHEET])
-    carried_submission(found, limits)
-    results = Cells(sheets=[sheets[RESULTS]] if RESULTS in sheets else [])
-    return {"carried": found, "results": to_wire(results)}
+    return carried_submission(found, limits), sheets.get(RESULTS), found["version"]
 
 
 def _parsed(sheet: RawSheet) -> Any:

@@ -1,106 +1,89 @@
-"""Asking the limited process: a file's bytes go in, what it holds comes back, whatever the file does to its reader."""
+"""Asking the limited process: bytes go in, what they hold comes back, whatever they do to their reader."""
 
 from __future__ import annotations
 
-import contextlib
-import json
 import os
 import signal
-import subprocess
-import sys
 import threading
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable
+from concurrent.futures import TimeoutError as TookTooLong
+from concurrent.futures.process import BrokenProcessPool
+from typing import TypeVar
 
-import flexlash
-from flexlash.findings import finding
-from flexlash.submission.reading.child import Answer
+from pebble import ProcessExpired, ProcessPool
+
+from flexlash.submission.reading.limited import Fault, carried_out, prepare
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
+from flexlash.workers import end, started
 
-__all__ = ["Asked", "ask"]
+__all__ = ["ProcessFaultError", "ask", "begin"]
 
-_START = "import sys; sys.path.append(sys.argv[1]); from flexlash.submission.reading.child import main; main()"
-_ENVIRONMENT = {"POLARS_MAX_THREADS": "1", "RUST_BACKTRACE": "0", "OPENBLAS_NUM_THREADS": "1"}
+Result = TypeVar("Result")
+
+_VARIABLES = {"POLARS_MAX_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "RUST_BACKTRACE": "0"}
+"""Each thread reserves memory, which the process has little of."""
+
+_ANSWERING = 30
+"""Seconds beyond its time after which a process that gives no answer never will: it died while it gave one."""
+
+_ONE_AT_A_TIME = threading.Lock()
+
+_POOLS: dict[int, ProcessPool] = {}
+"""The limited process of this one, by this one's number: a copy of this process has none of its threads."""
 
 
-def ask(task: str, data: bytes, limits: ReadingLimits, **facts: Any) -> Answer:
-    """Return what a task of the limited process gives.
+class ProcessFaultError(RuntimeError):
+    """What the limited process was to do has a fault of the program, not of the file."""
 
-    Raises Refusal when the file is refused, exceeds a limit or stops the process, OSError when no process can be
-    started.
+
+def begin() -> ProcessPool:
+    """Have the limited process start, if there is none, and load its libraries while this one does something else."""
+    number = os.getpid()
+    if number not in _POOLS:
+        _POOLS.clear()
+        _POOLS[number] = started(1, prepare, _VARIABLES)
+    return _POOLS[number]
+
+
+def ask(task: Callable[..., Result], limits: ReadingLimits, *arguments: object) -> Result:
+    """Return a task of these arguments, done in the limited process.
+
+    Raises Refusal when the task refuses its file, exceeds a limit or stops the process, ProcessFaultError when the
+    task itself is at fault or no process can be started.
     """
-    return Asked(task, data, limits, **facts).answer()
+    with _ONE_AT_A_TIME:
+        answer = _answer(task, limits, arguments)
+    if isinstance(answer, Refusal):
+        raise answer
+    if isinstance(answer, Fault):
+        raise ProcessFaultError(f"{answer.kind} in the limited process\n{answer.trace}")
+    return answer
 
 
-class Asked:
-    """A request under way; its caller can do something else until it wants the answer."""
-
-    def __init__(self, task: str, data: bytes, limits: ReadingLimits, **facts: Any) -> None:
-        self.limits = limits
-        head = {"task": task, "facts": facts, "limits": limits.as_dictionary()}
-        # -I: neither the working folder nor the user's variables can put other code in the way.
-        self.process = subprocess.Popen(  # noqa: S603
-            [sys.executable, "-I", "-c", _START, str(Path(flexlash.__file__).parent.parent)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=None if os.environ.get("FLEXLASH_DEBUG") == "1" else subprocess.DEVNULL,
-            env={**os.environ, **_ENVIRONMENT},
-        )
-        self.out = b""
-        self.too_slow = False
-        request = json.dumps(head).encode() + b"\n" + data
-        self.talk = threading.Thread(target=self._talk, args=(request,), daemon=True)
-        self.talk.start()
-
-    def _talk(self, request: bytes) -> None:
-        """Hand over the request and collect the answer, within the time allowed."""
-        try:
-            self.out, _ = self.process.communicate(request, timeout=self.limits.seconds)
-        except subprocess.TimeoutExpired:
-            self.too_slow = True
-            self.stop()
-            for pipe in (self.process.stdin, self.process.stdout):
-                with contextlib.suppress(OSError):
-                    pipe.close()  # type: ignore[union-attr]
-
-    def stop(self) -> None:
-        """End the process, whatever it is doing."""
-        self.process.kill()
-        self.process.wait()
-
-    def answer(self) -> Answer:
-        """Wait for the answer and return it; raise Refusal when there is none."""
-        try:
-            self.talk.join()
-        except BaseException:
-            self.stop()
-            raise
-        head, end, payload = self.out.partition(b"\n")
-        if not end:
-            raise self._failure()
-        found, refusal = _understood(head)
-        if refusal:
-            raise refusal
-        return found, payload
-
-    def _failure(self) -> Refusal:
-        """Return what a process that gave no answer died of."""
-        if self.too_slow:
-            return self.limits.exceeded("seconds")
-        if self.process.wait() == -getattr(signal, "SIGXCPU", 0):
-            return self.limits.exceeded("processor_seconds")
-        return Refusal("E118")
-
-
-def _understood(head: bytes) -> tuple[dict[str, Any], Refusal | None]:
-    """Return what the process says and its refusal; nonsense is a refusal as well, since a file may have made it."""
+def _answer(
+    task: Callable[..., Result], limits: ReadingLimits, arguments: tuple[object, ...]
+) -> Result | Refusal | Fault:
+    """Return what the limited process answers, or what it died of."""
     try:
-        found = json.loads(head)
-        if "refusal" not in found:
-            return dict(found), None
-        code, facts = found["refusal"]
-        finding(code, **{"file": "", **facts})
-        return found, Refusal(code, **facts)
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
-        return {}, Refusal("E118")
+        future = begin().schedule(carried_out, (task, limits, arguments), timeout=limits.seconds)
+        return future.result(limits.seconds + _ANSWERING)  # type: ignore[no-any-return]
+    except TookTooLong:
+        if not future.done():
+            _abandon()
+        return limits.exceeded("seconds")
+    except ProcessExpired as lost:
+        processor_time = lost.exitcode == -getattr(signal, "SIGXCPU", 0)
+        return limits.exceeded("processor_seconds") if processor_time else Refusal("E118")
+    except (BrokenProcessPool, OSError) as fault:
+        _abandon()
+        raise ProcessFaultError(f"the process that reads files cannot be started: {fault}") from fault
+    except BaseException:
+        _abandon()
+        raise
+
+
+def _abandon() -> None:
+    """End the limited process, whatever it is doing; the next request starts another."""
+    if pool := _POOLS.pop(os.getpid(), None):
+        end(pool)

@@ -1,132 +1,149 @@
-"""Path → a submission as read: raw cells at their own addresses; no judgement of what they hold."""
+"""Bytes → a submission as read: raw cells at their own addresses; no judgement of what they hold.
+
+All of this is done in the limited process.
+"""
 
 from __future__ import annotations
 
 import hashlib
-from dataclasses import replace
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from flexlash.findings import readable
-from flexlash.submission.reading.carried import NONSENSE, carried_submission
+from flexlash.submission.reading.carried import read_report
 from flexlash.submission.reading.delimited import read_table
 from flexlash.submission.reading.gate import kind_of, read_bytes
-from flexlash.submission.reading.isolated import Asked
+from flexlash.submission.reading.isolated import ask
+from flexlash.submission.reading.libraries import ChangedLibrary
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.parquet import read_parquet
 from flexlash.submission.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored, column_letters
 from flexlash.submission.reading.refusal import Refusal
-from flexlash.submission.reading.wire import from_wire
-from flexlash.submission.reading.workbook import PROPERTY
+from flexlash.submission.reading.workbook import PROPERTY, Cells, read_workbook
 
 __all__ = [
     "PROPERTY",
     "ErrorCell",
     "RawSheet",
     "RawValue",
-    "Reading",
-    "ReportReading",
+    "ReadReport",
+    "Source",
     "Submission",
     "Unstored",
     "column_letters",
+    "limits_of_reports",
+    "of_table",
     "read_submission",
     "read_table",
+    "report_of",
+    "submission_of",
+    "table_of",
 ]
-
 
 _MORE = 4
 """Times more cells, and time, than a submission has that a report may need, which has its results beside it."""
 
 
-class Reading:
-    """A submission being read; where another process does so, its caller can do something else meanwhile.
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """A file to be read: its name as it may be printed, its bytes, and where it stands, if anywhere."""
 
-    `data` takes the place of the file's own bytes; `name` is the file's name as it may be printed. Raises OSError when
-    the file cannot be opened; what else is wrong with it is told by `submission`.
-    """
+    name: str
+    data: bytes
+    path: Path | None = None
 
-    def __init__(self, path: Path, limits: ReadingLimits | None = None, data: bytes | None = None) -> None:
-        self.path = path
-        self.name = readable(path.name)
-        self.limits = limits or ReadingLimits()
-        self.kind = ""
-        self.data = b""
-        self.refusal: Refusal | None = None
-        self.asked: Asked | None = None
-        try:
-            self.data = read_bytes(path, self.limits) if data is None else data
-            self.kind = kind_of(self.data)
-            self.asked = self._ask()
-        except Refusal as refusal:
-            self.refusal = refusal
-
-    def _ask(self) -> Asked | None:
-        """Have the limited process begin, where this kind of file needs it."""
-        return None if self.kind == "csv" else Asked(self.kind, self.data, self.limits)
-
-    def submission(self) -> Submission:
-        """Return the cells, once they are read; raise Refusal when the file is no readable submission."""
-        if self.refusal:
-            raise self.refusal
-        digest = hashlib.sha256(self.data).hexdigest()
-        if self.asked is None:
-            sheets = {"Variants": read_table(self.data, "Variants", self.name, self.limits)}
-            return Submission(name=self.name, sha256=digest, kind=self.kind, sheets=sheets, data=self.data)
-        answer = self.asked.answer()[0]
-        try:
-            cells = from_wire(answer)
-        except (ValueError, TypeError, LookupError, AttributeError) as fault:
-            raise Refusal("E118") from fault
-        return Submission(
-            name=self.name,
-            sha256=digest,
-            kind=self.kind,
-            sheets={sheet.name: sheet for sheet in cells.sheets},
-            modified=cells.modified,
-            role=cells.role,
-            template_version=cells.template_version,
-            data=self.data,
-        )
+    @classmethod
+    def at(cls, path: Path, limits: ReadingLimits) -> Source:
+        """Return what stands at a path; raise OSError when it cannot be opened, Refusal when empty or too large."""
+        return cls(name=readable(path.name), data=read_bytes(path, limits), path=path)
 
 
-class ReportReading(Reading):
-    """A report being read for the submission that it carries.
+@dataclass(frozen=True, kw_only=True)
+class ReadReport:
+    """A report as read: the submission that it carries, its Results, the version of the flexlash that made it."""
 
-    `results` are its Results, None before they are read; `version` is that of the flexlash that made it.
-    """
+    name: str
+    submission: Submission
+    results: RawSheet | None
+    version: str
+    data: bytes = b""
+    path: Path | None = None
 
-    version: str = ""
-    results: RawSheet | None = None
-    carried: Submission | None = None
 
-    def _ask(self) -> Asked | None:
-        if self.kind != "workbook":
+def submission_of(source: Source, limits: ReadingLimits) -> Submission:
+    """Return the cells of a workbook, a text table or a Parquet file; raise Refusal when it is none of them."""
+    with _refusing():
+        kind = kind_of(source.data)
+        cells = _cells(source, kind, limits)
+    return Submission(
+        name=source.name,
+        sha256=hashlib.sha256(source.data).hexdigest(),
+        kind=kind,
+        sheets={sheet.name: sheet for sheet in cells.sheets},
+        modified=cells.modified,
+        role=cells.role,
+        template_version=cells.template_version,
+    )
+
+
+def _cells(source: Source, kind: str, limits: ReadingLimits) -> Cells:
+    if kind == "workbook":
+        return read_workbook(source.data, limits)
+    if kind == "parquet":
+        return read_parquet(source.data, limits)
+    return Cells(sheets=[read_table(source.data, "Variants", source.name, limits)])
+
+
+def table_of(source: Source, name: str, limits: ReadingLimits) -> RawSheet:
+    """Return a text table that stands beside a submission; raise Refusal, by its own name, when it is none."""
+    try:
+        with _refusing():
+            kind_of(source.data, only="csv")
+            return read_table(source.data, name, source.name, limits)
+    except Refusal as refusal:
+        raise of_table(refusal, source.name) from refusal
+
+
+def of_table(refusal: Refusal, file: str) -> Refusal:
+    """Return the refusal of a table that stands beside a submission, by its own name."""
+    if refusal.code.startswith("I"):
+        return Refusal("E101", file=file, found="a csv file is required here")
+    return Refusal(refusal.code, **{"file": file, **refusal.facts})
+
+
+def report_of(source: Source, limits: ReadingLimits) -> ReadReport:
+    """Return what a report carries; raise Refusal when the file is none that carries a submission within limits."""
+    with _refusing():
+        if kind_of(source.data) != "workbook":
             raise Refusal("E120")
-        cells, seconds, processor = (
-            _MORE * limit for limit in (self.limits.cells, self.limits.seconds, self.limits.processor_seconds)
-        )
-        return Asked(
-            "report", self.data, replace(self.limits, cells=cells, seconds=seconds, processor_seconds=processor)
-        )
+        submission, results, version = read_report(source.data, limits, limits_of_reports(limits))
+    return ReadReport(name=source.name, path=source.path, submission=submission, results=results, version=version)
 
-    def submission(self) -> Submission:
-        """Return the submission that the report carries; raise Refusal when the file is no report that carries one."""
-        if self.refusal:
-            raise self.refusal
-        if self.carried is None and self.asked is not None:
-            answer = self.asked.answer()[0]
-            try:
-                self.results = next(iter(from_wire(answer["results"]).sheets), None)
-                self.carried = carried_submission(answer["carried"], self.limits)
-                self.version = answer["carried"]["version"]
-            except NONSENSE as fault:
-                raise Refusal("E118") from fault
-        if self.carried is None:
-            raise Refusal("E118")
-        return self.carried
+
+def limits_of_reports(limits: ReadingLimits) -> ReadingLimits:
+    """Return the limits within which a report of a submission within `limits` can be read."""
+    settings = ("cells", "seconds", "processor_seconds")
+    return replace(limits, **{name: _MORE * getattr(limits, name) for name in settings})
+
+
+@contextmanager
+def _refusing() -> Iterator[None]:
+    """Refuse a file whose reader fails in whatever way: libraries raise a dozen types, and not only exceptions."""
+    try:
+        yield
+    except (Refusal, MemoryError, ChangedLibrary):
+        raise
+    except BaseException as fault:
+        raise Refusal("E118") from fault
 
 
 def read_submission(path: Path, limits: ReadingLimits | None = None) -> Submission:
-    """Return the cells of a workbook, CSV or Parquet file.
+    """Return the cells of a workbook, text table or Parquet file, with its bytes.
 
     Raises OSError when the file cannot be opened and Refusal when it is no readable submission.
     """
-    return Reading(path, limits).submission()
+    limits = limits or ReadingLimits()
+    source = Source.at(path, limits)
+    return replace(ask(submission_of, limits, source, limits), data=source.data)

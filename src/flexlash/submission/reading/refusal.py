@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 __all__ = ["Refusal"]
 
 
 class Refusal(Exception):
     """The submission as a whole cannot be used: a finding code and what its message needs."""
 
-    def __init__(self, code: str, **facts: object) -> None:
+    def __init__(self, code: str, **facts: Any) -> None:
         super().__init__(code)
         self.code = code
         self.facts = facts
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _refusal, (self.code, self.facts)
+
+
+def _refusal(code: str, facts: dict[str, Any]) -> Refusal:
+    """Return a refusal that came from another process."""
+    return Refusal(code, **facts)

@@ -7,7 +7,6 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from flexlash.submission.reading.archive import unpacked
 from flexlash.submission.reading.elements import MAIN, Elements, Listing
@@ -43,30 +42,20 @@ class Leftovers:
     notes: Mapping[str, Sequence[Place]] = field(default_factory=dict)
     things: Mapping[str, int] = field(default_factory=dict)
 
-    @classmethod
-    def of(cls, answer: Mapping[str, Any]) -> Leftovers:
-        """Return what `leftovers` answered."""
-        return cls(
-            formulas={sheet: {(row, column): text for row, column, text in of} for sheet, of in answer["formulas"]},
-            notes={sheet: [(row, column) for row, column in of] for sheet, of in answer["notes"]},
-            things=answer["things"],
-        )
 
-
-def leftovers(data: bytes, limits: ReadingLimits) -> dict[str, Any]:
-    """Return what a workbook holds beside values, as JSON can hold it; raise Refusal when it exceeds a limit."""
+def leftovers(data: bytes, limits: ReadingLimits) -> Leftovers:
+    """Return what a workbook holds beside values; raise Refusal when it exceeds a limit."""
     package = open_package(unpacked(data, limits), limits)
     things: Counter[str] = Counter()
     for part, content in package.parts.items():
         things.update(name for name, pattern in _THINGS if re.fullmatch(rf"(?:.*/)?{pattern}", part))
         if _DRAWING.fullmatch(part):
             things["text box or shape"] += sum(len(Listing(content, limits, shape).found) for shape in _SHAPES)
-    formulas = {sheet.title: _Formulas(package.parts[sheet.part], limits).found for sheet in package.sheets}
-    return {
-        "formulas": [[sheet, [[*place, text] for place, text in found.items()]] for sheet, found in formulas.items()],
-        "notes": [[sheet.title, _notes(package, sheet, limits)] for sheet in package.sheets],
-        "things": {name: count for name, count in sorted(things.items()) if count},
-    }
+    return Leftovers(
+        formulas={sheet.title: _Formulas(package.parts[sheet.part], limits).found for sheet in package.sheets},
+        notes={sheet.title: _notes(package, sheet, limits) for sheet in package.sheets},
+        things={name: count for name, count in sorted(things.items()) if count},
+    )
 
 
 class _Formulas(Elements):

@@ -16,13 +16,13 @@ from flexlash.submission.ledger import Ledger
 from flexlash.submission.reading.isolated import ask
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored, column_letters
-from flexlash.submission.reading.read import read_submission
+from flexlash.submission.reading.read import Source, submission_of
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.spellings import plain
 from flexlash.submission.templating.cell_writer import Formula, writable
 from flexlash.submission.templating.entry_rules import FIRST_ROW
 from flexlash.submission.templating.filling import Entries, Filling
-from flexlash.submission.templating.leftovers import Leftovers, Place
+from flexlash.submission.templating.leftovers import Leftovers, Place, leftovers
 from flexlash.submission.templating.template import TITLES, template_bytes
 from flexlash.submission.validate import validate
 from flexlash.submission.versions import template_version
@@ -59,12 +59,16 @@ def upgraded(path: Path, limits: ReadingLimits | None = None) -> Upgrade:
     Raises OSError when the file cannot be opened and Refusal when it is no readable submission or a newer template.
     """
     limits = limits or ReadingLimits()
-    submission = read_submission(path, limits)
+    return ask(_upgraded, limits, Source.at(path, limits), limits)
+
+
+def _upgraded(source: Source, limits: ReadingLimits) -> Upgrade:
+    submission = submission_of(source, limits)
     if submission.role.startswith(("report", "checked")):
         raise Refusal("E101", found="it is a report or a marked copy made by flexlash")
     if submission.kind != "workbook":
         return refilled(submission, limits)
-    upgrade = refilled(submission, limits, Leftovers.of(ask("leftovers", submission.data, limits)[0]))
+    upgrade = refilled(submission, limits, leftovers(source.data, limits))
     return replace(upgrade, remarks=(*upgrade.remarks, _WITHOUT_FORMAT))
 
 
