@@ -113,9 +113,15 @@ def _variants(folder: Path) -> Made:
         {"disk_inner_radius_mm": 60},
         {"wall_thickness_mm": 0.0016},
         {"backlash_limit_arcmin": 1},
-        {"torque_Nm": 2500},
+        {"torque_Nm": 6500},
         {"mean_radius_mm": 160, "torque_Nm": 100, "cylinder_length_mm": 1600},
         {"mean_radius_mm": 0.08},
+        {"wall_thickness_mm": 450},
+        {"disk_inner_radius_mm": 79.5},
+        {"flexspline_type": "hat", "disk_inner_radius_mm": "", "disk_outer_radius_mm": 80.5},
+        {"wall_thickness_mm": "TBD"},
+        {"notes": "n" * 1001},
+        {"rated_torque_Nm": 1e9},
         {"notes": "moved by a comma"},
     )
     rows[0]["Customer"] = "Example Ltd"
@@ -142,6 +148,8 @@ def _tables(folder: Path) -> Made:
         wall | {"lower_deviation": -0.7, "upper_deviation": 0.7},
         wall | {"lower_deviation": -0.3, "upper_deviation": 0.3},
         wall | {"grade": "2768-m"},
+        wall | {"lower_deviation": 0, "upper_deviation": 5},
+        wall | {"lower_deviation": -1e-9, "upper_deviation": 1e-9},
         {"dimension": "rim_length", "lower_deviation": -1, "upper_deviation": 3},
     ]
     keys = ("dimension", "lower_deviation", "upper_deviation", "deviation_unit", "grade")
@@ -281,6 +289,7 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "overlooked": _overlooked,
     "percentages": _percentages,
     "elastic": _elastic,
+    "numbers as text": lambda folder: _book(folder, {"Variants": _lines([CUP | {"torque_Nm": "800"}])}),
     "report": _marked("flexlash", "report"),
     "no report": lambda folder: (_file(folder, _text([CUP]))[0], {"from_report": True}),
     "older report": lambda folder: (_marked("flexlash", "report")(folder)[0], {"from_report": True}),

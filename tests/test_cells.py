@@ -141,7 +141,7 @@ def test_texts(value, text):
 
 def test_a_text_without_end():
     """A text of more characters than its column takes is refused."""
-    assert as_text("x" * 201, 200) == Fault(code="E212", value="x" * 201)
+    assert as_text("x" * 201, 200) == Fault(code="E222", value="x" * 201, facts={"found": "201", "limit": "200"})
 
 
 PERCENTAGES = {

@@ -197,7 +197,7 @@ REQUIREMENTS = {
     ("Materials", "poisson_ratio"): "a number of at least 0 and at most 0.5",
     ("Tolerances", "lower_deviation"): "a number",
     ("Tolerances", "distribution"): "one of normal, truncated normal, uniform, triangular",
-    ("Tolerances", "limits_sigma"): "a number greater than 0 and at most 100",
+    ("Tolerances", "limits_sigma"): "a number of at least 0.5 and at most 100",
 }
 EVERY = [column for columns in (*ENTRY_SHEETS.values(), SETTINGS, RESULTS, CROSS_CHECK, FINDINGS) for column in columns]
 
@@ -329,7 +329,7 @@ def test_requirement(place):
         ("coverage_percent", "a number in % of at least 50 and at most 99.99"),
         ("method", "one of line, sobol, random"),
         ("samples", "a whole number of at least 1 and at most 4194304"),
-        ("cylinder_calibration", "a number greater than 0 and at most 10"),
+        ("cylinder_calibration", "a number of at least 0.1 and at most 10"),
     ],
 )
 def test_requirement_of_a_setting(key, words):

@@ -26,6 +26,10 @@ REFUSED = {
     "hub beyond the disk": ("cup", {"disk_inner_radius_mm": 90.0}, "E303"),
     "hub as wide as the disk": ("cup", {"disk_inner_radius_mm": 80.0}, "E303"),
     "bolts within the wall": ("hat", {"disk_outer_radius_mm": 75.0}, "E303"),
+    "wall of twice the radius": ("cup", {"wall_thickness_mm": 160.0}, "E330"),
+    "wall in micrometres": ("cylinder", {"wall_thickness_mm": 450.0}, "E330"),
+    "hub as wide as the bore": ("refined", {"disk_inner_radius_mm": 80.2}, "E331"),
+    "bolts within the outer half of the wall": ("hat", {"disk_outer_radius_mm": 80.5}, "E332"),
     "hub fillet wider than the disk": ("refined", {"hub_fillet_radius_mm": 45.0}, "E312"),
     "rim beyond the cylinder": ("refined", {"rim_length_mm": 170.0}, "E305"),
     "rim as long as the cylinder": ("rimmed cylinder", {"rim_length_mm": 160.0}, "E305"),
@@ -65,8 +69,11 @@ REFUSED = {
 SOUND = {
     "nothing": ("cup", {}),
     "wide hub fillet": ("refined", {"hub_fillet_radius_mm": 39.0}),
-    "wide junction fillet": ("refined", {"junction_fillet_radius_mm": 79.0}),
+    "wide junction fillet": ("refined", {"junction_fillet_radius_mm": 70.0}),
     "hub near the disk": ("cup", {"disk_inner_radius_mm": 75.0}),
+    "hub just inside the bore": ("cup", {"disk_inner_radius_mm": 79.1}),
+    "bolts just outside the wall": ("hat", {"disk_outer_radius_mm": 80.9}),
+    "thick wall": ("cup", {"wall_thickness_mm": 70.0}),
     "bore instead": ("cup", {"bore_diameter_mm": 159.0}),
     "radius instead": ("refined", {"mean_radius_mm": 79.0}),
     "rim left out": ("refined", {"rim_length_mm": None, "rim_thickness_mm": None}),
@@ -92,6 +99,7 @@ CASES = {name: case[:2] for name, case in (REFUSED | SOUND).items()}
 ONLY_TRACE = {
     "lost motion of nothing": ({"lost_motion_percent": 0.05}, "E207"),
     "calibration left out": ({"disk_calibration": None}, "E201"),
+    "calibration of nothing": ({"disk_calibration": 1e-300}, "E207"),
     "calibration too large": ({"cylinder_calibration": 11.0}, "E208"),
     "rated torque in words": ({"rated_torque_Nm": "much"}, "E202"),
 }
@@ -195,4 +203,4 @@ def test_every_rule_names_a_finding(trace):
     assert set(rules.values()) <= CATALOGUE.keys()
     assert rules["torque is not a number above 0 N·m"] == "E202"
     assert rules["disk cone angle is not a number from 30 to 90 °"] == "E202"
-    assert rules["cylinder calibration is not a number above 0, at most 10"] == "E202"
+    assert rules["cylinder calibration is not a number from 0.1 to 10"] == "E202"

@@ -21,12 +21,15 @@ FULL = {
 }
 DATA = Path(__file__).parent.parent / "data"
 STEEL = {"youngs_modulus_GPa": 211, "poisson_ratio": 0.3, "yield_MPa": 1080}
-OWN = {"W418", "W419", "W420", "W421", "W422", "W423", "W424"}
+OWN = {"W418", "W419", "W420", "W421", "W422", "W423", "W424", "W440", "W441"}
 
 
 @pytest.fixture
 def judge(table, tmp_path, sound):
-    """Return a function that checks changed rows in a class of the given tolerance rows and gives the outcome."""
+    """Return a function that checks changed rows in a class of the given tolerance rows and gives the outcome.
+
+    Class standard scatters nothing there, so that a class may be as short as a test needs it.
+    """
 
     def judged(*changes, tolerances=(), materials=None):
         options = {}
@@ -35,7 +38,8 @@ def judge(table, tmp_path, sound):
             ("tolerances", ["tolerance_class,dimension,lower_deviation,upper_deviation,deviation_unit,grade"]),
             ("materials", [",".join(columns_of("Materials"))]),
         ):
-            own = {"tolerances": [f"own,{line}" for line in tolerances], "materials": materials or []}[name]
+            classes = [*(f"own,{line}" for line in tolerances), "standard,torque,0,0,,"] if tolerances else []
+            own = {"tolerances": classes, "materials": materials or []}[name]
             if own:
                 options[name] = tmp_path / f"{name}.csv"
                 options[name].write_text("\n".join(text + own), encoding="utf-8")
@@ -112,8 +116,8 @@ def test_a_length_slipped_by_1000(judge, base, key, value, meant):
     times = "too small" if float(meant) > value else "too large"
     assert (found.column, found.suggestion) == (key, meant)
     assert found.message.endswith(f"did you mean {meant}?")
-    assert found.code in {"W420", "E324"}
-    assert found.code == "E324" or f"= {spelled_out(value)} mm is about 1000 times {times} beside" in found.message
+    assert found.code in {"W420", "E324", "E329", "E330"}
+    assert found.code in {"E324", "E330"} or f"= {spelled_out(value)} mm is about 1000 times {times}" in found.message
     assert found.variant == "V1"
     assert outcome.results["status"].to_list() == ["warning" if found.code == "W420" else "error"]
 
@@ -125,7 +129,9 @@ def test_a_length_slipped_by_1000(judge, base, key, value, meant):
         (FULL | {"rim_length_mm": 25000}, "E305", "rim_length_mm", "25"),
         (FULL | {"rim_thickness_mm": 0.0032}, "E306", "rim_thickness_mm", "3.2"),
         (FULL | {"hub_fillet_radius_mm": 3500}, "E312", "hub_fillet_radius_mm", "3.5"),
-        (TUBE | {"mean_radius_mm": 0.08, "wall_thickness_mm": 0.5}, "E324", "mean_radius_mm", "80"),
+        (TUBE | {"mean_radius_mm": 0.08, "wall_thickness_mm": 0.5}, "E329", "mean_radius_mm", "80"),
+        ({"wall_thickness_mm": 1600}, "E330", "wall_thickness_mm", "1.6"),
+        (FULL | {"wall_thickness_mm": 1600}, "E330", "wall_thickness_mm", "1.6"),
     ],
 )
 def test_an_error_at_a_slipped_cell_asks_for_the_meant_value(judge, change, code, column, meant):
@@ -146,7 +152,6 @@ def test_the_limits_of_a_slipped_wall(judge):
         ({"mean_radius_mm": 0.08}, "mean_radius_mm", "80"),
         (FULL | {"mean_radius_mm": 0.08}, "mean_radius_mm", "80"),
         (FULL | {"cylinder_length_mm": 0.16}, "cylinder_length_mm", "160"),
-        (FULL | {"wall_thickness_mm": 1600}, "wall_thickness_mm", "1.6"),
     ],
 )
 def test_a_slip_that_contradicts_a_sound_cell(judge, change, column, meant):
@@ -177,10 +182,10 @@ def test_a_slip_under_a_header_in_another_unit(table, sound, tmp_path):
     row = {"wall_thickness [m]" if key == "wall_thickness_mm" else key: value for key, value in sound.items()}
     exact = tmp_path / "exact.csv"
     exact.write_text("tolerance_class,dimension,grade\nstandard,mean_radius,IT7\n", encoding="utf-8")
-    outcome = check(table([{**row, "wall_thickness [m]": 1.6}]), tolerances=exact)
+    outcome = check(table([{**row, "wall_thickness [m]": 1.6e-6}]), tolerances=exact)
     (found,) = [found for found in outcome.findings if found.level != "info"]
-    assert (found.code, found.value, found.suggestion) == ("W420", "1.6", "0.0016")
-    assert "= 1.6 (1600 mm) is about 1000 times too large" in found.message
+    assert (found.code, found.value, found.suggestion) == ("W420", "1.6e-06", "0.0016")
+    assert "= 1.6e-06 (0.0016 mm) is about 1000 times too small" in found.message
 
 
 @pytest.mark.parametrize(
@@ -355,18 +360,21 @@ def test_a_limit_below_the_nominal_backlash(judge, limit, told):
 @pytest.mark.parametrize("base", [{}, HAT, TUBE], ids=["cup", "hat", "cylinder"])
 @pytest.mark.parametrize(
     ("radius", "torque", "told"),
-    [(80, 1686, False), (80, 1686.1, True), (127, 6080, False), (127, 6080.1, True), (127.1, 6100, False)],
+    [(31.75, 408, False), (31.75, 408.1, True), (17.78, 71, True), (114.3, 11300, False), (114.4, 12000, False)],
 )
 def test_a_torque_above_catalogue_drives(judge, base, radius, torque, told):
-    """More than twice the greatest T2 of the nearest size is told; size 100 has a T2, and beyond it none is listed."""
+    """More than the momentary peak of the nearest size is told, where the part is strong enough for it."""
     outer = {"disk_outer_radius_mm": 1.5 * radius} if base is HAT else {}
     part = {"mean_radius_mm": radius, "torque_Nm": torque, "backlash_limit_arcmin": ""} | outer
+    part |= {"wall_thickness_mm": 0.04 * radius, "cylinder_length_mm": radius}
+    part |= {} if outer or base is TUBE else {"disk_inner_radius_mm": radius / 2}
     outcome = judge(base | part)
     assert _told(outcome) == [("W424", "torque_Nm", "")][:told]
     if told:
-        size, listed = {80: (65, 843), 127: (100, 3040)}[radius]
-        assert f"= {torque:g} N·m exceeds {2 * listed:g} N·m, twice T2 of catalogue drives of size {size}." in (
-            outcome.findings[0].message
+        size, listed = {31.75: (25, 408), 17.78: (14, 70)}[radius]
+        assert (
+            f"= {torque:g} N·m exceeds {listed:g} N·m, the momentary peak allowed to catalogue drives of size {size}"
+            in (outcome.findings[0].message)
         )
 
 
@@ -380,13 +388,13 @@ def test_yield_outweighs_the_catalogue(judge):
     [
         ("b3-160-calibrated", []),
         ("b3-160-proof", ["W423 U5", "W423 U6", "W423 U7"]),
-        ("b3-160-study", ["W423 U7", "W424 D9", "W423 U9", "W423 U10"]),
+        ("b3-160-study", ["W423 U7", "W423 U9", "W423 U10"]),
         ("catalogue-sizes", ["W423 U17"]),
         ("needs-fixing", []),
     ],
 )
 def test_the_examples_are_plausible(name, expected):
-    """The shipped examples have limits below nominal and one torque high for its radius, and nothing else."""
+    """The shipped examples have limits below nominal and nothing else."""
     found = check(DATA / f"{name}.xlsx").findings
     assert [f"{one.code} {one.cell}" for one in found if one.code in OWN] == expected
 
@@ -407,9 +415,9 @@ def test_a_bad_cell_is_no_measure(judge):
 
 def test_findings_change_no_number(judge):
     """A row with every warning gives the numbers of its formula, as a sound row does."""
-    slipped = judge({"wall_thickness_mm": 1600}, tolerances=["poisson_ratio,-0.01,0.01,-,"]).results
+    slipped = judge({"wall_thickness_mm": 0.0016}, tolerances=["poisson_ratio,-0.01,0.01,-,"]).results
     plain = judge({}, tolerances=["poisson_ratio,-0.01,0.01,-,"]).results
-    assert slipped["cylinder_windup_rad"][0] == pytest.approx(plain["cylinder_windup_rad"][0] / 1000, rel=1e-12)
+    assert slipped["cylinder_windup_rad"][0] == pytest.approx(plain["cylinder_windup_rad"][0] * 1000, rel=1e-12)
 
 
 def test_many_slips_are_found_in_linear_time(judge):

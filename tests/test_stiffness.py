@@ -28,22 +28,38 @@ LEAST = {
 """Least K3 [N·m/rad] of each size, read off the catalogue."""
 
 
-GREATEST_TORQUE = {
-    14: 6.9,
-    17: 12.0,
-    20: 25.0,
-    25: 48.0,
-    32: 108.0,
-    40: 196.0,
-    45: 275.0,
-    50: 382.0,
-    58: 598.0,
-    65: 843.0,
-    80: 1570.0,
-    90: 2260.0,
-    100: 3040.0,
+GREATEST_PEAK = {
+    14: 70.0,
+    17: 143.0,
+    20: 191.0,
+    25: 408.0,
+    32: 892.0,
+    40: 1530.0,
+    45: 2483.0,
+    50: 3185.0,
+    58: 4459.0,
+    65: 6175.0,
+    80: 7910.0,
+    90: 11_300.0,
 }
-"""Greatest T2 [N·m] of each size, read off the catalogue."""
+"""Greatest momentary peak torque [N·m] of each size, read off the catalogue."""
+
+ELSEWHERE = {
+    (14, 50): (7, 23, 46),
+    (14, 80): (10, 30, 61),
+    (17, 50): (21, 44, None),
+    (17, 80): (29, 56, 113),
+    (17, 100): (31, 70, 143),
+    (20, 50): (33, 73, 127),
+    (20, 100): (52, 107, 191),
+    (25, 100): (87, 204, 369),
+    (32, 100): (178, 433, 841),
+    (32, 120): (178, 459, 892),
+    (40, 100): (345, None, None),
+    (45, 100): (459, None, None),
+    (65, 100): (1236, None, None),
+}
+"""Rated, repeated-peak and momentary-peak torque [N·m] by size and ratio in other public lists of the same drives."""
 
 
 def of_size(size):
@@ -154,23 +170,45 @@ def test_a_smaller_radius_counts_with_its_cube():
     assert drive.at_radius(0.11) == 1.45e6
 
 
-@pytest.mark.parametrize(("size", "torque"), GREATEST_TORQUE.items())
+@pytest.mark.parametrize(("size", "torque"), GREATEST_PEAK.items())
 def test_torque_of_the_nearest_size(size, torque):
-    """Each size, and a radius a little beside it, has the greatest T2 of that size."""
-    for beside in (size, max(14, size - 0.4), min(100, size + 0.4)):
+    """Each size, and a radius a little beside it, has the greatest momentary peak of that size."""
+    for beside in (size, max(14, size - 0.4), min(90, size + 0.4)):
         assert stiffness.catalogue_torque(beside * 0.00254 / 2) == (size, torque)
 
 
-@pytest.mark.parametrize("size", [0, 13.9, 100.1, 1e300, math.inf, math.nan])
+def test_torques_agree_with_other_lists():
+    """The catalogue's torques are those of other public lists, and rise from rated over repeated to momentary peak."""
+    listed = {
+        (int(row["size"]), int(row["ratio"])): tuple(
+            float(row[f"{name}_Nm"]) for name in ("rated", "repeated_peak", "momentary_peak")
+        )
+        for row in tables.rows("catalogue_torque")
+    }
+    assert all(rated < repeated < momentary for rated, repeated, momentary in listed.values())
+    for drive, torques in ELSEWHERE.items():
+        for one, other in zip(listed[drive], torques, strict=True):
+            assert other in {None, one}, drive
+
+
+@pytest.mark.parametrize("row", tables.rows("catalogue_torque"), ids=lambda row: f"{row['size']}-{row['ratio']}")
+def test_no_listed_torque_is_above_the_limit(row):
+    """No rated or repeated-peak torque of the catalogue is above the limit that its size has."""
+    size, torque = stiffness.catalogue_torque(int(row["size"]) * 0.00254 / 2)
+    assert size == int(row["size"])
+    assert float(row["rated_Nm"]) < float(row["repeated_peak_Nm"]) < torque
+
+
+@pytest.mark.parametrize("size", [0, 13.9, 90.1, 1e300, math.inf, math.nan])
 def test_no_torque_beyond_the_catalogue(size):
-    """Outside sizes 14 to 100 no drive is listed."""
+    """Outside sizes 14 to 90 no drive is listed."""
     assert stiffness.catalogue_torque(size * 0.00254 / 2) is None
 
 
 def test_greatest_torque_where_ratios_differ(monkeypatch):
-    """The greatest T2 over the ratios counts, a blank does not, and a size without any says nothing."""
+    """The greatest peak over the ratios counts, a blank does not, and a size without any says nothing."""
     rows = [("20", "25"), ("20", ""), ("20", "30"), ("40", "")]
-    listed = [{"size": size, "T2_Nm": torque} for size, torque in rows]
+    listed = [{"size": size, "momentary_peak_Nm": torque} for size, torque in rows]
     monkeypatch.setattr(tables, "rows", lambda _: listed)
     stiffness._greatest_torque.cache_clear()
     assert stiffness.catalogue_torque(0.0254) == (20, 30.0)

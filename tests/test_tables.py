@@ -445,7 +445,9 @@ def test_settings_from_a_table_of_texts():
         ("seed", -1, "E207", ""),
         ("seed", 2**32, "E208", ""),
         ("seed", 1.5, "E213", ""),
-        ("seed", "7", "E202", "7"),
+        ("seed", "7", "E220", "7"),
+        ("seed", "TBD", "E221", ""),
+        ("method", "n/a", "E221", ""),
         ("seed", "x", "E202", ""),
         ("coverage_percent", 0, "E207", ""),
         ("coverage_percent", 100, "E208", ""),
@@ -460,6 +462,8 @@ def test_settings_from_a_table_of_texts():
         ("lost_motion_percent", 100.1, "E208", ""),
         ("cylinder_calibration", 0, "E207", ""),
         ("cylinder_calibration", 10.1, "E208", ""),
+        ("cylinder_calibration", 1e-300, "E207", ""),
+        ("disk_calibration", 0.099, "E207", ""),
         ("disk_calibration", -1, "E207", ""),
         ("disk_calibration", "1,1", "E202", "1.1"),
     ],
@@ -469,7 +473,7 @@ def test_a_faulty_setting_stops_everything(name, value, code, suggestion):
     _, ledger = _settings(["lost_motion_percent", 4] if name == "seed" else ["seed", 1], [name, value])
     (found,) = ledger.findings
     assert (found.code, found.cell, found.column, found.suggestion) == (code, "B3", name, suggestion)
-    assert f"Settings!B3 {name} = " in found.message
+    assert f"Settings!B3 {name} {'holds' if code == 'E220' else '='} " in found.message
     assert ledger.everything
 
 
@@ -483,13 +487,34 @@ def test_a_faulty_setting_stops_everything(name, value, code, suggestion):
         ("samples", 2**22),
         ("lost_motion_percent", 100),
         ("cylinder_calibration", 10),
+        ("cylinder_calibration", 0.1),
     ],
 )
 def test_a_setting_at_its_limit(name, value):
-    """A setting exactly at its limit is taken."""
+    """A setting exactly at its limit is taken; an unusual one is told."""
     found, ledger = _settings([name, value])
     assert {**vars(found), **found.calibrations}[name] == value
-    assert ledger.findings == []
+    unusual = name in {"lost_motion_percent", "cylinder_calibration"}
+    assert [one.code for one in ledger.findings] == ["W440"][:unusual]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "usual"),
+    [
+        ("disk_calibration", 0.49, "0.5 to 2.5"),
+        ("disk_calibration", 0.5, ""),
+        ("cylinder_calibration", 2.5, ""),
+        ("cylinder_calibration", 2.51, "0.5 to 2.5"),
+        ("lost_motion_percent", 0.9, "1 to 10 %"),
+        ("lost_motion_percent", 3, ""),
+    ],
+)
+def test_an_unusual_setting(name, value, usual):
+    """A setting that is possible but unusual is used, with a warning that says what is usual."""
+    found, ledger = _settings([name, value])
+    assert {**vars(found), **found.calibrations}[name] == value
+    words = [f"Settings!B2 {name} = {value}: {usual} is usual; used as entered."] if usual else []
+    assert [one.message for one in ledger.findings] == words
 
 
 def test_a_setting_twice():

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +14,7 @@ from flexlash.mechanics.stiffness import catalogue_torque
 from flexlash.submission.headers import plain
 from flexlash.submission.ledger import Slip
 from flexlash.submission.plausibility import settle
+from flexlash.submission.stops import name_waiting
 from flexlash.submission.validate import Validated
 from flexlash.tolerance.limits import Limits, LimitsProblem, limits_of, shape_problems
 from flexlash.tolerance.variation import Variation
@@ -31,13 +33,13 @@ _USUAL_SPEED = 3000 * RPM
 _WIDE, _COARSE = 0.1, 0.02
 """Half the width of the limits as a share of the value: unusual for any dimension, too much for a thin part."""
 
+_EXACT = 1e-6
+"""Half the width of the limits as a share of the value below which no part can be measured."""
+
 _ROUNDING = 1e-9
 """Shares miss a threshold by their last digits; so much counts as on it."""
 
 _THICKNESSES = frozenset({"wall_thickness", "disk_thickness", "disk_hub_thickness", "rim_thickness"})
-_TORQUE_SHARE = 2.0
-"""Torque over the greatest T2 of catalogue drives beyond which it is unusual for the size."""
-
 _CODES = {"impossible": "E314", "untabulated": "E315", "cut": "W405", "overlap": "W409"}
 
 
@@ -60,9 +62,10 @@ def assess(validated: Validated, settings: Settings) -> dict[int, Computed]:
         kept, misshapen = shape_problems(variant, found)
         for problem in (*untabulated, *misshapen):
             _blame_limits(validated, variant, problem)
-        blamed = {problem.dimension for problem in (*untabulated, *misshapen) if problem.kind != "overlap"}
-        _warn_tolerances(validated, variant, rows, {name: one for name, one in found.items() if name not in blamed})
+        kinds = {problem.dimension: problem.kind for problem in (*untabulated, *misshapen) if problem.kind != "overlap"}
+        _judge_widths(validated, variant, rows, found, kinds)
         limits[variant.row] = kept
+    _warn_exact(validated)
     sound = [variant for variant in validated.variants if variant.row not in validated.ledger.rows]
     numbers = nominal_numbers(sound, settings.lost_motion_percent / 100)
     slips = validated.ledger.slips_by_owner()
@@ -77,6 +80,7 @@ def assess(validated: Validated, settings: Settings) -> dict[int, Computed]:
             _warn_stiffness(validated, variant, nominal)
             _warn_limit(validated, variant, nominal)
     settle(validated.ledger)
+    name_waiting(validated)
     return {
         variant.row: Computed(variant=variant, limits=limits[variant.row], nominal=nominal)
         for variant, nominal in zip(sound, numbers, strict=True)
@@ -89,7 +93,6 @@ def _blame_limits(validated: Validated, variant: Variant, problem: LimitsProblem
     column = DIMENSIONS[problem.dimension]
     key = column.key if column.sheet == "Variants" else "material"
     value = variant.dimensions[problem.dimension] / column.si_unit.si
-    details = dict(_details(problem))
     blame(
         validated,
         _CODES[problem.kind],
@@ -98,40 +101,69 @@ def _blame_limits(validated: Validated, variant: Variant, problem: LimitsProblem
         name=column.name,
         value=f"{value:.10g}",
         other=variant.tolerance_class,
-        detail=details.get(problem.kind, ""),
+        detail=problem.detail,
     )
 
 
-def _details(problem: LimitsProblem) -> Iterator[tuple[str, str]]:
-    """Yield the words that say what the limits reach, or which grade has no entry."""
-    yield "untabulated", problem.detail
-    yield "overlap", problem.detail
-    radius = problem.detail in DIMENSIONS
-    yield "impossible", "the other radius of the disk" if radius else problem.detail
-
-
-def _warn_tolerances(
-    validated: Validated, variant: Variant, rows: Sequence[ToleranceRow], limits: dict[str, Limits]
+def _judge_widths(
+    validated: Validated,
+    variant: Variant,
+    rows: Sequence[ToleranceRow],
+    limits: Mapping[str, Limits],
+    kinds: Mapping[str, str],
 ) -> None:
-    """Warn of limits that are wide beside their dimension, and of general tolerances on thin parts."""
+    """Report limits that are wide or hardly any beside their dimension, and general tolerances on thin parts.
+
+    `kinds` are the problems that dimensions have already: beside a cut tail only an absurd width is reported.
+    """
     general = {row.dimension for row in rows if (row.grade or "").startswith("2768")}
+    meant = {row.dimension for row in rows if row.grade or row.lower < row.upper}
     for name, limit in limits.items():
         column, nominal = DIMENSIONS[name], variant.dimensions[name]
-        share = (limit.high - limit.low) / 2 / abs(nominal) if nominal else 0.0
-        coarse = name in general & _THICKNESSES and share > _COARSE + _ROUNDING
-        if column.sheet == "Settings" or not (coarse or share > _WIDE + _ROUNDING):
+        share = (limit.high - limit.low) / 2 / (abs(nominal) or 1.0)
+        code = _width_code(share, coarse=name in general & _THICKNESSES, meant=name in meant)
+        told = kinds.get(name)
+        if not code or (column.sheet == "Settings" and code == "W421") or (told and (told, code) != ("cut", "E333")):
             continue
         unit = "" if column.unit in {"", "-"} else f" {column.unit}"
         blame(
             validated,
-            "W422" if coarse else "W421",
+            code,
             variant,
             column.key if column.sheet == "Variants" else "material",
             name=column.name,
             value=f"{nominal / column.si_unit.si:.10g}{unit}",
             other=variant.tolerance_class,
-            detail=f"{100 * share:.3g}",
+            detail=f"{share:.2g}" if code == "W441" else f"{100 * share:.3g}",
         )
+
+
+def _width_code(share: float, *, coarse: bool, meant: bool) -> str:
+    """Return the code of what is wrong with half a width of limits, as a share of the value; empty for nothing."""
+    if share > 1 + _ROUNDING:
+        return "E333"
+    if coarse and share > _COARSE + _ROUNDING:
+        return "W422"
+    if share > _WIDE + _ROUNDING:
+        return "W421"
+    return "W441" if meant and share < _EXACT else ""
+
+
+def _warn_exact(validated: Validated) -> None:
+    """Warn once of each class that has no row for dimensions which `standard` scatters and one of its variants has."""
+    table, standard = validated.tolerances, validated.classes.get("standard", [])
+    if table is None:
+        return
+    exact: dict[str, set[str]] = defaultdict(set)
+    for variant in validated.variants:
+        name = plain(variant.tolerance_class)
+        scattered = limits_of(variant, standard)[0].keys() - {row.dimension for row in validated.classes[name]}
+        exact[name] |= scattered
+    for row, name in table.frame.select("row", "tolerance_class").iter_rows():
+        if left := exact.pop(plain(name or ""), None):
+            words = ", ".join(column.plain_name for one, column in DIMENSIONS.items() if one in left)
+            place: dict[str, Any] = {"sheet": table.sheet, "cell": table.address(row, "tolerance_class")}
+            validated.ledger.add("W438", column="tolerance_class", value=name, detail=words, **place)
 
 
 def _blame_backlash(validated: Validated, variant: Variant, nominal: Numbers, slipped: Sequence[Slip]) -> None:
@@ -152,7 +184,7 @@ def _blame_backlash(validated: Validated, variant: Variant, nominal: Numbers, sl
 
 
 def _warn_strength(validated: Validated, variant: Variant, nominal: Numbers) -> None:
-    """Warn when the part yields or buckles, or else when its torque is unusual for its size."""
+    """Warn when the part yields or buckles, or else when its torque is above what drives of its size may bear."""
     stress, strength = nominal["von_mises"], variant.yield_strength
     if strength is not None and _exceeds(stress, strength):
         facts = {"value": _megapascals(stress), "other": strength / 1e6, "detail": nominal["governing_section"]}
@@ -161,12 +193,8 @@ def _warn_strength(validated: Validated, variant: Variant, nominal: Numbers) -> 
     if _exceeds(shear, buckling):
         blame(validated, "W411", variant, "torque_Nm", value=_megapascals(shear), other=_megapascals(buckling))
     listed, torque = catalogue_torque(float(nominal["mean_radius"] or 0)), variant.dimensions["torque"]
-    if (
-        listed
-        and torque > _TORQUE_SHARE * listed.torque
-        and not (_exceeds(stress, strength) or _exceeds(shear, buckling))
-    ):
-        facts = {"value": f"{torque:.10g}", "other": _TORQUE_SHARE * listed.torque, "detail": listed.size}
+    if listed and torque > listed.torque and not (_exceeds(stress, strength) or _exceeds(shear, buckling)):
+        facts = {"value": f"{torque:.10g}", "other": listed.torque, "detail": listed.size}
         blame(validated, "W424", variant, "torque_Nm", name=_name("torque_Nm"), **facts)
 
 

@@ -284,9 +284,9 @@ CATALOGUE = _rules(
     (
         "E212",
         "value not usable",
-        "{place} {name} = {value}: {requirement} is required; this is not finite, or too long.",
-        "Type a number that Excel can show, or a shorter text.",
-        "Infinity, not-a-number, names over 200 and remarks over 1,000 characters cannot be used.",
+        "{place} {name} = {value}: {requirement} is required; this is not finite.",
+        "Type a number that Excel can show.",
+        "Infinity and numbers too large for a computer, such as 1e400, cannot be used.",
     ),
     (
         "E213",
@@ -324,6 +324,30 @@ CATALOGUE = _rules(
         "Write the unit in the header's brackets, then delete the row of units.",
         "A row of units below the headers is read only to compare it with them. Rows that hold a value in such a "
         "column are not computed, since it is not certain which of the two holds.",
+    ),
+    (
+        "E220",
+        "numbers stored as text",
+        "{place} {name} holds {suggestion} as text, not as a number.",
+        "In Excel (green corner): select the cells, click the sign beside them, Convert to Number. Or let flexlash "
+        "check --apply-fixes mend all of them.",
+        "Exports, a leading apostrophe and cells formatted as Text store a number as text. It looks the same, but no "
+        "program reckons with it.",
+    ),
+    (
+        "E221",
+        "no value",
+        '{place} {name} = "{value}" stands for no value; {detail}.',
+        "Leave the cell blank where the column is optional; else enter the value.",
+        "n/a, TBD, a dash, a question mark and what programs write for a missing number say that there is no value. A "
+        "blank optional cell means its default; the template's notes say which.",
+    ),
+    (
+        "E222",
+        "text too long",
+        "{place} {name} has {found} characters; at most {limit} are allowed.",
+        "Shorten the text.",
+        "Names may have 200 characters, notes and sources 1,000.",
     ),
     (
         "E301",
@@ -531,6 +555,36 @@ CATALOGUE = _rules(
         "not computed; the cell that it contradicts is probably right.",
     ),
     (
+        "E330",
+        "no inside",
+        "{place} {name} = {value} mm: less than twice the mean radius, {other} mm, is required, else there is no bore.",
+        "Check the wall and the mean radius, and their units.",
+        "The mean radius is that of the middle of the wall, so half the wall reaches inwards from it. A wall of twice "
+        "the mean radius fills the bore: the part is a rod, not a flexspline.",
+    ),
+    (
+        "E331",
+        "hub fills the bore",
+        "{place} {name} = {value} mm: less than the radius of the bore, {other} mm, is required.",
+        "Check for a diameter entered as a radius.",
+        "A cup's disk spans from its hub to the wall. A hub as wide as the bore leaves no disk between them.",
+    ),
+    (
+        "E332",
+        "flange within the wall",
+        "{place} {name} = {value} mm: more than the outer radius of the wall, {other} mm, is required.",
+        "Check for another radius entered here, or for a radius where a diameter is meant.",
+        "A hat's flange spans from the wall outwards to its bolt circle. One that ends within the wall is no flange.",
+    ),
+    (
+        "E333",
+        "tolerance wider than the value",
+        "{place} {name} = {value}: class {other} allows ± {detail} % of it; at most 100 % is possible.",
+        "Check the deviations and their unit in Tolerances.",
+        "Half the distance between the limits exceeds the entered value, so that the unit of the deviations cannot be "
+        "meant: micrometres entered as millimetres, for instance.",
+    ),
+    (
         "W401",
         "disk does not meet the wall",
         "{place} {name} = {value} mm differs from the mean radius {other} mm.",
@@ -708,10 +762,12 @@ CATALOGUE = _rules(
     (
         "W424",
         "torque above catalogue drives",
-        "{place} {name} = {value} N·m exceeds {other} N·m, twice T2 of catalogue drives of size {detail}.",
+        "{place} {name} = {value} N·m exceeds {other} N·m, the momentary peak allowed to catalogue drives of size "
+        "{detail}.",
         "Check torque and radius, and their units.",
-        "T2 is the torque where the second slope of a drive's stiffness ends in a maker's catalogue, the greatest of "
-        "its ratios. It is no rated torque, but a torque above twice T2 is unusual for the size.",
+        "Harmonic Drive SE lists for each size and ratio a rated torque, a limit for repeated and one for momentary "
+        "peaks: 87, 204 and 369 N·m at size 25 and ratio 100. The nearest size (the mean diameter over 2.54 mm) "
+        "counts, with its greatest momentary peak over the ratios; sizes 14 to 90 are listed.",
     ),
     (
         "W425",
@@ -756,6 +812,32 @@ CATALOGUE = _rules(
         "Write decimal points, or separate the columns by semicolons; if the digits are meant, add a word.",
         "In a table separated by commas 40,5 without quotes fills two cells. Where the last cell of a row was left "
         "out, the row has as many cells as there are headers, and the digits of the decimals stand in its last column.",
+    ),
+    (
+        "W438",
+        "class leaves dimensions exact",
+        '{place}: class "{value}" has no row for {detail}, which class standard scatters; taken as exact.',
+        "Add a row for each; for a dimension that is meant to be exact, a row with both deviations 0.",
+        "A dimension without a row in a variant's class does not scatter, so that a class of your own which lists the "
+        "walls alone takes the scatter of the material away. Only dimensions that a variant of the class has count.",
+    ),
+    (
+        "W440",
+        "unusual value",
+        "{place} {name} = {value}: {detail} is usual; used as entered.",
+        "Check the value and its unit.",
+        "Moduli and densities are compared with real materials, lengths with the mean radius, the rated torque with "
+        "the torque, the other values with what flexsplines have. A calibration of 0.5 to 2.5 covers fillets, rims and "
+        "play under the teeth; makers state the lost motion at 3 to 4 % of the rated torque; limits lie 1 to 12 "
+        "standard deviations from the middle.",
+    ),
+    (
+        "W441",
+        "tolerance too narrow to measure",
+        "{place} {name} = {value}: class {other} allows only ± {detail} of it.",
+        "Check the deviations and their unit in Tolerances; for an exact dimension enter 0 for both.",
+        "Half the distance between the limits is less than a millionth of the entered value, closer than parts can be "
+        "measured: often a deviation in metres in a column of millimetres.",
     ),
     (
         "I501",

@@ -44,7 +44,7 @@ _LENGTH = {"quantity": "length", **_POSITIVE}
 _FILLET = {"quantity": "length", "minimum": 0, "group": "Refinements"}
 _TORQUE = {"quantity": "torque", **_POSITIVE}
 _STRESS = {"quantity": "stress", **_POSITIVE}
-_FACTOR = {"quantity": "ratio", "unit": "-", **_POSITIVE, "maximum": 10, "default": 1}
+_FACTOR = {"quantity": "ratio", "unit": "-", "minimum": 0.1, "maximum": 10, "default": 1}
 _PERCENT = {"quantity": "ratio", "unit": "%", **_POSITIVE}
 
 VARIANTS = (
@@ -361,7 +361,7 @@ TOLERANCES = (
         "limits_sigma",
         "Limits at ± sigma",
         "Normal distributions: the limits lie this many standard deviations from the middle. Blank: 3.",
-        **_POSITIVE,
+        minimum=0.5,
         maximum=100,
         default=3,
     ),

@@ -13,6 +13,7 @@ from flexlash.limit_verdict import BOUNDS, VERDICTS, misses_limit
 from flexlash.number_words import ALL_UNITS, angle_words, rounded, share_words
 from flexlash.outcome import Outcome
 from flexlash.submission.mending.repair import Repair
+from flexlash.submission.stops import waiting_rows
 
 __all__ = [
     "angle_words",
@@ -83,7 +84,7 @@ def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
     ready = f"{computed} of {rows} rows {'computed' if ran else 'ready'}" if rows else "nothing to compute"
     fixes = to_fix_words(outcome.findings)
     warned = counted(counts["warnings"], "warning") if counts["warnings"] else ""
-    yield f"{name}: {'; '.join(filter(None, [ready, fixes, warned]))}."
+    yield f"{name}: {'; '.join(filter(None, [ready, fixes, *_waiting_words(outcome), warned]))}."
     if ran and rows:
         yield from limit_lines(outcome)
         yield from spread_notes(outcome)
@@ -94,6 +95,13 @@ def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
     if not ran:
         quoted = f'"{name}"' if " " in name else name
         yield f"Next: {_next_step(counts, quoted)}"
+
+
+def _waiting_words(outcome: Outcome) -> Iterator[str]:
+    """Yield how many rows wait for which faulty material or class."""
+    for one in waiting_rows(outcome.validated) if outcome.validated else ():
+        rows = counted(len(one.rows), "row")
+        yield f"{rows} wait{'s' if len(one.rows) == 1 else ''} for {one.kind} {shown(one.name, longest=_NAME)}"
 
 
 def _written(outcome: Outcome, path: Path) -> str:

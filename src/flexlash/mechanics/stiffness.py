@@ -85,22 +85,22 @@ def catalogue_stiffness(mean_radius: float) -> WholeDrive | None:
 
 
 class DriveTorque(NamedTuple):
-    """A catalogue drive: its size [-] and the greatest torque listed where its second slope ends [N·m]."""
+    """A catalogue drive: its size [-] and the greatest momentary peak torque allowed over its ratios [N·m]."""
 
     size: int
     torque: float
 
 
 def catalogue_torque(mean_radius: float) -> DriveTorque | None:
-    """Nearest drive of a maker's catalogue with the torque T2 where its second slope ends [N·m]; None if unlisted.
+    """Nearest drive of a maker's catalogue with its momentary peak torque [N·m]; None if unlisted.
 
-    Equation: size = 2 r_m / 2.54 mm; T2 the greatest over the listed ratios
+    Equation: size = 2 r_m / 2.54 mm; the limit for momentary peak torque, the greatest over the listed ratios
     Arguments: mean_radius r_m of the wall [m].
-    Valid: sizes 14 to 100; T2 ends a slope of the stiffness curve and is no rated torque.
-    Source: a maker's catalogue, `tables/catalogue_stiffness.csv`.
+    Valid: sizes 14 to 90. Rated and repeated-peak torques are lower.
+    Source: a maker's catalogue, `tables/catalogue_torque.csv`.
 
     >>> catalogue_torque(0.08), catalogue_torque(0.2)
-    (DriveTorque(size=65, torque=843.0), None)
+    (DriveTorque(size=65, torque=6175.0), None)
     """
     listed = _greatest_torque()
     nearest = _nearest(mean_radius, listed)
@@ -141,26 +141,27 @@ _SLACK = 1e-9
 @cache
 def _least_stiffness() -> dict[int, float | None]:
     """Return the least K3 [N·m/rad] of each size over its ratios, None where none is listed."""
-    return {size: min(listed, default=None) for size, listed in _listed("K3_Nm_per_rad").items()}
+    return {size: min(listed, default=None) for size, listed in _listed("catalogue_stiffness", "K3_Nm_per_rad").items()}
 
 
 @cache
 def _greatest_torque() -> dict[int, float | None]:
-    """Return the greatest T2 [N·m] of each size over its ratios, None where none is listed."""
-    return {size: max(listed, default=None) for size, listed in _listed("T2_Nm").items()}
+    """Return the greatest momentary peak torque [N·m] of each size over its ratios, None where none is listed."""
+    listed = _listed("catalogue_torque", "momentary_peak_Nm")
+    return {size: max(torques, default=None) for size, torques in listed.items()}
 
 
 @cache
 def _first_slopes() -> dict[int, tuple[float, float]]:
     """Return the least K1 [N·m/rad] of each size over its ratios, and the torque T1 [N·m] up to which it holds."""
-    torques = _listed("T1_Nm")
-    return {size: (min(listed), min(torques[size])) for size, listed in _listed("K1_Nm_per_rad").items()}
+    torques, slopes = (_listed("catalogue_stiffness", column) for column in ("T1_Nm", "K1_Nm_per_rad"))
+    return {size: (min(listed), min(torques[size])) for size, listed in slopes.items()}
 
 
-def _listed(column: str) -> dict[int, list[float]]:
+def _listed(table: str, column: str) -> dict[int, list[float]]:
     """Return the entries of a catalogue column by size, over the ratios that have one."""
     found: dict[int, list[float]] = defaultdict(list)
-    for row in tables.rows("catalogue_stiffness"):
+    for row in tables.rows(table):
         entries = found[int(row["size"])]
         if row[column]:
             entries.append(float(row[column]))

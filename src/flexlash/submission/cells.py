@@ -6,13 +6,14 @@ import datetime
 import math
 import re
 import unicodedata
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 from flexlash.columns import Column
 from flexlash.submission.number_texts import Meant, Measure, meant_number
 from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Percentage, RawValue, Unstored
 
-__all__ = ["Fault", "as_number", "as_text"]
+__all__ = ["Fault", "as_number", "as_text", "is_no_value", "no_value_facts"]
 
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII)
 _TYPED_THIS_YEAR = 2020
@@ -23,12 +24,43 @@ _DATES = (datetime.date, datetime.time, datetime.timedelta)
 
 @dataclass(frozen=True, kw_only=True)
 class Fault:
-    """Why a cell is not usable: code, what to show of it, what was probably meant, what can only be meant."""
+    """Why a cell is not usable: code, what to show of it, what was probably meant, what can only be meant.
+
+    `facts` are what else its message names.
+    """
 
     code: str
     value: object
     suggestion: str = ""
     repair: str | float | None = None
+    facts: Mapping[str, object] = field(default_factory=dict)
+
+
+_NO_VALUES = frozenset({
+    "", "nan", "na", "n/a", "n.a", "#n/a", "tbd", "tbc", "tba", "null", "none", "nil", "?", "-", "/", "k.a",
+    "not available", "not applicable",
+})  # fmt: skip
+"""Texts, in small letters and without repeated signs or last dots, by which people and programs say: no value."""
+
+
+def is_no_value(text: str) -> bool:
+    """Return whether a text says that there is no value, such as NaN, n/a, TBD, - or ??.
+
+    >>> is_no_value("N/A"), is_no_value("--"), is_no_value("0")
+    (True, True, False)
+    """
+    bare = unicodedata.normalize("NFKC", text).strip().casefold().rstrip(".… ")
+    for dash in "\u2010\u2011\u2012\u2013\u2014\u2212":
+        bare = bare.replace(dash, "-")
+    return bool(text.strip()) and (bare in _NO_VALUES or bool(_ONE_SIGN.fullmatch(bare)))
+
+
+_ONE_SIGN = re.compile(r"([?/-])\1*")
+
+
+def no_value_facts(column: Column) -> dict[str, str]:
+    """Return what a finding says to a text that stands for no value in a column."""
+    return {"detail": f"{column.requirement} is required" if column.required else "leave the cell blank instead"}
 
 
 def _not_an_entry(value: RawValue) -> Fault | None:
@@ -69,16 +101,25 @@ def as_number(
     if isinstance(value, int | float):
         number = float(value)
         return number if math.isfinite(number) else Fault(code="E212", value=value)
+    return _from_text(value, column, measure, readable=from_text)
+
+
+def _from_text(value: RawValue, column: Column | None, measure: Measure | None, *, readable: bool) -> float | Fault:
+    """Return a text as a number where texts are `readable` as such; else what it says or probably means."""
     text = str(value).strip()
-    readable = text.replace(",", ".") if isinstance(value, CommaNumber) else text
-    if from_text and _NUMBER.fullmatch(readable) and not isinstance(value, DoubtfulNumber):
-        number = float(readable)
-        return number if math.isfinite(number) else Fault(code="E212", value=text)
+    number = text.replace(",", ".") if isinstance(value, CommaNumber) else text
+    doubtful = isinstance(value, DoubtfulNumber)
+    if readable and _NUMBER.fullmatch(number) and not doubtful:
+        found = float(number)
+        return found if math.isfinite(found) else Fault(code="E212", value=text)
+    if column and is_no_value(text):
+        return Fault(code="E221", value=value, facts=no_value_facts(column))
     meant = meant_number(str(value), column, measure) if column else Meant()
-    if not isinstance(value, DoubtfulNumber):
-        return Fault(code="E202", value=value, suggestion=meant.words, repair=meant.repair)
-    words = f"{text.replace('.', ',')} with this table's decimal comma" if meant.words == text else meant.words
-    return Fault(code="E202", value=value, suggestion=words)
+    if doubtful:
+        words = f"{text.replace('.', ',')} with this table's decimal comma" if meant.words == text else meant.words
+        return Fault(code="E202", value=value, suggestion=words)
+    is_number = _NUMBER.fullmatch(text) and meant.repair is not None
+    return Fault(code="E220" if is_number else "E202", value=value, suggestion=meant.words, repair=meant.repair)
 
 
 def _percentage(value: Percentage, column: Column | None, measure: Measure | None) -> float | Fault:
@@ -104,4 +145,6 @@ def as_text(value: RawValue, longest: int) -> str | Fault:
         return str(int(value)) if value == int(value) else repr(value)
     spaced = " ".join(unicodedata.normalize("NFC", str(value)).split())
     text = "".join(character for character in spaced if unicodedata.category(character) not in {"Cc", "Cf", "Cs"})
-    return text if len(text) <= longest else Fault(code="E212", value=text)
+    if len(text) <= longest:
+        return text
+    return Fault(code="E222", value=text, facts={"found": f"{len(text):,}", "limit": f"{longest:,}"})

@@ -10,15 +10,17 @@ import polars as pl
 from pandera.errors import SchemaErrors
 
 from flexlash.columns import Column, columns_of
+from flexlash.submission.cells import is_no_value, no_value_facts
 from flexlash.submission.ledger import Ledger, Slip
 from flexlash.submission.plausibility import find_slips, tell_contradiction
 from flexlash.submission.relations import RELATIONS, Relation
 from flexlash.submission.spellings import misspelt, spelt_alike, suggested
 from flexlash.submission.tabulate import Table
+from flexlash.submission.unusual import report_unusual
 
 __all__ = ["check_cells", "check_relations"]
 
-_OF_SIZES = frozenset({"E303", "E305", "E306", "E312", "E313", "E328"})
+_OF_SIZES = frozenset({"E303", "E305", "E306", "E312", "E313", "E328", "E330", "E331", "E332"})
 """Relations between lengths, which a slipped unit breaks."""
 
 
@@ -76,8 +78,9 @@ def check_cells(table: Table, ledger: Ledger) -> None:
             continue
         value = table.frame[key][index]
         table.faulty.add((row, key))
+        is_none = check == "E209" and is_no_value(value)
         ledger.add(
-            "E201" if check == "not_nullable" else check,
+            "E201" if check == "not_nullable" else "E221" if is_none else check,
             sheet=table.sheet,
             cell=table.address(row, key),
             column=key,
@@ -85,11 +88,13 @@ def check_cells(table: Table, ledger: Ledger) -> None:
             requirement=column.requirement,
             choices=", ".join(column.choices),
             value=table.entered(row, key),
-            suggestion=suggested(value, column.choices) if check == "E209" else "",
+            suggestion=suggested(value, column.choices) if check == "E209" and not is_none else "",
             repair=misspelt(value, spelt_alike(column.choices)) if check == "E209" else None,
+            **no_value_facts(column),
             rows=[row] if table.schema == "Variants" else [],
         )
     find_slips(table, ledger)
+    report_unusual(table, ledger)
 
 
 def check_relations(table: Table, ledger: Ledger) -> None:

@@ -13,14 +13,14 @@ from flexlash.submission.headers import plain
 from flexlash.submission.ledger import Ledger, Slip
 from flexlash.submission.tabulate import Table
 
-__all__ = ["find_slips", "settle", "tell_contradiction"]
+__all__ = ["SHARES", "find_slips", "settle", "tell_contradiction"]
 
 _THOUSAND = 1000.0
 _RADII = {"mean_radius_mm": 1.0, "bore_diameter_mm": 0.5}
 _REACH = (0.5, 4000.0)
 """Mean radius [mm] that can be meant; a thousandth or a thousandfold of 5 to 300 mm lies outside."""
 
-_SHARES = {
+SHARES = {
     "cylinder_length_mm": (0.1, 20.0),
     "wall_thickness_mm": (0.005, 0.2),
     "disk_thickness_mm": (0.005, 0.5),
@@ -35,8 +35,8 @@ _SHARES = {
 """What a length can be in mean radii. A length has slipped when it lies outside, and inside if shifted by 1000; each
 span is at most 250-fold, so that between the two there is room where nothing is said."""
 
-_DOUBTS = frozenset({"W418", "W419"})
-"""Warnings about proportions, which come before the errors that limits and numbers show."""
+_DOUBTS = frozenset({"W405", "W418", "W419", "W440"})
+"""Warnings about unusual values and far tails, which come before the errors that limits and numbers show."""
 
 _TORQUES = ("torque_Nm", "rated_torque_Nm")
 _UNBEARABLE_SHEAR = 1500.0
@@ -105,7 +105,7 @@ def _facts(slip: Slip) -> dict[str, Any]:
 
 
 def settle(ledger: Ledger) -> None:
-    """Leave each cell its error alone: drop the doubts about its proportions, and record only the other slips."""
+    """Leave each cell its error alone: drop the doubts about its value, and record only the other slips."""
     wrong = {(found.sheet, found.cell) for found in ledger.findings if found.level == "error"}
     ledger.findings = [
         found for found in ledger.findings if found.code not in _DOUBTS or (found.sheet, found.cell) not in wrong
@@ -191,7 +191,7 @@ def _length_factors(record: Mapping[str, Any]) -> dict[str, float]:
     key, radius = _radius(record)
     if radius is None:
         return {}
-    lengths = {name: record[name] for name in _SHARES if record[name]}
+    lengths = {name: record[name] for name in SHARES if record[name]}
     readings: list[dict[str, float | None]] = []
     for factor in (1.0, _THOUSAND, 1 / _THOUSAND):
         if _REACH[0] <= radius * factor <= _REACH[1]:
@@ -207,7 +207,7 @@ def _length_factors(record: Mapping[str, Any]) -> dict[str, float]:
 
 def _factor(key: str, share: float) -> float | None:
     """Return by what a length, as a share of the mean radius, must be multiplied; None where nothing helps."""
-    least, most = _SHARES[key]
+    least, most = SHARES[key]
     factor = 1.0 if least <= share <= most else _THOUSAND if share < least else 1 / _THOUSAND
     return factor if least <= share * factor <= most else None
 

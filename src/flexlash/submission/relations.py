@@ -60,6 +60,11 @@ def radius(row: Mapping[str, Any]) -> float:
     return float(given) if given is not None else (row["bore_diameter_mm"] + row["wall_thickness_mm"]) / 2
 
 
+def _bore(row: Mapping[str, Any]) -> float:
+    """Return the radius of the bore [mm]."""
+    return radius(row) - float(row["wall_thickness_mm"]) / 2
+
+
 def _outer(row: Mapping[str, Any]) -> float:
     given = row["disk_outer_radius_mm"]
     return float(given) if given is not None else radius(row)
@@ -86,6 +91,9 @@ def _fillet_on_a_cone(key: str) -> Relation:
 
 
 _WALL_SHARE = pl.col("wall_thickness_mm") / (2 * _RADIUS)
+_HAS_BORE = _BORE > _EDGE
+_HAS_DISK = pl.min_horizontal(_BORE - _EDGE, _OUTER) > _INNER
+_OUTSIDE = _RADIUS + pl.col("wall_thickness_mm") / 2
 
 RELATIONS = (
     Relation(
@@ -135,6 +143,24 @@ RELATIONS = (
         },
     ),
     Relation(
+        code="E330",
+        key="wall_thickness_mm",
+        broken=~_HAS_BORE,
+        facts=lambda row: {"other": 2 * radius(row)},
+    ),
+    Relation(
+        code="E331",
+        key="disk_inner_radius_mm",
+        broken=_is("cup") & _HAS_BORE & (_INNER < _OUTER) & (_INNER >= _BORE - _EDGE),
+        facts=lambda row: {"other": _bore(row)},
+    ),
+    Relation(
+        code="E332",
+        key="disk_outer_radius_mm",
+        broken=_is("hat") & _HAS_BORE & (_OUTER > _INNER) & (_OUTSIDE + _EDGE >= _OUTER),
+        facts=lambda row: {"other": radius(row) + row["wall_thickness_mm"] / 2},
+    ),
+    Relation(
         code="E304",
         key="rim_thickness_mm",
         broken=pl.col("rim_length_mm").is_not_null() & pl.col("rim_thickness_mm").is_null(),
@@ -175,7 +201,7 @@ RELATIONS = (
     Relation(
         code="E312",
         key="hub_fillet_radius_mm",
-        broken=_is("cup") & (_INNER < _OUTER) & (pl.col("hub_fillet_radius_mm") > _OUTER - _INNER + _EDGE),
+        broken=_is("cup") & _HAS_DISK & (pl.col("hub_fillet_radius_mm") > _OUTER - _INNER + _EDGE),
         facts=lambda row: {"other": _outer(row) - row["disk_inner_radius_mm"]},
     ),
     Relation(
@@ -190,8 +216,8 @@ RELATIONS = (
     Relation(
         code="E328",
         key="junction_fillet_radius_mm",
-        broken=_is("cup") & (pl.col("junction_fillet_radius_mm") > _BORE + _EDGE),
-        facts=lambda row: {"other": radius(row) - row["wall_thickness_mm"] / 2},
+        broken=_is("cup") & _HAS_BORE & (pl.col("junction_fillet_radius_mm") > _BORE + _EDGE),
+        facts=lambda row: {"other": _bore(row)},
     ),
     Relation(
         code="W416",
@@ -199,10 +225,10 @@ RELATIONS = (
         broken=_is("cup")
         & (pl.col("junction_fillet_radius_mm") > 0)
         & (pl.col("junction_fillet_radius_mm") <= _BORE + _EDGE)
-        & (pl.col("disk_inner_radius_mm") < pl.min_horizontal(_BORE, _OUTER))
+        & _HAS_DISK
         & (_HUB_FILLET <= _OUTER - _INNER + _EDGE)
         & (pl.col("junction_fillet_radius_mm") + _HUB_FILLET > _BORE - pl.col("disk_inner_radius_mm") + _EDGE),
-        facts=lambda row: {"other": radius(row) - row["wall_thickness_mm"] / 2 - row["disk_inner_radius_mm"]},
+        facts=lambda row: {"other": _bore(row) - row["disk_inner_radius_mm"]},
     ),
     Relation(
         code="W401",
@@ -221,10 +247,8 @@ RELATIONS = (
     Relation(
         code="W419",
         key="disk_inner_radius_mm",
-        broken=_is("cup")
-        & (pl.col("disk_inner_radius_mm") < _OUTER)
-        & (pl.col("disk_inner_radius_mm") > _HUB_SHARE * _BORE + _EDGE),
-        facts=lambda row: {"other": radius(row) - row["wall_thickness_mm"] / 2},
+        broken=_is("cup") & _HAS_DISK & (pl.col("disk_inner_radius_mm") > _HUB_SHARE * _BORE + _EDGE),
+        facts=lambda row: {"other": _bore(row)},
     ),
     Relation(
         code="W418",
@@ -239,7 +263,7 @@ RELATIONS = (
     Relation(
         code="W403",
         key="wall_thickness_mm",
-        broken=pl.col("wall_thickness_mm") / _RADIUS > 0.2,  # noqa: PLR2004
+        broken=_HAS_BORE & (pl.col("wall_thickness_mm") / _RADIUS > 0.2),  # noqa: PLR2004
         facts=lambda row: {"value": f"{row['wall_thickness_mm'] / radius(row):.2g}"},
     ),
     Relation(

@@ -8,13 +8,14 @@ from typing import Any
 from flexlash import tables
 from flexlash.column import Column
 from flexlash.columns import DIMENSIONS, ENTRY_SHEETS, MATERIALS, SETTINGS, TOLERANCES
-from flexlash.submission.cells import Fault, as_number, as_text
+from flexlash.submission.cells import Fault, as_number, as_text, is_no_value, no_value_facts
 from flexlash.submission.grade_texts import meant_grade
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.number_texts import is_both_ways
 from flexlash.submission.reading.read import RawSheet, RawValue
 from flexlash.submission.spellings import misspelt, plain, spelt_alike, suggested
 from flexlash.submission.tabulate import Table
+from flexlash.submission.unusual import unusual_words
 from flexlash.tolerance.grades import is_grade
 from flexlash.units import find_unit
 from flexlash.variant import Material, Settings, ToleranceRow
@@ -209,6 +210,8 @@ def _check_grade(table: Table, ledger: Ledger, record: dict[str, Any], column: C
     row, grade = record["row"], record["grade"]
     if any(record[key] is not None for key in _DEVIATIONS):
         _blame(table, ledger, "E316", row, "grade", value=grade)
+    elif is_no_value(grade):
+        _blame(table, ledger, "E221", row, "grade", value=grade, **no_value_facts(_TOLERANCE["grade"]))
     elif not is_grade(grade):
         meant = meant_grade(grade)
         repair = None if grade.isdecimal() else meant or None
@@ -251,9 +254,13 @@ def settings_of(table: Table, ledger: Ledger) -> Settings:
         value = _setting_value(column, raw, from_text=table.numbers_are_texts)
         if not isinstance(value, Fault):
             values[name] = value
+            if isinstance(value, float) and (usual := unusual_words(column, value)):
+                cell = table.address(row, "value")
+                told = {"value": f"{value:.10g}", "detail": usual, "name": name}
+                ledger.add("W440", sheet=table.sheet, cell=cell, column=name, **told)
             continue
         facts: dict[str, Any] = {"suggestion": value.suggestion, "repair": value.repair}
-        facts |= {"requirement": column.requirement, "choices": ", ".join(column.choices)}
+        facts |= {"requirement": column.requirement, "choices": ", ".join(column.choices), **value.facts}
         cell = table.address(row, "value")
         ledger.add(value.code, sheet=table.sheet, cell=cell, column=name, name=name, value=value.value, **facts)
     faulty = any((row, "setting") in table.faulty for row in table.frame["row"])
@@ -270,6 +277,8 @@ def _setting_value(column: Column, raw: RawValue, *, from_text: bool) -> str | f
     text = as_text(raw, longest=200)
     if isinstance(text, Fault) or text.casefold() in column.choices:
         return text if isinstance(text, Fault) else text.casefold()
+    if is_no_value(text):
+        return Fault(code="E221", value=text, facts=no_value_facts(column))
     repair = misspelt(text, spelt_alike(column.choices))
     return Fault(code="E209", value=text, suggestion=suggested(text, column.choices), repair=repair)
 

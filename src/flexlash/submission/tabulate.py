@@ -223,7 +223,7 @@ def _typed(cell: _Cell, ledger: Ledger) -> str | float | None:
         cell.table.faulty.add((cell.row, column.key))
         rows = [cell.row] if cell.table.schema == "Variants" else []
         meant = {"suggestion": found.suggestion, "repair": found.repair}
-        facts = {**meant, "requirement": column.requirement, **cell.facts}
+        facts = {**meant, "requirement": column.requirement, **found.facts, **cell.facts}
         ledger.add(found.code, value=found.value, rows=rows, **facts)
         return None
     if isinstance(found, float):

@@ -10,6 +10,7 @@ from typing import Any
 import polars as pl
 
 from flexlash.columns import columns_of
+from flexlash.submission.cells import is_no_value, no_value_facts
 from flexlash.submission.checks import check_cells, check_relations
 from flexlash.submission.entry_sheets import entry_sheets, tell_misspelt_sheets, tell_second_tables
 from flexlash.submission.ledger import Ledger
@@ -42,13 +43,15 @@ _NEAR = 0.7
 class Validated:
     """A submission after validation.
 
-    `table` is Variants as read, one row per submitted variant; `variants` are the rows without an error;
+    `table` is Variants as read, one row per submitted variant; `tolerances` is Tolerances, None where the built-in
+    class is used; `variants` are the rows of Variants without an error;
     `ledger` holds the findings and what they spoil, for the stages that add engineering findings;
     `header_rows` the row of each entry sheet's headers.
     """
 
     ledger: Ledger
     table: Table | None = None
+    tolerances: Table | None = None
     variants: list[Variant] = field(default_factory=list)
     classes: dict[str, list[ToleranceRow]] = field(default_factory=dict)
     materials: dict[str, Material] = field(default_factory=dict)
@@ -86,7 +89,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
         tell_manner(sheet, ledger)
     tell_additions(submission, {schema: table.heading for schema, table in tables.items()}, ledger)
     _fill_tables(result, submission, sheets.keys() | misspelt_sheets, tables)
-    result.table = tables.get("Variants")
+    result.table, result.tolerances = tables.get("Variants"), tables.get("Tolerances")
     if result.table is not None:
         _check_rows(result, result.table)
         tell_unused_classes(tables.get("Tolerances"), result.table, result.classes, ledger)
@@ -152,12 +155,19 @@ def _check_references(table: Table, ledger: Ledger, key: str, code: str, names: 
             continue
         spelling = plain(value)
         if spelling not in known:
-            _blame(table, ledger, code, row, key, value=value, **meant[value])
+            _blame(table, ledger, row=row, key=key, value=value, **_unknown(key, code, value, meant))
         elif spelling in faulty:
             ledger.rows.add(row)
         elif value != known[spelling]:
             name = known[spelling]
             _blame(table, ledger, "I504", row, key, value=value, suggestion=name, repair=name)
+
+
+def _unknown(key: str, code: str, value: str, meant: Mapping[str, Mapping[str, str | None]]) -> dict[str, Any]:
+    """Return code and facts of a name that no row of Materials or Tolerances has."""
+    if is_no_value(value):
+        return {"code": "E221", **no_value_facts(columns_of("Variants")[key])}
+    return {"code": code, **meant[value]}
 
 
 class _Meant(dict[str, dict[str, str | None]]):

@@ -124,9 +124,8 @@ def shape_problems(
             problems.append(LimitsProblem(kind="cut", dimension=name, detail="0"))
         else:
             kept[name] = limit
-    sides = _disk_sides(variant)
-    if sides:
-        problems.extend(_keep_disk_open(variant, kept, *sides))
+    for gap in _gaps(variant):
+        problems.extend(_keep_open(variant, kept, gap))
     problems.extend(_overlaps(variant, limits))
     once = {(problem.kind, problem.dimension): problem for problem in problems}
     return kept, tuple(once.values())
@@ -163,49 +162,100 @@ def _ends(variant: Variant, limits: Mapping[str, Limits], name: str) -> tuple[fl
     return variant.dimensions[name], variant.dimensions[name]
 
 
+@dataclass(frozen=True, kw_only=True)
+class _Gap:
+    """What must stay above 0, or at it where `may_close`: a sum of dimensions, each with its factor.
+
+    A part whose limits close the gap is impossible: the first dimension then reaches what `barrier` names.
+    """
+
+    factors: Mapping[str, float]
+    barrier: str
+    may_close: bool = False
+
+
+def _mean_radius(variant: Variant) -> dict[str, float]:
+    """Return what makes up the mean radius, each dimension with its factor."""
+    if "bore_diameter" in variant.dimensions:
+        return {"bore_diameter": 0.5, "wall_thickness": 0.5}
+    return {"mean_radius": 1.0}
+
+
+def _side_of_wall(variant: Variant, half: float) -> dict[str, float]:
+    """Return what makes up the bore's radius (`half` −0.5) or the wall's outer radius (0.5)."""
+    factors = _mean_radius(variant)
+    factors["wall_thickness"] = factors.get("wall_thickness", 0.0) + half
+    return {name: factor for name, factor in factors.items() if factor}
+
+
+def _difference(one: Mapping[str, float], other: Mapping[str, float], first: str) -> dict[str, float]:
+    """Return one sum less another; the dimension `first` stands first."""
+    factors = {first: 0.0, **one}
+    for name, factor in other.items():
+        factors[name] = factors.get(name, 0.0) - factor
+    factors[first] = one.get(first, 0.0) - other.get(first, 0.0)
+    return {name: factor for name, factor in factors.items() if factor}
+
+
+def _gaps(variant: Variant) -> Iterator[_Gap]:
+    """Yield what a part needs to have an inside: a bore, and a free disk or flange beside its wall."""
+    bore, outside = _side_of_wall(variant, -0.5), _side_of_wall(variant, 0.5)
+    if "bore_diameter" not in variant.dimensions:
+        yield _Gap(factors=_difference(bore, {}, "wall_thickness"), barrier="the axis: no bore is left")
+    sides = _disk_sides(variant)
+    if sides is None:
+        return
+    inner, outer = sides
+    if variant.dimensions.keys() >= {"disk_inner_radius", "disk_outer_radius"}:
+        yield _Gap(factors=_difference(outer, inner, "disk_inner_radius"), barrier="the other radius of the disk")
+    if variant.flexspline_type == "hat":
+        factors = _difference(outer, outside, "disk_outer_radius")
+        yield _Gap(factors=factors, barrier="the wall: no flange is left")
+        return
+    yield _Gap(factors=_difference(bore, inner, "disk_inner_radius"), barrier="the wall: no disk is left")
+    if "junction_fillet_radius" in variant.dimensions:
+        fillet = {"junction_fillet_radius": 1.0}
+        factors = _difference(bore, fillet, "junction_fillet_radius")
+        yield _Gap(factors=factors, barrier="beyond the axis", may_close=True)
+
+
 def _disk_sides(variant: Variant) -> tuple[dict[str, float], dict[str, float]] | None:
     """Return what makes up inner and outer radius of the disk, each dimension with its factor; None without disk."""
     if variant.flexspline_type == "cylinder":
         return None
-    mean_radius = {"mean_radius": 1.0}
-    if "bore_diameter" in variant.dimensions:
-        mean_radius = {"bore_diameter": 0.5, "wall_thickness": 0.5}
+    mean_radius = _mean_radius(variant)
     inner = {"disk_inner_radius": 1.0} if "disk_inner_radius" in variant.dimensions else mean_radius
     outer = {"disk_outer_radius": 1.0} if "disk_outer_radius" in variant.dimensions else mean_radius
     return inner, outer
 
 
-def _keep_disk_open(
-    variant: Variant, limits: dict[str, Limits], inner: Mapping[str, float], outer: Mapping[str, float]
-) -> Iterator[LimitsProblem]:
-    """Yield whether the hub reaches the disk's edge; cut the far tails that would let it.
+def _keep_open(variant: Variant, limits: dict[str, Limits], gap: _Gap) -> Iterator[LimitsProblem]:
+    """Yield whether limits close a gap; cut the far tails that would.
 
     Each normal keeps as much of its tail as its share in the gap between the facing limits.
     """
-    facing_inner = sum(factor * _ends(variant, limits, name)[1] for name, factor in inner.items())
-    facing_outer = sum(factor * _ends(variant, limits, name)[0] for name, factor in outer.items())
-    gap = facing_outer - facing_inner
-    if gap <= 0:
-        yield LimitsProblem(kind="impossible", dimension=next(iter(inner)), detail=next(iter(outer)))
+    ends = [factor * _ends(variant, limits, name)[factor < 0] for name, factor in gap.factors.items()]
+    room, slack = sum(ends), _ROUNDING * sum(map(abs, ends))
+    if room < -slack or (room <= slack and not gap.may_close):
+        yield LimitsProblem(kind="impossible", dimension=next(iter(gap.factors)), detail=gap.barrier)
         return
     tails = {}
-    for factors, upwards in ((inner, True), (outer, False)):
-        for name, factor in factors.items():
-            limit = limits.get(name)
-            if limit and limit.distribution == "normal":
-                tail = limit.reach[1] - limit.high if upwards else limit.low - limit.reach[0]
-                if tail > 0:
-                    tails[name] = (tail, factor, upwards)
-    total = sum(tail * factor for tail, factor, _ in tails.values())
-    if total < gap:
+    for name, factor in gap.factors.items():
+        limit = limits.get(name)
+        if limit and limit.distribution == "normal":
+            tail = limit.reach[1] - limit.high if factor < 0 else limit.low - limit.reach[0]
+            if tail > 0:
+                tails[name] = (tail, factor)
+    total = sum(tail * abs(factor) for tail, factor in tails.values())
+    if total < room:
         return
-    for name, (tail, _, upwards) in tails.items():
+    for name, (tail, factor) in tails.items():
         limit = limits[name]
         low, high = limit.cut or _bounds(name)
-        kept = tail * gap / total
-        cut = (low, min(high, limit.high + kept)) if upwards else (max(low, limit.low - kept), high)
+        kept = tail * max(room, 0.0) / total
+        cut = (low, min(high, limit.high + kept)) if factor < 0 else (max(low, limit.low - kept), high)
         limits[name] = replace(limit, cut=cut)
-        yield LimitsProblem(kind="cut", dimension=name, detail="the other disk radius")
+        yield LimitsProblem(kind="cut", dimension=name, detail=gap.barrier)
 
 
 def _overlaps(variant: Variant, limits: Mapping[str, Limits]) -> Iterator[LimitsProblem]:

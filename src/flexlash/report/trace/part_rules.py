@@ -196,9 +196,13 @@ def _shape(inputs: _Inputs) -> Iterator[_Rule]:
     """Yield that one dimension leaves room for another."""
     is_cup, wall, length = inputs.is_type("cup"), inputs["wall_thickness"], inputs["cylinder_length"]
     inner, outer, rim = inputs["disk_inner_radius"], inputs["disk_outer_radius"], inputs["rim_length"]
-    hub, junction = inputs["hub_fillet_radius"], inputs["junction_fillet_radius"]
+    hub, junction, mean = inputs["hub_fillet_radius"], inputs["junction_fillet_radius"], inputs["mean_radius"]
+    bore = mean - wall / 2
+    yield _rule("E330", "wall is not below twice the mean radius: no bore", bore <= _EDGE)
     has_disk = inputs.is_type("cup", "hat")
     yield _rule("E303", "disk inner radius is not below disk outer radius", has_disk, inner >= outer)
+    yield _rule("E331", "hub is as wide as the bore", is_cup, inner >= bore - _EDGE)
+    yield _rule("E332", "flange ends within the wall", inputs.is_type("hat"), outer <= mean + wall / 2 + _EDGE)
     yield _rule("E305", "tooth rim is not shorter than the cylinder", inputs.is_given("rim_length"), rim >= length)
     thin = inputs.is_given("rim_thickness"), inputs["rim_thickness"] < wall
     yield _rule("E306", "tooth rim is thinner than the wall", *thin)
@@ -206,5 +210,4 @@ def _shape(inputs: _Inputs) -> Iterator[_Rule]:
     yield _rule("E312", "hub fillet is wider than the disk", is_cup, inner < outer, too_wide)
     too_long = length > rim, junction + rim > length + _EDGE
     yield _rule("E313", "junction fillet and tooth rim exceed the length", is_cup, junction > 0, *too_long)
-    too_wide = junction > inputs["mean_radius"] - wall / 2 + _EDGE
-    yield _rule("E328", "junction fillet is wider than the bore", is_cup, too_wide)
+    yield _rule("E328", "junction fillet is wider than the bore", is_cup, junction > bore + _EDGE)

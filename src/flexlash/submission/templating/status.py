@@ -52,15 +52,22 @@ def _type(row: Row) -> str:
     return str(row.get("flexspline_type") or "cup").lower()
 
 
-def _radius(row: Row) -> float:
-    given = row.get("mean_radius_mm")
-    return float(given or (row.get("bore_diameter_mm") or 0) / 2 + (row.get("wall_thickness_mm") or 0) / 2)
+def _bore(row: Row) -> float:
+    """Return the radius of the bore; what is not given counts as 0, as in the formula."""
+    mean, bore = row.get("mean_radius_mm") or 0.0, row.get("bore_diameter_mm") or 0.0
+    return float(max(mean - row["wall_thickness_mm"] / 2, bore / 2))
 
 
 def _hub_too_large(row: Row, _: Sequence[Row]) -> bool:
-    return _type(row) == "cup" and row["disk_inner_radius_mm"] >= (row.get("disk_outer_radius_mm") or _radius(row))
+    bore = _bore(row)
+    return _type(row) == "cup" and row["disk_inner_radius_mm"] >= min(row.get("disk_outer_radius_mm") or bore, bore)
 
 
+def _flange_too_small(row: Row, _: Sequence[Row]) -> bool:
+    return _type(row) == "hat" and row["disk_outer_radius_mm"] <= _bore(row) + row["wall_thickness_mm"]
+
+
+_BORE = "MAX({mean_radius_mm}-{wall_thickness_mm}/2,{bore_diameter_mm}/2)"
 _CUP = 'OR({flexspline_type}="",{flexspline_type}="cup")'
 _RULES = (
     *(_missing(column.key) for column in VARIANTS if column.required),
@@ -119,10 +126,19 @@ _RULES = (
         holds=lambda row, _: not _blank(row, "disk_thickness_exponent") and not _blank(row, "disk_thickness_mm"),
     ),
     _Rule(
+        text="wall fills the bore",
+        excel=f"{_BORE}<=0",
+        holds=lambda row, _: _bore(row) <= 0,
+    ),
+    _Rule(
         text="hub larger than the disk",
-        excel=f'AND({_CUP},{{disk_inner_radius_mm}}>=IF({{disk_outer_radius_mm}}<>"",{{disk_outer_radius_mm}},'
-        'IF({mean_radius_mm}<>"",{mean_radius_mm},{bore_diameter_mm}/2+{wall_thickness_mm}/2)))',
+        excel=f"AND({_CUP},{{disk_inner_radius_mm}}>=MIN({{disk_outer_radius_mm}},{_BORE}))",
         holds=_hub_too_large,
+    ),
+    _Rule(
+        text="flange ends within the wall",
+        excel=f'AND({{flexspline_type}}="hat",{{disk_outer_radius_mm}}<={_BORE}+{{wall_thickness_mm}})',
+        holds=_flange_too_small,
     ),
     _Rule(
         text="rim length and thickness belong together",
