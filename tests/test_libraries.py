@@ -9,6 +9,7 @@ import sys
 import openpyxl
 import pytest
 
+from flexlash.submission.marking import marked_copy
 from flexlash.submission.reading.libraries import ChangedLibrary, require_known_libraries
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
@@ -81,3 +82,10 @@ def test_a_damaged_file_is_still_damaged():
     """A part that no library could read stays the file's own fault."""
     with pytest.raises(Refusal, match="E102"):
         read_workbook(book_of(**{"xl/styles.xml": "<styleSheet"}), ReadingLimits())
+
+
+def test_a_changed_library_makes_no_workbook_unmarkable(monkeypatch):
+    """A workbook that a changed library cannot mark is not called unusual."""
+    monkeypatch.delattr("openpyxl.reader.excel.ExcelReader.read_theme")
+    with pytest.raises(ChangedLibrary, match="openpyxl"):
+        marked_copy(book_of(), [], "own")

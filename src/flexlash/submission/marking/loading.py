@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import datetime
 import io
+import re
 import types
 import warnings
 import zipfile
@@ -24,12 +25,35 @@ from openpyxl.worksheet.cell_range import MultiCellRange
 from openpyxl.xml.constants import ARC_CORE, SHARED_STRINGS, SHEET_MAIN_NS
 from openpyxl.xml.functions import iterparse
 
+from flexlash.submission.reading.archive import packed, unpacked
+from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.package import open_package
 from flexlash.submission.reading.workbook import PROPERTY
 
-__all__ = ["fresh", "load"]
+__all__ = ["fresh", "load", "usual"]
 
 _DATE = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=None)
+_STRICT_DRAWING = b"http://purl.oclc.org/ooxml/drawingml/"
+_DRAWING = b"http://schemas.openxmlformats.org/drawingml/2006/"
+_PERCENT = re.compile(rb'="(-?\d+(?:\.\d+)?)%"')
 _STRING = f"{{{SHEET_MAIN_NS}}}si"
+
+
+def usual(data: bytes, limits: ReadingLimits) -> bytes:
+    """Return a workbook as reading sees it: the Strict dialect in the usual one's names, its parts where they belong.
+
+    openpyxl finds no sheet in a workbook of the Strict dialect, and does not say so.
+    """
+    package = open_package(unpacked(data, limits), limits)
+    return packed({name: _usual_drawing(part) for name, part in package.parts.items()}) if package.mended else data
+
+
+def _usual_drawing(part: bytes) -> bytes:
+    """Return a part with the Strict dialect's names and percentages of drawings, and of themes, as usual ones."""
+    if _STRICT_DRAWING not in part:
+        return part
+    part = part.replace(_STRICT_DRAWING, _DRAWING)
+    return _PERCENT.sub(lambda share: b'="%d"' % round(1000 * float(share[1])), part)
 
 
 def load(data: bytes) -> Workbook:

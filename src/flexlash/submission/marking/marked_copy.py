@@ -9,13 +9,16 @@ from openpyxl import Workbook
 
 from flexlash.findings import Finding
 from flexlash.submission.marking.findings_sheet import counted, write_findings
-from flexlash.submission.marking.loading import fresh, load
+from flexlash.submission.marking.loading import fresh, load, usual
 from flexlash.submission.marking.losses import losses
 from flexlash.submission.marking.marks import MOST_NOTES, guilty_cells, mark, unmark
 from flexlash.submission.marking.packing import pack
 from flexlash.submission.marking.record import Record, take_record, write_record
 from flexlash.submission.marking.table_sheets import add_table
+from flexlash.submission.reading.libraries import require_known_libraries
+from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import RawSheet
+from flexlash.submission.reading.refusal import Refusal
 
 __all__ = ["MarkedCopy", "findings_workbook", "marked_copy", "marked_table"]
 
@@ -30,11 +33,22 @@ class MarkedCopy:
     lost: tuple[str, ...]
 
 
-def marked_copy(data: bytes, findings: Sequence[Finding], name: str) -> MarkedCopy:
+def marked_copy(data: bytes, findings: Sequence[Finding], name: str, limits: ReadingLimits | None = None) -> MarkedCopy:
     """Return the user's own workbook with its guilty cells marked; marks of an earlier copy give way to the new ones.
 
-    Raises whatever openpyxl raises on a workbook that it cannot read or write.
+    Raises Refusal for a workbook that is refused, ChangedLibrary when none could be marked, and whatever openpyxl
+    raises on one that it cannot read or write.
     """
+    try:
+        return _copied(usual(data, limits or ReadingLimits()), findings, name)
+    except (MemoryError, Refusal):
+        raise
+    except Exception:
+        require_known_libraries()
+        raise
+
+
+def _copied(data: bytes, findings: Sequence[Finding], name: str) -> MarkedCopy:
     workbook = load(data)
     earlier = take_record(workbook)
     unmark(workbook, earlier.marks)

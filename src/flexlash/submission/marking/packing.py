@@ -18,9 +18,9 @@ from openpyxl.drawing.spreadsheet_drawing import SpreadsheetDrawing
 from openpyxl.packaging.custom import StringProperty
 from openpyxl.worksheet._writer import WorksheetWriter
 from openpyxl.writer.excel import ExcelWriter
-from openpyxl.xml.constants import ARC_STYLE, ARC_WORKBOOK, XML_NS
+from openpyxl.xml.constants import ARC_WORKBOOK, XML_NS
 
-from flexlash.submission.marking.schema_order import fonts_in_order
+from flexlash.submission.marking.schema import put_right
 from flexlash.submission.reading.workbook import PROPERTY
 
 __all__ = ["CHECKED", "pack"]
@@ -29,7 +29,6 @@ CHECKED = "checked"
 """What the document property says of a marked copy."""
 
 _DATA = "sheetData"
-_EMPTY_RUN = b"<a:r><a:t /></a:r>"
 _OWNER = re.compile(rb'localSheetId="(\d+)"')
 _RETURN = {"\r": "&#13;"}
 
@@ -120,12 +119,7 @@ class _Archive(zipfile.ZipFile):
         entry = zipfile.ZipInfo(str(zinfo_or_arcname))
         entry.compress_type = zipfile.ZIP_DEFLATED
         entry.create_system = 3
-        if "/charts/" in entry.filename:
-            # A paragraph without text gets an empty run by openpyxl, which reads that as the word None.
-            data = data.replace(_EMPTY_RUN, b"")
-        elif entry.filename == ARC_WORKBOOK:
+        if entry.filename == ARC_WORKBOOK:
             # openpyxl numbers the sheets that names belong to as if there were no chart sheets.
             data = _OWNER.sub(lambda match: b'localSheetId="%d"' % self.tabs[int(match[1])], data)
-        elif entry.filename == ARC_STYLE:
-            data = fonts_in_order(data)
-        super().writestr(entry, data)
+        super().writestr(entry, put_right(entry.filename, data) if isinstance(data, bytes) else data)

@@ -45,14 +45,16 @@ def _changed(what: str) -> ChangedLibrary:
 
 
 def _written_and_read() -> object:
-    """Return the cells of a small workbook after writing, marking and reading it."""
+    """Return the cells of a small workbook after marking, loading, writing and reading it."""
     from flexlash.findings import Finding
-    from flexlash.submission.marking.marked_copy import marked_copy, marked_table
+    from flexlash.submission.marking.loading import load
+    from flexlash.submission.marking.marked_copy import marked_table
+    from flexlash.submission.marking.packing import pack
     from flexlash.submission.reading.sheet_cells import SheetCells
 
     fault = Finding(level="error", code="E202", sheet="Own", cell="B1", message="Wrong.", fix="Fix it.")
     data = marked_table({"Own": RawSheet(name="Own", rows={1: dict(_CELLS)})}, [fault], "own")
-    data = marked_copy(data, [fault], "own").data
+    data = pack(load(data))
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         own = archive.read("xl/worksheets/sheet2.xml")
     return list(SheetCells(data, None).rows(own))
