@@ -1,6 +1,7 @@
 """Mending: a few cells of a workbook or table change, every other byte stays, and a list says what was done."""
 
 import io
+import time
 import zipfile
 
 import openpyxl
@@ -14,6 +15,7 @@ from flexlash.submission.mending.splices import before_end, cell_spans, cell_xml
 from flexlash.submission.products import mended_role
 from flexlash.submission.reading.delimited import read_table
 from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.raw import RawSheet
 from flexlash.submission.reading.workbook import read_workbook
 
 LIMITS = ReadingLimits()
@@ -178,6 +180,16 @@ def test_tables_keep_their_manner(what):
     """A mended table keeps rows, delimiter and decimal sign."""
     data, expected = TABLES[what]
     assert mended_table(read_table(data, "Variants"), [_repair("B2", 1.6)]).decode() == expected
+
+
+def test_a_long_and_wide_table_is_written_soon():
+    """A cell far down and one far to the right cost no more than their rows."""
+    rows = {1: {1: "a", 256: "b"}, 2: {1: "1,6"}, 50_000: {1: "x"}}
+    start = time.process_time()
+    data = mended_table(RawSheet(name="Variants", rows=rows), [_repair("A2", 1.6), _repair("C2", "new")])
+    assert time.process_time() - start < 6
+    assert data.splitlines()[1] == b"1.6,,new" + b"," * 253
+    assert data.count(b"\r\n") == 50_000
 
 
 def test_a_row_of_more_cells_than_headers_stays_one():

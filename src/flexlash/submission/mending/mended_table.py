@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import csv
 import io
+from collections import defaultdict
 from collections.abc import Sequence
 
 from flexlash.submission.mending.repair import Repair
-from flexlash.submission.reading.raw import ErrorCell, RawSheet, RawValue, column_letters
+from flexlash.submission.reading.raw import ErrorCell, RawSheet, RawValue, column_number
 
 __all__ = ["mended_table"]
 
@@ -18,14 +19,19 @@ def mended_table(sheet: RawSheet, repairs: Sequence[Repair]) -> bytes:
     Rows, columns, delimiter and decimal sign are those of the submission.
     """
     comma = bool(sheet.manner and sheet.manner.comma_number)
-    now = {repair.cell: _written(repair.value, comma=comma) for repair in repairs}
+    now: dict[int, dict[int, str]] = defaultdict(dict)
+    for repair in repairs:
+        letters = repair.cell.rstrip("0123456789")
+        now[int(repair.cell[len(letters) :])][column_number(letters)] = _written(repair.value, comma=comma)
     width = max((max(cells) for cells in sheet.rows.values()), default=0)
-    letters = [column_letters(place) for place in range(1, width + 1)]
     buffer = io.StringIO(newline="")
     writer = csv.writer(buffer, delimiter=sheet.manner.delimiter if sheet.manner else ",", lineterminator="\r\n")
     for number in range(1, max(sheet.rows, default=0) + 1):
-        cells = sheet.rows.get(number, {})
-        own = [now.get(f"{letter}{number}", _text(cells.get(place))) for place, letter in enumerate(letters, start=1)]
+        own = [""] * width
+        for place, cell in sheet.rows.get(number, {}).items():
+            own[place - 1] = _text(cell)
+        for place, text in now.get(number, {}).items():
+            own[place - 1] = text
         # A row of one cell more than the headers stays one: its numbers may be split by decimal commas.
         writer.writerow([*own, ""] if sheet.manner and number in sheet.manner.longer else own)
     return buffer.getvalue().encode("utf-8-sig")
@@ -37,8 +43,6 @@ def _written(value: str | float, *, comma: bool) -> str:
     return repr(value).replace(".", ",") if comma else repr(value)
 
 
-def _text(value: RawValue | None) -> str:
+def _text(value: RawValue) -> str:
     """Return a cell as it stood."""
-    if value is None:
-        return ""
     return value.text if isinstance(value, ErrorCell) else str(value)
