@@ -22,6 +22,7 @@ CORE = {
     "findings",
     "limit_verdict",
     "number_words",
+    "parameters",
     "result_columns",
     "stamps",
     "tables",

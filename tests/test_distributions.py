@@ -268,11 +268,11 @@ def test_other_shapes_are_told_apart():
     [
         (lambda: Normal(mean=0, sd=0), "sd = 0 must be a finite number greater than 0"),
         (lambda: Normal(mean=0, sd=-1), "sd = -1 must be a finite number greater than 0"),
-        (lambda: Normal(mean=0, sd=math.inf), "sd = inf must be a finite number greater than 0"),
-        (lambda: Normal(mean=0, sd=math.nan), "sd = nan must be a finite number greater than 0"),
+        (lambda: Normal(mean=0, sd=math.inf), "sd = inf: a finite number is required"),
+        (lambda: Normal(mean=0, sd=math.nan), "sd = nan: a finite number is required"),
         (lambda: TruncatedNormal(0, 0, -1, 1), "sd = 0 must be a finite number greater than 0"),
         (lambda: TruncatedNormal(0, 1, 1, 1), "low = 1 must be less than high = 1"),
-        (lambda: TruncatedNormal(0, 1, math.nan, 1), "low = nan must be less than high = 1"),
+        (lambda: TruncatedNormal(0, 1, math.nan, 1), "low = nan: a number is required"),
         (lambda: TruncatedNormal(0, 1, 50, 51), "low and high leave no part of the normal distribution"),
         (lambda: TruncatedNormal(0, 1, -51, -50), "low and high leave no part of the normal distribution"),
         (lambda: Uniform(low=1, high=1), "low = 1 must be less than high = 1"),
@@ -280,7 +280,7 @@ def test_other_shapes_are_told_apart():
         (lambda: Triangular(low=1, high=0), "low = 1 must be less than high = 0"),
         (lambda: Triangular(low=0, high=1, mode=2), "mode = 2 must lie between low = 0 and high = 1"),
         (lambda: Triangular(low=0, high=1, mode=-0.5), "mode = -0.5 must lie between low = 0 and high = 1"),
-        (lambda: Triangular(low=0, high=1, mode=math.nan), "mode = nan must lie between low = 0 and high = 1"),
+        (lambda: Triangular(low=0, high=1, mode=math.nan), "mode = nan: a finite number is required"),
     ],
 )
 def test_impossible_distributions_are_refused(make, message):
@@ -288,6 +288,29 @@ def test_impossible_distributions_are_refused(make, message):
     with pytest.raises(ValueError) as refusal:  # noqa: PT011
         make()
     assert str(refusal.value) == message
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Normal("0", 1), "mean = '0': a finite number is required"),
+        (lambda: Normal(0, True), "sd = True: a finite number is required"),
+        (lambda: TruncatedNormal(0, 1, None, 1), "low = None: a number is required"),
+        (lambda: Uniform(0, [1, 2]), "high = [1, 2]: a number is required"),
+        (lambda: Triangular(0, 1, "0.5"), "mode = '0.5': a finite number is required"),
+    ],
+)
+def test_what_is_no_number_is_refused(make, message):
+    """An argument of a distribution that is no number is refused with its name."""
+    with pytest.raises(TypeError) as refusal:
+        make()
+    assert str(refusal.value) == message
+
+
+def test_numbers_of_numpy_serve():
+    """Whole and other numbers of NumPy make the same distribution as Python's own."""
+    assert Uniform(np.int64(0), np.float32(1)) == Uniform(0, 1)
+    assert TruncatedNormal(0, 1, -math.inf, np.float64(2)).high == 2
 
 
 @pytest.mark.parametrize(

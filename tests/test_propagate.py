@@ -210,15 +210,15 @@ def test_none_of_all_points_is_not_a_probability_of_none(method):
 def test_probabilities_outside_0_to_1_are_refused(probability):
     """A probability outside 0 to 1 is refused in one sentence."""
     spread = propagate(total, TWO, method="sobol", samples=64)
-    with pytest.raises(ValueError, match=r"^a probability must lie between 0 and 1$"):
+    with pytest.raises(ValueError, match=r"^probability = .*: numbers between 0 and 1 are required$"):
         spread.quantile(probability)
-    with pytest.raises(ValueError, match=r"^a probability must lie between 0 and 1$"):
+    with pytest.raises(ValueError, match=r"^probability = .*: numbers between 0 and 1 are required$"):
         spread.standard_error(probability)
 
 
 def test_unknown_method_is_refused():
     """A method that does not exist is refused by name with those that do."""
-    with pytest.raises(ValueError, match=r"^method 'latin' is not one of line, sobol, random$"):
+    with pytest.raises(ValueError, match=r"^method = 'latin': one of line, sobol, random is required$"):
         propagate(total, TWO, method="latin")
 
 
@@ -240,6 +240,79 @@ def test_model_that_is_not_finite_is_refused(bad):
     """A model that returns a number that is not finite, be it once, is refused."""
     with pytest.raises(ValueError, match=r"^the model returned a number that is not finite"):
         propagate(lambda a: np.where(a > 2.5, bad, a), {"a": Normal(mean=0, sd=1)}, samples=4096)
+
+
+REFUSED = [
+    (ValueError, {"method": "sobl"}, "method = 'sobl': one of line, sobol, random is required; did you mean sobol?"),
+    (TypeError, {"method": None}, "method = None: one of line, sobol, random is required"),
+    (TypeError, {"samples": 1.5}, "samples = 1.5: a whole number of at least 1 is required"),
+    (TypeError, {"samples": True}, "samples = True: a whole number of at least 1 is required"),
+    (TypeError, {"samples": "64"}, "samples = '64': a whole number of at least 1 is required"),
+    (ValueError, {"seed": -1}, "seed = -1: a whole number of at least 0 is required"),
+    (TypeError, {"seed": None}, "seed = None: a whole number of at least 0 is required"),
+    (TypeError, {"sample": 64}, "propagate() takes no argument sample; did you mean samples?"),
+    (TypeError, {"model": 3}, "model = 3: a function of the inputs by name is required"),
+    (TypeError, {"inputs": [1]}, "inputs = [1]: a mapping of names to distributions is required"),
+    (TypeError, {"inputs": {1: Normal(0, 1)}}, "a name of inputs = 1: a text is required"),
+    (TypeError, {"inputs": {"a": 3}}, "inputs['a'] = 3: a distribution such as Normal(0, 1) is required"),
+]
+
+
+@pytest.mark.parametrize(("fault", "given", "message"), REFUSED)
+def test_wrong_arguments_are_refused_by_name(fault, given, message):
+    """An argument of another kind or out of range is refused with its name, what was given and what is required."""
+    with pytest.raises(fault) as refusal:
+        propagate(**{"model": total, "inputs": TWO} | given)
+    assert str(refusal.value) == message
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda spread: spread.quantile("0.5"), "probability = '0.5': numbers between 0 and 1 are required"),
+        (
+            lambda spread: spread.quantile([0.5, None]),
+            "probability = [0.5, None]: numbers between 0 and 1 are required",
+        ),
+        (lambda spread: spread.standard_error(True), "probability = True: numbers between 0 and 1 are required"),
+        (lambda spread: spread.probability_above("3"), "value = '3': numbers are required"),
+        (lambda spread: spread.probability_interval([1.0, 2.0]), "value = [1.0, 2.0]: a number is required"),
+        (lambda spread: spread.probability_interval(1.0, "x"), "confidence = 'x': a finite number is required"),
+        (lambda spread: spread.histogram(bins=2.5), "bins = 2.5: a whole number of at least 1 is required"),
+    ],
+)
+def test_what_is_no_number_is_refused_by_name(ask, message):
+    """A spread asked with what is no number says which argument that is."""
+    with pytest.raises(TypeError) as refusal:
+        ask(propagate(total, TWO, method="sobol", samples=64))
+    assert str(refusal.value) == message
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda spread: spread.probability_above([1.0, math.nan]), "value = [1.0, nan]: numbers are required"),
+        (lambda spread: spread.probability_interval(math.nan), "value = nan: a number is required"),
+        (
+            lambda spread: spread.probability_interval(1.0, 1.0),
+            "confidence = 1.0: a number between 0 and 1 is required",
+        ),
+    ],
+)
+def test_numbers_out_of_range_are_refused_by_name(ask, message):
+    """Not-a-number, and a confidence that is certainty, are refused with the argument's name."""
+    with pytest.raises(ValueError) as refusal:  # noqa: PT011
+        ask(propagate(total, TWO, method="sobol", samples=64))
+    assert str(refusal.value) == message
+
+
+def test_arguments_of_numpy_serve():
+    """Numbers of NumPy and arrays of any shape give what Python's own give."""
+    spread = propagate(total, TWO, method="sobol", samples=np.int32(64), seed=np.uint8(0))
+    own = propagate(total, TWO, method="sobol", samples=64)
+    assert spread.quantile(np.float32(0.5)) == own.quantile(0.5)
+    assert spread.probability_above(np.array([[1, 2]])).tolist() == [own.probability_above([1, 2]).tolist()]
+    assert spread.quantile([]).shape == (0,)
 
 
 @pytest.mark.parametrize("samples", [0, -5])

@@ -374,3 +374,31 @@ def test_both_fillets_have_a_peak_of_their_own():
     only_junction = check("cup", CUP | {"junction_fillet_radius": 0.15})
     assert only_junction.hub_fillet_shear is None
     assert only_junction.junction_fillet_shear == pytest.approx(found.junction_fillet_shear, rel=0.01)
+
+
+PLAIN = {
+    "torque": 800.0,
+    "cylinder_length": 0.16,
+    "mean_radius": 0.0808,
+    "wall_thickness": 0.0016,
+    "disk_inner_radius": 0.04,
+    "shear_modulus": 8.1e10,
+}
+
+
+@pytest.mark.parametrize(
+    ("fault", "kind", "changes", "message"),
+    [
+        (ValueError, "cop", {}, "flexspline_type = 'cop': one of cup, hat, cylinder is required"),
+        (TypeError, "cup", {"torque": "800"}, "dimensions['torque'] = '800': a finite number is required"),
+        (ValueError, "cup", {"torque": math.nan}, "dimensions['torque'] = nan: a finite number is required"),
+        (ValueError, "cup", {"wall_thickness": -1e-3}, "dimensions['wall_thickness'] = -0.001: a number of at least 0"),
+        (ValueError, "cup", {"wall_thicknes": 1e-3}, "did you mean wall_thickness?"),
+        (ValueError, "hat", {}, "dimensions without disk_outer_radius: a hat needs it"),
+    ],
+)
+def test_wrong_dimensions_are_refused_by_name(fault, kind, changes, message):
+    """A type or a dimension that is none is refused with its name before anything is solved."""
+    with pytest.raises(fault) as refusal:
+        elasticity_check(kind, PLAIN | changes)
+    assert message in str(refusal.value)

@@ -14,6 +14,7 @@ from flexlash.options import Options
 from flexlash.outcome import DRAWN, PICTURED, Outcome
 from flexlash.outputs.naming import MENDED, REPORTS, WORKBOOK, named_output
 from flexlash.outputs.plan import Output, Plan
+from flexlash.parameters import file_path
 from flexlash.remedies import remedies_of
 from flexlash.results import results_of
 from flexlash.scatter import drawn_curves, scattered
@@ -37,7 +38,7 @@ def check(submission: str | Path | Source | ReadReport, **options: Any) -> Outco
     ValueError for an output that cannot be meant. A file that is no submission gives an outcome whose only finding says
     why; of a marked copy that cannot be written, the outcome's `fault` does.
     """
-    chosen = Options(**options)
+    chosen = Options.of("check()", options)
     plan = _plan(submission, chosen)
     copy = _copy(plan, chosen)
     outcome = _examined(_source(submission, chosen), chosen)
@@ -53,7 +54,7 @@ def mend(
     Nothing is written when there is no certain repair. Options and errors are those of `check`; OSError also says that
     the file cannot be written.
     """
-    chosen = Options(**options)
+    chosen = Options.of("mend()", options)
     plan = _plan(submission, chosen)
     new, copy = named_output(plan, output, MENDED), _copy(plan, chosen)
     source = _source(submission, chosen)
@@ -90,7 +91,7 @@ def run(
     submission itself, ModuleNotFoundError for elasticity without its libraries. Of a marked copy that cannot be
     written, the outcome's `fault` says why.
     """
-    chosen = Options(**options)
+    chosen = Options.of("run()", options)
     plan = _plan(submission, chosen)
     report = None if output is None else named_output(plan, output, REPORTS)
     copy = _copy(plan, chosen)
@@ -118,7 +119,7 @@ def run(
 
 def _plan(given: str | Path | Source | ReadReport, options: Options) -> Plan:
     """Return the plan of one submission's outputs, none of which takes the place of what is read."""
-    submission = given.path if isinstance(given, Source | ReadReport) else given
+    submission = given.path if isinstance(given, Source | ReadReport) else file_path("submission", given)
     return Plan(inputs=[Path(path) for path in (submission, options.tolerances, options.materials) if path is not None])
 
 

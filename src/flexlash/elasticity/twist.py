@@ -15,9 +15,11 @@ from typing import Any
 import numpy as np
 
 from flexlash.arrays import Array
+from flexlash.columns import DIMENSIONS
 from flexlash.elasticity.half_section import HalfSection, half_section
 from flexlash.mechanics import windup
 from flexlash.mechanics.flexspline import modulus_of
+from flexlash.parameters import number, of_type, one_of
 
 __all__ = ["ElasticityCheck", "UnitTwist", "elasticity_check", "unit_twist"]
 
@@ -70,6 +72,24 @@ class ElasticityCheck:
     shear: Array
 
 
+_EITHER = (("mean_radius", "bore_diameter"), ("shear_modulus", "youngs_modulus"), ("shear_modulus", "poisson_ratio"))
+_CLAMPS = {"cup": ("disk_inner_radius",), "hat": ("disk_outer_radius",), "cylinder": ()}
+"""What each type needs besides torque, cylinder_length, wall_thickness and one of each of these."""
+
+
+def _require_dimensions(flexspline_type: str, dimensions: Mapping[str, float]) -> None:
+    """Raise TypeError or ValueError for a type or dimension that is none, with its name."""
+    one_of("flexspline_type", flexspline_type, _CLAMPS)
+    for name, value in of_type("dimensions", dimensions, Mapping, "a mapping of names to numbers").items():
+        one_of("a name of dimensions", name, DIMENSIONS)
+        if number(f"dimensions[{name!r}]", value) < 0:
+            raise ValueError(f"dimensions[{name!r}] = {value:g}: a number of at least 0 is required")
+    needed = [(name,) for name in ("torque", "cylinder_length", "wall_thickness", *_CLAMPS[flexspline_type])]
+    for names in (*needed, *_EITHER):
+        if dimensions.keys().isdisjoint(names):
+            raise ValueError(f"dimensions without {' or '.join(names)}: a {flexspline_type} needs it")
+
+
 def elasticity_check(flexspline_type: str, dimensions: Mapping[str, float]) -> ElasticityCheck:
     """Wind-up of a flexspline by two-dimensional elasticity, with its own error.
 
@@ -77,7 +97,8 @@ def elasticity_check(flexspline_type: str, dimensions: Mapping[str, float]) -> E
         end the torque enters as shear traction ∝ r, and the wind-up is the work of that traction over the torque
     Arguments: flexspline_type and dimensions in SI by name as for `flexspline.windups`, but scalars; calibrations
         are not used.
-    Valid: linear elasticity, load even around the axis; raises ValueError where `section_problem` names a problem.
+    Valid: linear elasticity, load even around the axis; raises ValueError where `section_problem` names a problem,
+        TypeError or ValueError, with its name, for a dimension that is unknown, missing or no number.
         The error is the change from the mesh before and 5e-6, which is greater than what remains.
     Source: Michell's torsion of bodies of revolution; Timoshenko and Goodier, Theory of Elasticity.
 
@@ -87,6 +108,7 @@ def elasticity_check(flexspline_type: str, dimensions: Mapping[str, float]) -> E
     >>> f"{elasticity_check('cup', plain).windup:.3e}" if is_available() else "5.294e-04"
     '5.294e-04'
     """
+    _require_dimensions(flexspline_type, dimensions)
     section = half_section(flexspline_type, dimensions)
     before = twist = unit_twist(section)
     error = math.inf

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from flexlash.outputs.plan import Output, Plan
+from flexlash.parameters import file_path
 from flexlash.submission.products import CHECKED_NAME, MENDED_NAME, REPORT_NAME, is_made_by_name, made_of
 
 __all__ = [
@@ -36,7 +37,7 @@ def named_output(plan: Plan, path: str | Path | Output, endings: Sequence[str]) 
     """Return the output that a caller names; raise ValueError where it cannot be meant."""
     if isinstance(path, Output):
         return path
-    path = Path(path)
+    path = file_path("output", path)
     if path.suffix.lower() not in endings:
         raise ValueError(f"the output must end in {', '.join(endings)}, not {path.suffix or 'nothing'}")
     return plan.claim(path, named=True)

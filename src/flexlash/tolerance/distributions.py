@@ -8,16 +8,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from scipy.special import ndtr, ndtri
 
 from flexlash.arrays import Array
+from flexlash.parameters import number
 
 __all__ = ["Distribution", "Normal", "Triangular", "TruncatedNormal", "Uniform"]
 
 
+@runtime_checkable
 class Distribution(Protocol):
     """What the sampler asks of a distribution."""
 
@@ -53,19 +55,20 @@ class Distribution(Protocol):
 
 
 def _require_order(low: float, high: float) -> None:
+    number("low", low, finite=False)
+    number("high", high, finite=False)
     if not low < high:
         raise ValueError(f"low = {low:g} must be less than high = {high:g}")
 
 
 def _require_finite(low: float, high: float) -> None:
-    if not (math.isfinite(low) and math.isfinite(high)):
-        raise ValueError(f"low = {low:g} and high = {high:g} must be finite")
+    number("low", low)
+    number("high", high)
 
 
 def _require_normal(mean: float, sd: float) -> None:
-    if not math.isfinite(mean):
-        raise ValueError(f"mean = {mean:g} must be finite")
-    if not (sd > 0 and math.isfinite(sd)):
+    number("mean", mean)
+    if not number("sd", sd) > 0:
         raise ValueError(f"sd = {sd:g} must be a finite number greater than 0")
 
 
@@ -269,6 +272,8 @@ class Triangular(_Interval):
     def __post_init__(self) -> None:
         _require_order(self.low, self.high)
         _require_finite(self.low, self.high)
+        if self.mode is not None:
+            number("mode", self.mode)
         if not self.low <= self._peak <= self.high:
             raise ValueError(f"mode = {self._peak:g} must lie between low = {self.low:g} and high = {self.high:g}")
 

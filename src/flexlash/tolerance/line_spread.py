@@ -214,7 +214,7 @@ class LineSpread(Spread):
         return crossing_at(self._lines, value[:, None]).above[:, 0]
 
     @np.errstate(all="ignore")
-    def probability_interval(self, value: float, confidence: float = 0.95) -> tuple[float, float]:
+    def _interval(self, value: float, confidence: float) -> tuple[float, float]:
         """Return an interval of the share above a value, even on the normal scale."""
         crossing = crossing_at(self._lines, np.array([[value]])).widened(self._margin)
         low, high = share_interval(crossing.above, crossing.above_error, float(ndtri((1 + confidence) / 2)))

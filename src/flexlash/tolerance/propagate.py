@@ -8,6 +8,7 @@ from typing import get_args
 import numpy as np
 
 from flexlash.arrays import Array
+from flexlash.parameters import function, named_arguments, of_type, one_of, whole_number
 from flexlash.tolerance.course import RowModel, Rows
 from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.line_spread import LineSpread, NoLines
@@ -20,6 +21,7 @@ __all__ = ["NOT_LINES", "propagate"]
 NOT_LINES = "Sobol' points instead of lines"
 
 
+@named_arguments
 def propagate(
     model: Model,
     inputs: Mapping[str, Distribution],
@@ -34,16 +36,21 @@ def propagate(
     lines or points in all, rounded up to replicates × a power of two; without them `line` takes as many lines as
     its precision needs. Where lines do not serve the model, Sobol' points answer and `notes` says why.
 
-    Raises ValueError for an unknown method, no inputs, no samples, or a model that returns another shape or a number
-    that is not finite.
+    Raises TypeError or ValueError, with its name, for an argument that is none of these, and ValueError for a model
+    that returns another shape or a number that is not finite.
 
     >>> from flexlash.tolerance import Normal, propagate
     >>> spread = propagate(lambda a, b: a + b, {"a": Normal(0, 3), "b": Normal(0, 4)})
     >>> f"{spread.sd:.9f} {spread.quantile(0.99865):.4f} {spread.shares['b']:.2f}"
     '5.000000000 14.9999 0.64'
     """
-    if method not in get_args(Method):
-        raise ValueError(f"method {method!r} is not one of {', '.join(get_args(Method))}")
+    one_of("method", method, get_args(Method))
+    samples = None if samples is None else whole_number("samples", samples, least=1)
+    seed = whole_number("seed", seed, least=0)
+    function("model", model, required="a function of the inputs by name")
+    for name, distribution in of_type("inputs", inputs, Mapping, "a mapping of names to distributions").items():
+        of_type("a name of inputs", name, str, "a text")
+        of_type(f"inputs[{name!r}]", distribution, Distribution, "a distribution such as Normal(0, 1)")
     if not inputs:
         raise ValueError("at least one input must vary")
     if method == "line":

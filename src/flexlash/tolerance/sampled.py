@@ -151,7 +151,7 @@ class SampledSpread(Spread):
     def _count_above(self, value: float) -> int:
         return int(np.count_nonzero(self._selected > value))
 
-    def probability_interval(self, value: float, confidence: float = 0.95) -> tuple[float, float]:
+    def _interval(self, value: float, confidence: float) -> tuple[float, float]:
         """Return the Clopper–Pearson interval of the share above a value; wide for Sobol' points."""
         return clopper_pearson(self._count_above(value), self.size, confidence)
 

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flexlash.arrays import Array
+from flexlash.parameters import number, numbers, whole_number
 
 __all__ = ["Method", "Spread"]
 
@@ -74,8 +75,7 @@ class Spread(ABC):
     def quantile(self, probability: npt.ArrayLike) -> Any: ...
     def quantile(self, probability: npt.ArrayLike) -> Any:
         """Return the values that this share of the output stays below; scalar in, scalar out."""
-        wanted = _probabilities(probability)
-        return _shaped(self._quantiles, wanted)
+        return _shaped(self._quantiles, numbers("probability", probability, least=0, most=1))
 
     @overload
     def standard_error(self, probability: float) -> float: ...
@@ -83,8 +83,7 @@ class Spread(ABC):
     def standard_error(self, probability: npt.ArrayLike) -> Any: ...
     def standard_error(self, probability: npt.ArrayLike) -> Any:
         """Return the standard errors of quantiles."""
-        wanted = _probabilities(probability)
-        return _shaped(self._quantile_errors, wanted)
+        return _shaped(self._quantile_errors, numbers("probability", probability, least=0, most=1))
 
     @overload
     def probability_above(self, value: float) -> float: ...
@@ -92,17 +91,23 @@ class Spread(ABC):
     def probability_above(self, value: npt.ArrayLike) -> Any: ...
     def probability_above(self, value: npt.ArrayLike) -> Any:
         """Return the share of the output greater than a value; scalar in, scalar out."""
-        wanted = np.asarray(value, dtype=float)
-        return _shaped(self._shares_above, wanted)
+        return _shaped(self._shares_above, numbers("value", value))
 
-    @abstractmethod
     def probability_interval(self, value: float, confidence: float = 0.95) -> tuple[float, float]:
-        """Return an interval of the share above a value."""
+        """Return an interval of the share above a value, which holds it with this confidence."""
+        sure = number("confidence", confidence)
+        if not 0 < sure < 1:
+            raise ValueError(f"confidence = {confidence!r}: a number between 0 and 1 is required")
+        return self._interval(number("value", value, finite=False), sure)
 
     def histogram(self, bins: int = 40, cut: float = 0.0005) -> tuple[Array, Array]:
         """Return the edges (bins + 1,) between two tail quantiles and the share of the output in each bin."""
+        whole_number("bins", bins, least=1)
         edges = np.linspace(self.quantile(cut), self.quantile(1 - cut), bins + 1)
         return edges, -np.diff(self._shares_above(edges))
+
+    @abstractmethod
+    def _interval(self, value: float, confidence: float) -> tuple[float, float]: ...
 
     @abstractmethod
     def _quantiles(self, probability: Array) -> Array: ...
@@ -112,14 +117,6 @@ class Spread(ABC):
 
     @abstractmethod
     def _shares_above(self, value: Array) -> Array: ...
-
-
-def _probabilities(probability: npt.ArrayLike) -> Array:
-    """Return probabilities as an array; raise ValueError outside [0, 1]."""
-    wanted = np.asarray(probability, dtype=float)
-    if not np.all((wanted >= 0) & (wanted <= 1)):
-        raise ValueError("a probability must lie between 0 and 1")
-    return wanted
 
 
 def _shaped(of: Callable[[Array], Array], wanted: Array) -> Any:
