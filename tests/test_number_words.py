@@ -8,7 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flexlash.number_words import angle_words, rounded, share_words
+from flexlash.number_words import angle_words, places, rounded, share_words
+from flexlash.report.functions import decimals_to
+from flexlash.report.live import live
+from flexlash.report.styles import decimals_of
 from flexlash.tolerance.capability import clopper_pearson
 
 thorough = settings(deadline=None, max_examples=300, derandomize=True)
@@ -31,7 +34,10 @@ SHARES = {
     "all seen of few": ((1.0, 0.98, 1.0), "all but at most 2 %"),
     "all told": ((1.0, 1 - 1e-15, 1.0), "practically all"),
     "per cent": ((0.412, 0.407, 0.417), "41.2 % (40.7 to 41.7 %)"),
-    "per cent, better known": ((0.41234, 0.4122, 0.4125), "41.23 % (41.22 to 41.25 %)"),
+    "per cent, better known": ((0.41234, 0.4122, 0.4125), "41.234 % (41.220 to 41.250 %)"),
+    "known better than it is told": ((0.9945264, 0.9945221, 0.9945306), "99.453 %"),
+    "just as well known as it is told": ((0.41234, 0.412225, 0.412455), "41.234 % (41.223 to 41.245 %)"),
+    "an interval to one side": ((3e-6, 2.9e-6, 9e-6), "3.0 ppm (2.9 to 9.0 ppm)"),
     "most": ((0.985, 0.98, 0.99), "98.5 % (98.0 to 99.0 %)"),
     "ppm": ((2e-4, 1e-4, 4e-4), "200 ppm (100 to 400 ppm)"),
     "ppm, better known": ((1.234e-6, 1.2e-6, 1.27e-6), "1.23 ppm (1.20 to 1.27 ppm)"),
@@ -115,6 +121,42 @@ def test_numbers_in_words_have_no_more_digits_than_their_error():
     assert rounded(3.684217, 3.0) == rounded(3.684217, 30.0) == "4"
     assert rounded(3.684217, 0.0) == rounded(3.684217, float("nan")) == "3.6842"
     assert rounded(3.684217, 1e-12) == "3.68421700"
+
+
+@thorough
+@given(power=st.floats(-5.9, -0.31), relative=st.floats(1e-7, 0.4), skew=st.floats(0.3, 1.0), mirrored=st.booleans())
+def test_an_interval_in_words_can_be_seen(power, relative, skew, mirrored):
+    """Where an interval is told its ends differ from the number and have its place, and it holds at most two digits."""
+    share = 10.0**power
+    low, high = share * (1 - relative), share * (1 + relative * skew)
+    words = words_of(1 - share, 1 - high, 1 - low) if mirrored else words_of(share, low, high)
+    told = re.findall(r"[\d.]+", words)
+    if "(" in words:
+        assert len(set(told)) == 3
+        assert len({len(one.partition(".")[2]) for one in told}) == 1
+        assert float(told[2]) - float(told[1]) < 500 * 10.0 ** -len(told[0].partition(".")[2])
+    else:
+        assert len(told) == 1
+
+
+PLACES = [(0.0021, 3), (0.001, 3), (0.00099, 4), (0.3, 1), (1.0, 0), (9.99, 0), (10.0, -1), (4321.0, -3), (1e-9, 9)]
+
+
+@pytest.mark.parametrize(("error", "decimals"), PLACES)
+def test_the_one_rule_of_digits(error, decimals):
+    """Sentences, number formats and formulas tell a number to the place of its standard error's first digit."""
+    assert places(error) == decimals
+    assert decimals_to(live(error), 4.0, most=20.0).value == decimals
+    value = 12345.678912345
+    for told in (rounded(value, error), f"{value:.{decimals_of(error, '').count('0') - 1}f}"):
+        if 0 <= decimals <= 6:
+            assert told == f"{value:.{decimals}f}"
+
+
+def test_a_number_without_an_error_keeps_its_usual_digits():
+    """Where nothing is known of the error, the usual digits are told, in formulas too."""
+    for error in (live(0.0), live("")):
+        assert decimals_to(error, 4.0).value == 4
 
 
 @pytest.mark.parametrize(

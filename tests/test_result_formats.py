@@ -68,3 +68,31 @@ def test_shares_near_none_or_all_read_well(tmp_path):
     formats = _formats(tmp_path / "b.xlsx", "ppm_over_limit", parts)
     assert formats[:4] == ["#,##0.0##"] * 4
     assert all(re.fullmatch(r"0(\.0+)?", one) for one in formats[4:])
+
+
+NEEDED = {
+    "ppk": [1.2345, 1.2345, None],
+    "ppk_normal": [1.2345, 1.2345, None],
+    "sd_arcmin": [0.05] * 3,
+    "p50_arcmin": [3.7] * 3,
+    "p99_865_arcmin": [3.85] * 3,
+    "p50_standard_error_arcmin": [1e-7, 2e-4, 2e-4],
+    "p99_865_standard_error_arcmin": [1e-7, 1.5e-3, 1.5e-3],
+    "mean_standard_error_arcmin": [1e-7, 2e-4, 2e-4],
+    "sd_standard_error_arcmin": [1e-7, 1e-3, 1e-3],
+}
+
+
+@pytest.mark.parametrize("key", ["ppk", "ppk_normal"])
+def test_a_capability_is_known_as_its_percentiles_are(tmp_path, key):
+    """Ppk has three decimals, or those that the errors of what it is worked out from leave: here 0.012 and 0.025."""
+    assert _formats(tmp_path / "a.xlsx", key, NEEDED) == ["0.000", "0.00", "0.000"]
+
+
+def test_other_estimates_are_shown_to_their_error(tmp_path):
+    """A counted share, a difference from elasticity and a share of the variance have the digits that are known."""
+    frame = {"random_probability_over_limit": [0.3, 0.0, None], "random_points": [16384.0] * 3}
+    assert _formats(tmp_path / "a.xlsx", "random_probability_over_limit", frame) == ["0.0%", "0.00%", "0.00%"]
+    frame = {"elasticity_difference_percent": [1.2345], "elasticity_error_percent": [0.02]}
+    assert _formats(tmp_path / "b.xlsx", "elasticity_difference_percent", frame) == ["0.00"]
+    assert usual_format(COLUMNS["main_contributor_share"]) == usual_format(COLUMNS["interaction_share"]) == "0.0%"

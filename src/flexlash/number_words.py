@@ -7,7 +7,27 @@ from typing import Any
 
 from flexlash.findings import spelled_out
 
-__all__ = ["ALL_UNITS", "angle_words", "glance", "rounded", "share_words"]
+__all__ = ["ALL_UNITS", "INTERVAL", "angle_words", "glance", "places", "rounded", "share_error", "share_words"]
+
+INTERVAL = 1.96
+"""Standard errors to either side of a number that make its 95 % interval."""
+
+
+def places(error: float) -> int:
+    """Return to how many decimals a number is told: down to the first digit of its standard error.
+
+    This is the one rule of digits, in sentences, number formats and formulas alike. The ends of an interval have the
+    place of their number, from which they differ by 1.96 errors, so visibly. Negative: to tens, hundreds, ….
+
+    >>> places(0.0021), places(0.3), places(1.0), places(40.0)
+    (3, 1, 0, -1)
+    """
+    return -math.floor(math.log10(error))
+
+
+def share_error(low: float, high: float) -> float:
+    """Return the standard error of a share, from the ends of its 95 % interval."""
+    return (high - low) / (2 * INTERVAL)
 
 
 def share_words(row: dict[str, Any]) -> str:
@@ -64,11 +84,13 @@ def _interval(value: float, low: float, high: float) -> str:
     if low == high:
         return _share(value, 3)
     factor, unit = _unit(high)
-    half = max(min((high - low) / 2, value, 1 - value), value * _FINEST) * factor
-    words = [rounded(end * factor, half) for end in (value, low, high)]
-    if words[1] == words[2]:
-        return f"{words[0]}{unit}"
-    return f"{words[0]}{unit} ({words[1]} to {words[2]}{unit})"
+    finest, error = value * _FINEST, min(share_error(low, high), value, 1 - value)
+    if places(error) > places(finest):
+        return f"{rounded(value * factor, finest * factor)}{unit}"
+    told, *ends = (rounded(end * factor, error * factor) for end in (value, low, high))
+    if told in ends:  # an interval that reaches much further to one side
+        told, *ends = (rounded(end * factor, error * factor / 10) for end in (value, low, high))
+    return f"{told}{unit} ({ends[0]} to {ends[1]}{unit})"
 
 
 def _share(share: float, digits: int) -> str:
@@ -78,15 +100,14 @@ def _share(share: float, digits: int) -> str:
 
 
 def rounded(value: float, error: float) -> str:
-    """Return a number with no more digits than its standard error justifies.
+    """Return a number down to the first digit of its standard error, in five digits where it has none.
 
     >>> rounded(3.684217, 0.0021), rounded(3.684217, 0.0), rounded(41.23, 0.3)
     ('3.684', '3.6842', '41.2')
     """
     if not error > 0:
         return f"{value:.5g}"
-    digits = max(0, min(8, -math.floor(math.log10(error))))
-    return f"{value:.{digits}f}"
+    return f"{value:.{max(0, min(8, places(error)))}f}"
 
 
 def angle_words(value: float, error: float | None = None) -> str:

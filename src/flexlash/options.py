@@ -79,7 +79,9 @@ _CHECKS: dict[str, Callable[[str, object], Any]] = {
     **dict.fromkeys(("strict", "fail_over_limit", "cross_check", "elasticity", "marked_copies", "from_report"), flag),
     **dict.fromkeys(("tolerances", "materials"), file_path),
     "marked_copy": lambda name, value: value if isinstance(value, Output) else file_path(name, value),
-    "given": lambda name, value: tuple(file_path(name, one) for one in of_type(name, value, Sequence, "a list of paths")),
+    "given": lambda name, value: tuple(
+        file_path(name, one) for one in of_type(name, value, Sequence, "a list of paths")
+    ),
     "jobs": partial(whole_number, least=1),
     "limits": partial(of_type, wanted=ReadingLimits, required="ReadingLimits, as ReadingLimits.of makes them,"),
     "progress": partial(function, required="a function of how many steps are done, and of how many,"),

@@ -15,12 +15,12 @@ from collections.abc import Callable, Collection, Iterable
 from functools import wraps
 from numbers import Integral, Real
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
-import numpy as np
-import numpy.typing as npt
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
-from flexlash.arrays import Array
+    from flexlash.arrays import Array
 
 __all__ = [
     "file_path",
@@ -45,7 +45,7 @@ _Result = TypeVar("_Result")
 def whole_number(name: str, value: object, *, least: int, most: int | None = None) -> int:
     """Return a whole number between two others.
 
-    >>> whole_number("jobs", np.int64(2), least=1)
+    >>> whole_number("jobs", 2, least=1)
     2
     >>> whole_number("jobs", 0, least=1)
     Traceback (most recent call last):
@@ -68,7 +68,7 @@ def number(name: str, value: object, *, finite: bool = True) -> float:
     TypeError: sd = '0.1': a finite number is required
     """
     required = "a finite number" if finite else "a number"
-    if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
+    if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(_refusal(name, value, required))
     try:
         found = float(value)
@@ -86,6 +86,8 @@ def numbers(name: str, value: npt.ArrayLike, *, least: float = -math.inf, most: 
     Traceback (most recent call last):
     ValueError: probability = [0.5, 2.0]: numbers between 0 and 1 are required
     """
+    import numpy as np  # not by the command line's help, which is to answer at once
+
     required = "numbers" if math.isinf(most) else f"numbers between {least:g} and {most:g}"
     try:
         found = np.asarray(value)
@@ -121,7 +123,11 @@ def flag(name: str, value: object) -> bool:
     Traceback (most recent call last):
     TypeError: strict = 'x': True or False is required
     """
-    if not isinstance(value, bool | np.bool_):
+    if isinstance(value, bool):
+        return value
+    import numpy as np
+
+    if not isinstance(value, np.bool_):
         raise TypeError(_refusal(name, value, "True or False"))
     return bool(value)
 

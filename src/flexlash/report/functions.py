@@ -11,7 +11,7 @@ from typing import Any
 from scipy.special import ndtr, ndtri
 from xlsxwriter.utility import quote_sheetname
 
-from flexlash.report.live import Live, Operand, Value, call, is_error, live
+from flexlash.report.live import Live, Operand, Value, call, is_error, live, when
 
 __all__ = [
     "PI",
@@ -20,6 +20,7 @@ __all__ = [
     "cosine",
     "count_up_to",
     "decimal_logarithm",
+    "decimals_to",
     "elsewhere",
     "entry_of",
     "exponential",
@@ -121,10 +122,28 @@ def _of_numbers(name: str, operands: Sequence[Operand], work: Callable[[list[Any
 
 
 def fixed(number: Operand, decimals: Operand) -> Live:
-    """Return a number as a text: FIXED, since the letters of TEXT differ between languages of Excel."""
+    """Return a number as a text: FIXED, since the letters of TEXT differ between languages of Excel.
+
+    Fewer than no decimals round to tens, hundreds, and so on.
+    """
     one, places = live(number), live(decimals)
-    value = one.value if is_error(one.value) else f"{one.number:.{int(places.number)}f}"
+    digits = int(places.number)
+    value = (
+        one.value
+        if is_error(one.value)
+        else f"{round(one.number, digits) if digits < 0 else one.number:.{max(digits, 0)}f}"
+    )
     return call("FIXED", [one, places, Live("TRUE", value=True)], value)
+
+
+def decimals_to(error: Live, otherwise: float, most: float = 8.0) -> Live:
+    """Return to how many decimals a number is told with this standard error; `otherwise` where it has none.
+
+    The formula of `number_words.places`.
+    """
+    known = when(is_number(error), when(error > 0.0, error, 0.0), 0.0)
+    told = least(most, 0.0 - whole(decimal_logarithm(when(error.equals(0.0), 1.0, error))))
+    return when(known > 0.0, told, otherwise)
 
 
 def is_number(what: Live) -> Live:

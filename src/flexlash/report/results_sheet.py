@@ -10,7 +10,7 @@ from flexlash.outcome import Outcome
 from flexlash.report.links import FIRST_ROW, finding_rows, name_cell, result_rows, write_link
 from flexlash.report.paper import print_readably
 from flexlash.report.raw_cells import write_raw
-from flexlash.report.result_formats import number_formats, usual_format
+from flexlash.report.result_formats import ESTIMATED_SHARES, number_formats, usual_format
 from flexlash.report.styles import PALETTE, Book
 from flexlash.report.wrapping import LINE_HEIGHT, lines_of
 from flexlash.result_columns import RESULTS, result_columns
@@ -37,7 +37,6 @@ ERROR_DIGITS = 4
 SHARE_DECIMALS = 4
 """Decimals of an estimated share that the workbook holds, as many as it shows; it is good to the third."""
 
-_ESTIMATED_SHARES = frozenset({"main_contributor_share", "interaction_share"})
 _PLACES = {column.key: place for place, column in enumerate(RESULTS)}
 _DETAILS = ("_low", "_high", "_shear_radius_mm", "_range", "_points")
 """Ends of keys whose columns can be folded away, beside standard errors, radians, seconds and plain draws."""
@@ -159,7 +158,7 @@ def stored_values(results: pl.DataFrame, column: Column) -> list[Any]:
     values = results[column.key].to_list()
     if "standard_error" in column.key:
         return [None if one is None else float(f"{one:.{ERROR_DIGITS}g}") for one in values]
-    if column.key in _ESTIMATED_SHARES:
+    if column.key in ESTIMATED_SHARES:
         return [None if one is None else round(one, SHARE_DECIMALS) for one in values]
     return values
 

@@ -9,9 +9,10 @@ from flexlash.columns import DIMENSIONS
 from flexlash.findings import shown
 from flexlash.outcome import Outcome
 from flexlash.report.paper import SMALL, fits, print_readably
+from flexlash.report.result_formats import SHARE_OF_VARIANCE_ERROR
 from flexlash.report.results_sheet import SHARE_DECIMALS
 from flexlash.report.selection import Drawn
-from flexlash.report.styles import GRID, PALETTE, Book
+from flexlash.report.styles import GRID, PALETTE, Book, percent_of
 from flexlash.summary import dimension_words
 from flexlash.tolerance.variation import Variation
 from flexlash.units import ARCMIN
@@ -61,13 +62,14 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn, width: int) -> None:
     for place, heading in enumerate(headings):
         sheet.write_string(3, place, heading, book.format("header"))
     sheet.set_row(3, 32)
+    share = book.format("text", percent_of(SHARE_OF_VARIANCE_ERROR))
     swings = sorted(variation.swings.items(), key=lambda item: -variation.shares[item[0]])
     for row, (dimension, (low, high)) in enumerate(swings, start=4):
         sheet.write_string(row, 0, dimension_words(dimension), book.format("text"))
         sheet.write_number(row, 1, low / ARCMIN, book.format("text", "arcmin"))
         sheet.write_number(row, 2, high / ARCMIN, book.format("text", "arcmin"))
-        sheet.write_number(row, 3, variation.shares[dimension], book.format("text", "share"))
-        sheet.write_number(row, 4, variation.totals[dimension], book.format("text", "share"))
+        sheet.write_number(row, 3, variation.shares[dimension], share)
+        sheet.write_number(row, 4, variation.totals[dimension], share)
     chart = _tornado(book, name, 3 + len(swings), sum(swings[0][1]) / 2 / ARCMIN)
     size, text = (width, _CHART_HEIGHT), f"Tornado chart of the worst variant, {name}"
     book.insert(sheet, 3, _CHART_PLACE, chart, size=size, text=text)
@@ -108,7 +110,7 @@ def _write_shares(book: Book, sheet: Any, rows: Sequence[tuple[str, Variation]],
         sheet.write_string(_HEADER, place, dimension_words(name), book.format("header"))
         sheet.write_string(_HEADER, place + right, f"{dimension_words(name)}, total", book.format("header"))
     sheet.set_row(_HEADER, 48)
-    plain, share = book.format("text"), book.format("text", "share")
+    plain, share = book.format("text"), book.format("text", percent_of(SHARE_OF_VARIANCE_ERROR))
     for row, (variant, variation) in enumerate(rows, start=_HEADER + 1):
         sheet.write_string(row, 0, variant, plain)
         for start, indices in ((1, variation.shares), (1 + right, variation.totals)):

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import xlsxwriter
+
+from flexlash.number_words import places
 
 __all__ = ["GRID", "PALETTE", "Book", "decimals_of", "percent_of"]
 
@@ -126,8 +127,8 @@ def decimals_of(error: float | None, otherwise: str) -> str:
     """
     if error is None or not error > 0:
         return otherwise
-    places = max(0, min(_MOST_DECIMALS, -math.floor(math.log10(error))))
-    return "0." + "0" * places if places else "0"
+    decimals = max(0, min(_MOST_DECIMALS, places(error)))
+    return "0." + "0" * decimals if decimals else "0"
 
 
 def percent_of(error: float | None) -> str:
@@ -136,8 +137,8 @@ def percent_of(error: float | None) -> str:
     >>> percent_of(0.0021), percent_of(None)
     ('0.0%', 'share')
     """
-    places = decimals_of(None if error is None else 100 * error, "share")
-    return places if places == "share" else f"{places}%"
+    decimals = decimals_of(None if error is None else 100 * error, "share")
+    return decimals if decimals == "share" else f"{decimals}%"
 
 
 class Book:

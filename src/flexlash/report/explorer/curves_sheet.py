@@ -12,7 +12,7 @@ from flexlash.summary import dimension_words, share_words
 from flexlash.tolerance.curves import CURVE_SCORES, HISTOGRAM_BINS
 from flexlash.units import ARCMIN
 
-__all__ = ["CAUSES", "CURVES_NOTE", "SEGMENTS", "error_heading", "score_heading", "stored_curves"]
+__all__ = ["CAUSES", "CURVES_NOTE", "FIGURE_ERRORS", "SEGMENTS", "error_heading", "score_heading", "stored_curves"]
 
 CURVES_NOTE = (
     "Stored distributions behind the charts [arcmin]. z: percentile at this normal score, computed, not interpolated; "
@@ -44,6 +44,19 @@ _RESULTS = {
     "Cylinder only": "cylinder_only_backlash_arcmin",
 }
 
+FIGURE_ERRORS = {
+    heading: (f"error of {heading}", f"{stem}_standard_error_arcmin")
+    for heading, stem in {
+        "Mean": "mean",
+        "sd": "sd",
+        "P2.5": "p2_5",
+        "P50": "p50",
+        "P97.5": "p97_5",
+        "P99.865": "p99_865",
+    }.items()
+}
+"""Heading and Results key of the standard error of a figure, by the figure's own heading."""
+
 
 def score_heading(score: float) -> str:
     """Return the heading of the percentile at a normal score."""
@@ -72,6 +85,7 @@ def _entries(one: Drawn, label: str) -> Iterator[tuple[str, str | float | None]]
     yield "P50", row["p50_arcmin"]
     yield "Limit", row["backlash_limit_arcmin"]
     yield from ((heading, row[key]) for heading, key in _RESULTS.items())
+    yield from ((heading, row[key]) for heading, key in FIGURE_ERRORS.values())
     yield "Rarest share", curve.rarest
     outputs = _rounded(curve.outputs / ARCMIN, _OUTPUT_DIGITS)
     yield from ((score_heading(score), value) for score, value in zip(CURVE_SCORES, outputs, strict=True))

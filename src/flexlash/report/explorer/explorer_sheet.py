@@ -8,10 +8,22 @@ from __future__ import annotations
 
 from typing import Any
 
+from flexlash.number_words import INTERVAL
+from flexlash.report.explorer.curves_sheet import FIGURE_ERRORS
 from flexlash.report.explorer.explorer_charts import write_charts
 from flexlash.report.explorer.explorer_choice import NONE, USUAL_SHARE, Choice
 from flexlash.report.explorer.explorer_working import Read, Working
-from flexlash.report.functions import all_of, greatest, least, normal_score, normal_share
+from flexlash.report.functions import (
+    all_of,
+    decimals_to,
+    fixed,
+    greatest,
+    is_number,
+    least,
+    normal_score,
+    normal_share,
+    root,
+)
 from flexlash.report.live import Live, joined, live, put, when
 from flexlash.report.stored import Stored
 from flexlash.report.styles import Book
@@ -20,7 +32,21 @@ from flexlash.report.verdict import BOUNDS
 __all__ = ["write_explorer"]
 
 _WIDTHS = (29, 19, 30, 3, 31, 15, 11)
-_INTERVAL = 1.96
+_USUAL = 4.0
+"""Decimals of a number that has no error."""
+
+_MOST = 12.0
+"""Decimals of per cent at most."""
+
+_FINEST = 1e-4
+"""Part of a share, or of what it leaves, that is not told, however well it is known: it is read off a curve."""
+
+_PPK_DECIMALS = 3.0
+"""Decimals of a Ppk at most."""
+
+_PPM_DECIMALS = 4.0
+"""Decimals of per cent that make a millionth."""
+
 _AMBER = BOUNDS["amber"]
 _NEARLY = 1.000001
 """Room for rounding where a share meets the rarest that is told."""
@@ -74,7 +100,7 @@ def write_explorer(book: Book, curves: Stored, total: int) -> None:
     choice = Choice(book, sheet, curves)
     working = Working(book, sheet, choice)
     limit = _write_answers(book, sheet, choice, working)
-    _write_figures(book, sheet, choice, limit)
+    _write_figures(book, sheet, choice, working, limit)
     write_charts(book, sheet, choice, working, limit)
     sheet.print_area(0, 0, _LAST_ROW, len(_WIDTHS) - 1)
     sheet.freeze_panes(_FIRST_ANSWER - 1, 0)
@@ -90,8 +116,9 @@ def _write_answers(book: Book, sheet: Any, choice: Choice, working: Working) -> 
     read = working.read_share(when(limit.equals(""), choice.angle("P50"), limit))
     _write_share(book, sheet, choice, (working, read), limit)
     found, error = working.read_output(live(0.0) - normal_score(choice.wanted))
-    put(sheet, 14, 1, when(choice.wants, found, NONE), book.format("figure", "arcmin"))
-    put(sheet, 15, 1, when(choice.wants, error * _INTERVAL, NONE), book.format("figure", "0.00000"))
+    decimals = working.cell("its decimals", decimals_to(error, _USUAL))
+    put(sheet, 14, 1, when(choice.wants, fixed(found, decimals), NONE), book.format("figure"))
+    put(sheet, 15, 1, when(choice.wants, fixed(error * INTERVAL, decimals), NONE), book.format("figure"))
     for row in (8, 14, 15):
         put(sheet, row, 2, choice.unit, book.format("quiet"))
     return limit
@@ -100,22 +127,27 @@ def _write_answers(book: Book, sheet: Any, choice: Choice, working: Working) -> 
 def _write_share(book: Book, sheet: Any, choice: Choice, reading: tuple[Working, Read], limit: Live) -> None:
     """Write the share over the limit with its interval and the verdict."""
     working, read = reading
-    quiet, figure, percent = (book.format(*one) for one in (("quiet",), ("figure",), ("figure", "0.0000##%")))
+    quiet, figure = book.format("quiet"), book.format("figure")
     none = limit.equals("")
     rarest = working.cell("rarest share told", choice.text("Rarest share"))
     told = working.cell("share told", least(greatest(read.share, rarest), live(1.0) - rarest))
     few, many = read.share < rarest * _NEARLY, read.share > live(1.0) - rarest * _NEARLY
     bound = when(few, "at most: rarer than computed", when(many, "at least: rarer than computed", ""))
-    put(sheet, 9, 1, when(none, NONE, told), percent)
     put(sheet, 9, 2, when(none, "◄ no limit: type one above", when(working.is_level, "", bound)), quiet)
     ends = []
-    for row, sign, beyond in ((10, 1.0, when(few, 0.0, told)), (11, -1.0, when(many, 1.0, told))):
-        end = normal_share(live(0.0) - (read.score + read.error * (sign * _INTERVAL)))
+    for sign, beyond in ((1.0, when(few, 0.0, told)), (-1.0, when(many, 1.0, told))):
+        end = normal_share(live(0.0) - (read.score + read.error * (sign * INTERVAL)))
         kept = (least if sign > 0 else greatest)(end, beyond)
         ends.append(working.cell("end of its interval", when(working.is_level, told, kept)))
-        put(sheet, row, 1, when(none, NONE, ends[-1]), percent)
-    sheet.write_string(10, 2, "from the spread's standard errors", quiet)
-    put(sheet, 12, 1, when(none, NONE, told * 1e6), book.format("figure", "#,##0.0"))
+    error = working.cell("its standard error in %", (ends[1] - ends[0]) * (50 / INTERVAL))
+    finest = working.cell("least of it that is told", least(told, 1 - told) * (100 * _FINEST))
+    decimals = working.cell("decimals of per cent", decimals_to(greatest(error, finest), _USUAL, most=_MOST))
+    narrow = working.cell("interval inside the last digit", decimals_to(error, 0.0, most=2 * _MOST) > decimals)
+    for row, share in ((9, told), (10, ends[0]), (11, ends[1])):
+        words = joined(fixed(share * 100, decimals), " %")
+        put(sheet, row, 1, when(none, NONE, when(narrow, "–", words) if row > 9 else words), figure)  # noqa: PLR2004
+    put(sheet, 10, 2, when(narrow, "narrower than the last digit", "from the spread's standard errors"), quiet)
+    put(sheet, 12, 1, when(none, NONE, fixed(told * 1e6, decimals - _PPM_DECIMALS)), figure)
     put(sheet, 13, 1, when(none, "–", _verdict(read.share, *ends)), figure)
     told = when(none, _RULE, when(_settled(read.share, *ends), _RULE, "◄ the interval reaches another"))
     put(sheet, 13, 2, told, quiet)
@@ -136,17 +168,31 @@ def _settled(share: Live, low: Live, high: Live) -> Live:
     return when(share <= USUAL_SHARE, high <= USUAL_SHARE, when(share <= _AMBER, amber, low > _AMBER))
 
 
-def _write_figures(book: Book, sheet: Any, choice: Choice, limit: Live) -> None:
+def _write_figures(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:
     """Write the figures of the picked variant beside the answers."""
     figure, quiet = book.format("figure", "arcmin"), book.format("quiet")
     for row, (heading, words) in enumerate(_FIGURES.items(), start=_FIRST_FIGURE):
         sheet.write_string(row, 4, words, book.format("label"))
-        put(sheet, row, 5, choice.told(choice.angle(heading)), figure)
+        value, shown = choice.angle(heading), figure
+        if heading in FIGURE_ERRORS:
+            decimals = decimals_to(choice.angle(FIGURE_ERRORS[heading][0]), _USUAL, most=_USUAL)
+            value, shown = fixed(value, decimals), book.format("figure")
+        put(sheet, row, 5, choice.told(value), shown)
         put(sheet, row, 6, choice.unit, quiet)
-    row = _FIRST_FIGURE + len(_FIGURES)
+    _write_capability(book, sheet, choice, working, limit)
+
+
+def _write_capability(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:
+    """Write the Ppk at the limit that counts, below the figures."""
+    row, quiet = _FIRST_FIGURE + len(_FIGURES), book.format("quiet")
     sheet.write_string(row, 4, "Ppk upper at this limit", book.format("label"))
     median = choice.angle("P50")
-    reach = choice.angle("P99.865") - median
-    capability = when(reach > 0.0, (limit - median) / reach, NONE)
-    put(sheet, row, 5, when(limit.equals(""), NONE, capability), book.format("figure", "plain"))
+    reach = working.cell("P99.865 - P50", choice.angle("P99.865") - median)
+    has = all_of(is_number(limit), reach > 0.0)
+    capability = working.cell("Ppk upper", when(has, (limit - median) / reach, 0.0))
+    of_median, of_tail = (choice.angle(FIGURE_ERRORS[heading][0]) for heading in ("P50", "P99.865"))
+    squares = ((capability - 1) * of_median) ** 2 + (capability * of_tail) ** 2
+    error = working.cell("its standard error", when(has, root(squares) / reach, 0.0))
+    told = fixed(capability, decimals_to(error, _PPK_DECIMALS, most=_PPK_DECIMALS))
+    put(sheet, row, 5, when(has, told, NONE), book.format("figure"))
     sheet.write_string(row, 6, "ISO 22514-2", quiet)

@@ -8,7 +8,7 @@ from typing import Any
 
 from flexlash.columns import DIMENSIONS
 from flexlash.findings import spelled_out
-from flexlash.number_words import angle_words, share_words
+from flexlash.number_words import angle_words, glance, rounded, share_error, share_words
 from flexlash.remedies import Halving, Remedy
 from flexlash.report.summary.told import Row, Told
 from flexlash.report.verdict import BOUNDS, straddled
@@ -91,9 +91,11 @@ def _halvings(told: Told, remedy: Remedy) -> str:
 
 
 def _share(over: dict[str, Any]) -> str:
-    """Return a share over the limit in three digits, without its interval."""
-    value = over["probability_over_limit"]
-    return f"{100 * value:.3g} %" if _RARE <= value <= 1 - _RARE else share_words(over).split(" (")[0]
+    """Return a share over the limit in three digits, or fewer where its error is greater, without its interval."""
+    value, low, high = (over[f"probability_over_limit{end}"] for end in ("", "_low", "_high"))
+    if not _RARE <= value <= 1 - _RARE:
+        return share_words(over).split(" (")[0]
+    return f"{rounded(100 * value, 100 * max(share_error(low, high), 10 * glance(value)))} %"
 
 
 def _halved(halving: Halving) -> str:
