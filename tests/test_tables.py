@@ -513,7 +513,7 @@ def test_an_unusual_setting(name, value, usual):
     """A setting that is possible but unusual is used, with a warning that says what is usual."""
     found, ledger = _settings([name, value])
     assert {**vars(found), **found.calibrations}[name] == value
-    words = [f"Settings!B2 {name} = {value}: {usual} is usual; used as entered."] if usual else []
+    words = [f"Settings!B2 {name} = {value}: {usual} is plausible; used as entered."] if usual else []
     assert [one.message for one in ledger.findings] == words
 
 

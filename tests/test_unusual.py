@@ -78,10 +78,10 @@ def test_no_absurd_number_passes_in_silence(judge, value):
 @pytest.mark.parametrize(
     ("row", "words"),
     [
-        ({"backlash_limit_arcmin": 601}, "Backlash limit = 601: 0.001 to 600 arcmin is usual; used as entered."),
-        ({"rated_torque_Nm": 1e9}, "Rated torque = 1000000000: 0.8 to 800000 N·m is usual; used as entered."),
-        ({"load_inertia_kg_m2": 1e-8}, "Load inertia J = 1e-08: 1e-07 to 1000000 kg·m² is usual; used as entered."),
-        ({"hub_fillet_radius_mm": 1e-4}, "Hub fillet radius = 0.0001: 0.016 to 160 mm is usual; used as entered."),
+        ({"backlash_limit_arcmin": 601}, "Backlash limit = 601: 0.001 to 600 arcmin is plausible; used as entered."),
+        ({"rated_torque_Nm": 1e9}, "Rated torque = 1000000000: 0.8 to 800000 N·m is plausible; used as entered."),
+        ({"load_inertia_kg_m2": 1e-8}, "Load inertia J = 1e-08: 1e-07 to 1000000 kg·m² is plausible; used as entered."),
+        ({"hub_fillet_radius_mm": 1e-4}, "Hub fillet radius = 0.0001: 0.016 to 160 mm is plausible; used as entered."),
     ],
 )
 def test_an_unusual_cell_of_a_row(judge, row, words):

@@ -823,8 +823,8 @@ CATALOGUE = _rules(
     ),
     (
         "W440",
-        "unusual value",
-        "{place} {name} = {value}: {detail} is usual; used as entered.",
+        "implausible value",
+        "{place} {name} = {value}: {detail} is plausible; used as entered.",
         "Check the value and its unit.",
         "Moduli and densities are compared with real materials, lengths with the mean radius, the rated torque with "
         "the torque, the other values with what flexsplines have. A calibration of 0.5 to 2.5 covers fillets, rims and "
