@@ -688,7 +688,7 @@ def test_what_cannot_be_written_is_said_before_computing(what, tmp_path, table, 
     def fail(*_):
         raise AssertionError("computed nevertheless")
 
-    monkeypatch.setattr("flexlash.pipeline._examine", fail)
+    monkeypatch.setattr("flexlash.pipeline._examined", fail)
     with pytest.raises(OSError, match=words) as caught:
         run(path, target)
     assert caught.value.filename == str(target)
