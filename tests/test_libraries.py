@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import pickle
 import subprocess
 import sys
 
@@ -10,6 +11,7 @@ import openpyxl
 import pytest
 
 from flexlash.submission.marking import marked_copy
+from flexlash.submission.reading import isolated, limited
 from flexlash.submission.reading.libraries import ChangedLibrary, require_known_libraries
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
@@ -76,6 +78,28 @@ def test_a_library_that_reads_other_values_is_told(monkeypatch):
     monkeypatch.setattr("openpyxl.worksheet._reader._cast_number", lambda _: 7)
     with pytest.raises(ChangedLibrary, match="something else"):
         require_known_libraries()
+
+
+def test_the_limited_process_tells_a_changed_library(monkeypatch):
+    """A changed library comes back from the limited process as what it is, and survives the way between processes."""
+    monkeypatch.delattr("openpyxl.worksheet._reader.WorkSheetParser.parse_cell")
+    told = limited.carried_out(read_workbook, ReadingLimits(), (book_of(), ReadingLimits()))
+    assert isinstance(told, ChangedLibrary)
+    assert str(pickle.loads(pickle.dumps(told))) == str(told)  # noqa: S301
+    monkeypatch.setattr("flexlash.submission.reading.isolated._answer", lambda *_: told)
+    with pytest.raises(ChangedLibrary, match="not to blame"):
+        isolated.ask(read_workbook, ReadingLimits(), b"")
+
+
+def test_a_library_that_cannot_be_loaded_is_told_by_every_answer(monkeypatch):
+    """A library that lacks something when the limited process starts is told with its name, not as a file's fault."""
+    monkeypatch.setattr(limited._State, "fault", None)
+    monkeypatch.setattr("flexlash.submission.reading.limited._silence", lambda: None)
+    monkeypatch.setattr("flexlash.submission.reading.limited._judge", lambda *_: None)
+    monkeypatch.setattr("flexlash.submission.reading.limited._warm_up", lambda: importlib.import_module("no_such"))
+    monkeypatch.delattr("openpyxl.reader.excel.ExcelReader.read_theme")
+    limited.prepare()
+    assert isinstance(limited.carried_out(read_workbook, ReadingLimits(), (b"",)), ChangedLibrary)
 
 
 def test_a_damaged_file_is_still_damaged():

@@ -36,7 +36,7 @@ def marked(outcome: Outcome, limits: ReadingLimits) -> tuple[bytes, tuple[str, .
     why = f"flexlash could not read {submission.name}, so that nothing in it could be marked"
     try:
         if submission.kind == "workbook":
-            copy = ask(marked_copy, within, submission.data, findings, submission.name)
+            copy = ask(marked_copy, within, submission.data, findings, submission.name, limits)
             return copy.data, copy.lost
         if submission.kind in {"csv", "parquet"}:
             return ask(marked_table, within, submission.sheets, findings, submission.name), ()

@@ -12,6 +12,7 @@ from typing import TypeVar
 
 from pebble import ProcessExpired, ProcessPool
 
+from flexlash.submission.reading.libraries import ChangedLibrary
 from flexlash.submission.reading.limited import Fault, carried_out, prepare
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
@@ -49,12 +50,12 @@ def begin() -> ProcessPool:
 def ask(task: Callable[..., Result], limits: ReadingLimits, *arguments: object) -> Result:
     """Return a task of these arguments, done in the limited process.
 
-    Raises Refusal when the task refuses its file, exceeds a limit or stops the process, ProcessFaultError when the
-    task itself is at fault or no process can be started.
+    Raises Refusal when the task refuses its file, exceeds a limit or stops the process, ChangedLibrary when a library
+    is to blame, ProcessFaultError when the task itself is at fault or no process can be started.
     """
     with _ONE_AT_A_TIME:
         answer = _answer(task, limits, arguments)
-    if isinstance(answer, Refusal):
+    if isinstance(answer, Refusal | ChangedLibrary):
         raise answer
     if isinstance(answer, Fault):
         raise ProcessFaultError(f"{answer.kind} in the limited process\n{answer.trace}")
@@ -63,7 +64,7 @@ def ask(task: Callable[..., Result], limits: ReadingLimits, *arguments: object) 
 
 def _answer(
     task: Callable[..., Result], limits: ReadingLimits, arguments: tuple[object, ...]
-) -> Result | Refusal | Fault:
+) -> Result | Refusal | ChangedLibrary | Fault:
     """Return what the limited process answers, or what it died of."""
     try:
         future = begin().schedule(carried_out, (task, limits, arguments), timeout=limits.seconds)

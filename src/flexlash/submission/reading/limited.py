@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from flexlash.submission.reading.libraries import ChangedLibrary, require_known_libraries
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
 
@@ -46,7 +47,7 @@ class _State:
     """What this process knows of itself: whether it handles a file now, and what failed while it was prepared."""
 
     handles_a_file = False
-    fault: Fault | None = None
+    fault: Fault | ChangedLibrary | None = None
 
 
 def prepare() -> None:
@@ -56,8 +57,17 @@ def prepare() -> None:
         _warm_up()
     except BaseException as fault:  # noqa: BLE001
         # Told by the first answer: a process that ends here could not say why.
-        _State.fault = Fault.of(fault)
+        _State.fault = _why(fault)
     sys.addaudithook(_judge)
+
+
+def _why(fault: BaseException) -> Fault | ChangedLibrary:
+    """Return what failed while the libraries were loaded: a library that lacks something, or a fault in words."""
+    try:
+        require_known_libraries()
+    except ChangedLibrary as changed:
+        return changed
+    return Fault.of(fault)
 
 
 def _silence() -> None:
@@ -77,14 +87,14 @@ def _warm_up() -> None:
 
 
 def carried_out(task: Callable[..., Any], limits: ReadingLimits, arguments: tuple[Any, ...]) -> Any:
-    """Return what a task gives within limits, the Refusal that it raises, or the Fault that it has."""
+    """Return what a task gives within limits, the Refusal or ChangedLibrary it raises, or the Fault that it has."""
     if _State.fault:
         return _State.fault
     try:
         with limited(limits):
             return task(*arguments)
-    except Refusal as refusal:
-        return refusal
+    except (Refusal, ChangedLibrary) as told:
+        return told
     except MemoryError:
         return limits.exceeded("memory_mebibytes")
     except BaseException as fault:  # noqa: BLE001
