@@ -180,7 +180,8 @@ def test_the_limit_for_a_wanted_share_is_the_programs_percentile(study, tmp_path
         typed(path, tmp_path / f"{n}.xlsx", "Explorer", {VARIANT: name, WANTED: share})
         for n, share in enumerate(wanted)
     ]
-    for key, book in zip(wanted.values(), convert_all(books, "xlsx", tmp_path / "again"), strict=True):
+    again = convert_all(books, "xlsx", tmp_path / "again")
+    for key, book in zip(wanted.values(), again, strict=True):
         values = values_of(book, "Explorer")
         found, half = _number(values[FOUND]), _number(values[FOUND_ERROR])
         step = 10.0 ** -_decimals(values[FOUND])
@@ -189,6 +190,23 @@ def test_the_limit_for_a_wanted_share_is_the_programs_percentile(study, tmp_path
         error = _rows(outcome)[name][key.replace("_arcmin", "_standard_error_arcmin")]
         assert half == pytest.approx(1.96 * error, rel=0.05, abs=0.51 * step)
         assert half >= step
+
+
+@needs_libreoffice
+def test_an_answer_has_the_digits_that_are_known(study, tmp_path):
+    """Case 1 at 3.75′ is told as 1.687 %, where its interval leaves no more; a share known better has no interval."""
+    path = _explorer_alone(study[0], tmp_path / "alone.xlsx")
+    asked = {"B3-160 case 1": 3.75, "B3-160 case 4 r_m 80": 3.8}
+    books = [
+        typed(path, tmp_path / f"{limit}.xlsx", "Explorer", {VARIANT: name, LIMIT: limit})
+        for name, limit in asked.items()
+    ]
+    few, many = (values_of(book, "Explorer") for book in convert_all(books, "xlsx", tmp_path / "again"))
+    assert [few[cell] for cell in (SHARE, LOW, HIGH, PPM)] == ["1.687 %", "1.685 %", "1.689 %", "16870"]
+    row = _rows(study[0])["B3-160 case 4 r_m 80"]
+    assert row["probability_over_limit_high"] - row["probability_over_limit_low"] < 3e-5
+    assert many[SHARE].startswith("99.452")
+    assert _decimals(many[SHARE]) <= 5
 
 
 @needs_libreoffice
