@@ -121,8 +121,12 @@ WRONG = {
     "the submission itself": (["a.xlsx"], "a.xlsx", "never overwrites"),
     "a file for a folder": (["a.xlsx"], "afile", "a file that is no folder"),
     "a file in a path": (["a.xlsx"], "afile/out", "a file that is no folder"),
-    "standard output": (["a.xlsx"], "-", "or be a folder; - is neither"),
-    "an ending left out": (["a.xlsx"], "results.", r"results\. is neither"),
+    "standard output": (["a.xlsx"], "-", "not .*-: only --json writes to standard output"),
+    "another text": (["a.xlsx"], "x.txt", r"or be a folder, not in \.txt"),
+    "an ending and a space": (["a.xlsx"], "x.xlsx ", r"or be a folder, not in \.xlsx "),
+    "a point without an ending": (["a.xlsx"], "results.", r"ends in a point without an ending: write results\.xlsx"),
+    "an ending alone": (["a.xlsx"], ".xlsx", r"an ending without a name: write a name before \.xlsx"),
+    "another ending alone": (["a.xlsx"], ".CSV", r"an ending without a name"),
 }
 
 
@@ -143,6 +147,30 @@ def test_a_report_may_be_parquet_and_a_mended_file_not(tmp_path):
     assert report_outputs(Plan(inputs=paths), paths, tmp_path / "x.parquet")[0].path == tmp_path / "x.parquet"
     with pytest.raises(ValueError, match="parquet"):
         mended_outputs(Plan(inputs=paths), paths, tmp_path / "x.parquet")
+
+
+@pytest.mark.parametrize("name", ["reports", "study-2.1", "v1.0b", "Wall 1.6", "a.b c", "of the month.february"])
+def test_without_a_known_ending_out_is_a_folder(name, tmp_path):
+    """A name that ends as no kind of file does is that of a folder, made if it is absent; so is any folder there is."""
+    paths = [tmp_path / "a.xlsx"]
+    (output,) = report_outputs(Plan(inputs=paths), paths, tmp_path / name)
+    assert output.path == tmp_path / name / "a-report.xlsx"
+    (tmp_path / "there.txt").mkdir()
+    assert report_outputs(Plan(inputs=paths), paths, tmp_path / "there.txt")[0].path.parent == tmp_path / "there.txt"
+
+
+@pytest.mark.parametrize("output", ["-", "results.", "afile", ".xlsx", "x.txt"])
+@pytest.mark.parametrize("command", [["run"], ["check", "--annotate"], ["check", "--apply-fixes"]], ids=" ".join)
+def test_an_out_that_cannot_be_meant_is_said_before_computing(command, output, tmp_path, table, sound, monkeypatch):  # noqa: PLR0917
+    """It is a usage error that names OUT; nothing is computed, made or changed."""
+    monkeypatch.chdir(tmp_path)
+    Path("afile").touch()
+    table([{**sound, "torque_Nm": ""}])
+    said = _call(*command, "submission.csv", "-o", output)
+    assert str(said).startswith("usage: ")
+    assert output.removeprefix("x") in said
+    assert sorted(_contents(tmp_path)) == ["afile", "submission.csv"]
+    assert not Path(output).is_dir()
 
 
 def test_a_folder_is_made(tmp_path):

@@ -28,6 +28,9 @@ REPORTS = (".xlsx", ".csv", ".parquet", ".json")
 
 MENDED = (".xlsx", ".xlsm", ".csv")
 WORKBOOK = (".xlsx",)
+_ENDING = re.compile(r"\.[a-z][a-z0-9]{0,6}", re.IGNORECASE)
+"""What ends the name of a kind of file; a point with a number, as in `study-2.1`, may be part of a folder's name."""
+
 _RECREATED = "-recreated"
 _FORBIDDEN = re.compile(r'[<>:"/\\|?*\x00-\x1f\x7f]')
 """What no name of a file can hold on every system."""
@@ -93,6 +96,7 @@ def template_output(output: Path | None, old: Path | None, *, force: bool) -> Ou
     target = output or default
     plan = Plan(inputs=[old] if old else [])
     plan.refuse_input(target)
+    _require_name(target)
     if target.suffix.lower() != ".xlsx":
         raise ValueError(f"A template is a workbook: -o must end in .xlsx, not {target.name}.")
     claimed = plan.claim(target, named=True, forced=True)
@@ -111,8 +115,8 @@ def _outputs(
     endings: Sequence[str],
 ) -> list[Output]:
     """Return the output of each submission: in its own folder, in the folder that was named, or the one file named."""
-    if output is not None and (output.name == "-" or (output.name.endswith(".") and output.name.strip("."))):
-        raise ValueError(f"OUT must end in {', '.join(endings)} or be a folder; {output.name} is neither.")
+    if output is not None:
+        _require_name(output)
     if output is not None and not _is_folder(output):
         if len(submissions) > 1:
             raise ValueError("Several submissions need a folder as OUT.")
@@ -137,9 +141,24 @@ def _claims(plan: Plan, submissions: Sequence[Path], folder: Path | None, name: 
     return [claimed[place] for place in range(len(submissions))]
 
 
+def _require_name(output: Path) -> None:
+    """Raise ValueError for an OUT that names neither a file nor a folder."""
+    if output.name == "-":
+        raise ValueError(f"OUT must be a file or a folder, not {output}: only --json writes to standard output.")
+    if output.name.lower() in {*REPORTS, *MENDED}:
+        raise ValueError(f"OUT is an ending without a name: write a name before {output.name}.")
+    if output.name.endswith(".") and not _is_there(output):
+        raise ValueError(f"{output.name} ends in a point without an ending: write {output.name}xlsx, or leave it out.")
+
+
 def _is_folder(output: Path) -> bool:
+    """Whether OUT is meant as a folder: one that is there, or a name without the ending of a kind of file."""
+    return _is_there(output) or str(output).endswith("\\") or not _ENDING.fullmatch(output.suffix.strip())
+
+
+def _is_there(folder: Path) -> bool:
     # Not is_dir, which raises for a name that is too long.
-    return os.path.isdir(output) or not output.suffix or str(output).endswith(("/", "\\"))  # noqa: PTH112
+    return os.path.isdir(folder)  # noqa: PTH112
 
 
 def _make_folder(output: Path, endings: Sequence[str]) -> None:
