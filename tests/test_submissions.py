@@ -252,3 +252,25 @@ def test_a_table_beside_is_named_with_the_submission_that_needs_it(table, sound,
     done = _call("check", path, "--tolerances", tmp_path / "none.csv")
     assert done.exit_code == 5
     assert done.stderr.startswith(f"{path}: {tmp_path / 'none.csv'} could not be opened or written: ")
+
+
+def test_what_was_left_alone_is_said_under_its_submission(table, sound, tmp_path):
+    """Of several submissions, the remark that a report took another name says whose report it is, even with --quiet."""
+    paths = [table([{**sound, "torque_Nm": 8000}], name) for name in ("a.csv", "b.csv")]
+    (tmp_path / "a-report.xlsx").write_bytes(b"somebody else's")
+    done = _call("run", "--samples", 64, "--quiet", *paths)
+    assert done.exit_code == 0
+    (said,) = done.stderr.splitlines()
+    assert said.startswith(f"{paths[0]}: {tmp_path / 'a-report.xlsx'} was left alone")
+
+
+def test_diff_says_which_of_both_is_none(table, sound, tmp_path):
+    """Both lines about a file that cannot be compared name it, and --json says them in the shape of a submission."""
+    other = tmp_path / "other.txt"
+    other.write_bytes(b"%PDF-1.7")
+    done = _call("diff", table([sound]), other)
+    assert done.exit_code == 4
+    assert [line.startswith(str(other)) for line in done.stderr.splitlines()] == [True, True]
+    found = json.loads(_call("diff", table([sound]), other, "--json").stdout)
+    assert list(found) == SHAPE
+    assert (found["exit_code"], found["findings"][0]["code"], found["counts"]["errors"]) == (4, "E101", 1)

@@ -200,12 +200,10 @@ class Submissions:
             print_json(ended.as_dictionary())
         for line in lines:
             click.echo(click.style(line.text, fg=line.colour) if line.colour else line.text, err=line.is_message)
+        name = f"{named(ended.path)}: "
         for remark in ended.outcome.remarks if ended.outcome else ():
-            click.echo(click.style(remark, fg="yellow"), err=True)
-        if ended.outcome is not None and ended.outcome.fault is not None:
-            complain(ended.error or "")
-        if ended.outcome is None and ended.error:
-            name = named(ended.path)
-            complain(ended.error if name in ended.error else f"{name}: {ended.error}")
-            if ended.refusal:
-                click.echo(f"Mend: {ended.refusal.fix}", err=True)
+            click.echo(click.style(f"{name if self.several else ''}{remark}", fg="yellow"), err=True)
+        if ended.error and (ended.outcome is None or ended.outcome.fault is not None):
+            complain(ended.error if named(ended.path) in ended.error else f"{name}{ended.error}")
+        if ended.refusal:
+            click.echo(f"{name if self.several else ''}Mend: {ended.refusal.fix}", err=True)
