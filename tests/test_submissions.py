@@ -63,16 +63,16 @@ CODES = {"fine": 0, "partly": 3, "nothing": 4, "refused": 4, "missing": 5, "fail
 @pytest.fixture
 def _fails(monkeypatch):
     """Let the submission failing.csv meet an internal error."""
-    import flexlash.pipeline
+    from flexlash import examination
 
-    validate = flexlash.pipeline.validate
+    validate = examination.validate
 
     def failing(submission, limits):
         if submission.name == "failing.csv":
             raise ZeroDivisionError("secret")
         return validate(submission, limits)
 
-    monkeypatch.setattr("flexlash.pipeline.validate", failing)
+    monkeypatch.setattr(examination, "validate", failing)
 
 
 @pytest.mark.usefixtures("_fails")
