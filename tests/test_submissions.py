@@ -15,6 +15,9 @@ from click.testing import CliRunner
 import flexlash
 import regenerate
 from flexlash.cli import cli
+from flexlash.submission.reading.isolated import ProcessFaultError
+from flexlash.submission.reading.libraries import ChangedLibrary
+from flexlash.terminal import internal_error
 
 SHAPE = [
     "submission", "path", "sha256", "version", "seed", "method", "seconds", "exit_code", "error", "counts", "findings",
@@ -274,3 +277,13 @@ def test_diff_says_which_of_both_is_none(table, sound, tmp_path):
     found = json.loads(_call("diff", table([sound]), other, "--json").stdout)
     assert list(found) == SHAPE
     assert (found["exit_code"], found["findings"][0]["code"], found["counts"]["errors"]) == (4, "E101", 1)
+
+
+def test_an_internal_error_says_what_is_known_of_it():
+    """A changed library is told in its own words, a fault of the limited process by what it was."""
+    changed = ChangedLibrary("openpyxl 9.9 reads a workbook as something else. Your file is not to blame")
+    assert internal_error(changed) == f"Internal error: {changed}."
+    fault = ProcessFaultError("ZeroDivisionError in the limited process\nTraceback")
+    assert internal_error(fault).startswith(
+        "Internal error (ZeroDivisionError in the limited process): this is a fault"
+    )

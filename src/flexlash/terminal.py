@@ -49,9 +49,13 @@ def internal_error(fault: BaseException) -> str:
     if os.environ.get("FLEXLASH_DEBUG") == "1":
         traceback.print_exception(fault)
     if isinstance(fault, ChangedLibrary):
-        return f"Internal error: {readable(fault)}."
+        return f"Internal error: {shown(fault, longest=400)}."
+    from flexlash.submission.reading.isolated import ProcessFaultError
+
+    lines = str(fault).splitlines()
+    kind = lines[0] if isinstance(fault, ProcessFaultError) and lines else type(fault).__name__
     return (
-        f"Internal error ({type(fault).__name__}): this is a fault of flexlash, not of your file. "
+        f"Internal error ({readable(kind)}): this is a fault of flexlash, not of your file. "
         "Set FLEXLASH_DEBUG=1 for details."
     )
 
