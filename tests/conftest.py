@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import openpyxl
 import pytest
 
 from filled import SOUND, filled
@@ -89,6 +90,26 @@ def table(tmp_path: Path) -> Callable[..., Path]:
             writer = csv.DictWriter(file, headers)
             writer.writeheader()
             writer.writerows(rows)
+        return path
+
+    return write
+
+
+@pytest.fixture
+def book(tmp_path: Path) -> Callable[..., Path]:
+    """Return a function that writes sheets of rows as a workbook, changes it, and gives its path."""
+
+    def write(sheets, change=None):
+        workbook = openpyxl.Workbook()
+        workbook.remove(workbook.active)
+        for name, rows in sheets.items():
+            sheet = workbook.create_sheet(name)
+            for row in rows:
+                sheet.append(row)
+        if change:
+            change(workbook)
+        path = tmp_path / "submission.xlsx"
+        workbook.save(path)
         return path
 
     return write

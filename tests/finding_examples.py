@@ -170,6 +170,8 @@ def _tables(folder: Path) -> Made:
     variants = _numbered(*({"tolerance_class": f"T{number}"} for number in range(1, len(classes) + 1)))
     variants[-1] |= {"rim_length_mm": 158, "rim_thickness_mm": 3.2}
     variants += [CUP | {"variant": "pressed", "tolerance_class": "press fit"}]
+    variants += [CUP | {"variant": "doubled", "tolerance_class": "twice"}]
+    variants += [CUP | {"variant": f"of {material}", "material": material} for material in ("twice", "half")]
     options = {}
     for name, table in (("tolerances", rows), ("materials", materials)):
         options[name] = folder / f"{name}.csv"
@@ -315,8 +317,23 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "no rows": _sheets(Variants=_lines([CUP])[:1]),
     "two sheets": _sheets(Variants=_lines([CUP]), Variants_=_lines([CUP])),
     "a copied sheet": _sheets(Variants=_lines([CUP]), Variants_copy=_lines([CUP])),
-    "misspelt sheet": _sheets(
-        Variants=_lines([CUP]), Tolerance=[["Tolerance class", "Dimension"], ["fine", "rim_length"]]
+    "sheets of other names": _sheets(Sheet1=_lines([CUP])),
+    "two sheets of one kind": _sheets(
+        Variants=_lines([CUP]),
+        Tolerance=[["Tolerance class", "Dimension", "Grade", "Distribution"]],
+        Limits=[["Tolerance class", "Dimension", "Grade", "Distribution"]],
+    ),
+    "other rows": _sheets(Variants=[*_lines([CUP]), ["C-2"], [], ["Mean", "cup", None, 800]]),
+    "unused": _sheets(
+        Variants=_lines([CUP]),
+        Materials=[["Material", "Shear modulus G [GPa]"], ["20Cr2Ni4", 81], ["new steel", None]],
+    ),
+    "other columns": _plain(
+        _text(
+            [CUP | {"Rim lenght [mm]": "", "Wall tol": "±0.02", "variant ": "", "disk_inner_radius_mm": 80}],
+            LABELS | {"disk_inner_radius_mm": "Hub diameter"},
+        ),
+        "study.csv",
     ),
     "document type": lambda folder: _file(
         folder, archive_of(parts_of() | {"xl/styles.xml": "<!DOCTYPE a><styleSheet/>"}), "study.xlsx"

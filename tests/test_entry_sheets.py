@@ -5,12 +5,11 @@ from __future__ import annotations
 import pytest
 
 from flexlash.columns import columns_of
-from flexlash.submission.entry_sheets import entry_sheets, tell_misspelt_sheets, tell_second_tables
+from flexlash.submission.entry_sheets import entry_sheets, tell_other_names, tell_second_tables
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.raw import RawSheet, Submission
 from flexlash.submission.reading.refusal import Refusal
-from flexlash.submission.repairs import repair_of
 
 
 def _submission(kind="workbook", **sheets):
@@ -45,12 +44,18 @@ def test_a_missing_sheet_gets_the_nearest(sheets, found, suggestion):
     assert (refusal.code, refusal.facts) == ("E108", {"found": found, "suggestion": suggestion})
 
 
-@pytest.mark.parametrize("name", ["Variant", "Varients", "Tabelle1", "Sheet1", "Variants (2)"])
-def test_a_sheet_with_the_headers_of_variants_was_meant(name):
-    """A sheet with the headers of Variants is suggested whatever its name, and renaming it mends the file."""
-    refusal = _refused(_submission(Materials="Materials", **{name: "Variants"}))
-    assert refusal.facts["suggestion"] == refusal.facts["sheet"] == name
-    assert refusal.facts["repair"] == "Variants"
+@pytest.mark.parametrize(
+    "name",
+    ["Variant", "Varients", "Varianten", "Tabelle1", "Sheet1", "Copy of Variants", "Variants (2)", "Table 1-1"],
+)
+def test_a_sheet_that_alone_has_the_headers_of_variants_is_read(name):
+    """The one sheet with the headers of Variants is read whatever its name, and an info says so."""
+    submission = _submission(Materials="Materials", Notes=("Material", "Price"), **{name: "Variants"})
+    found = entry_sheets(submission, ReadingLimits())
+    assert {schema: sheet.name for schema, sheet in found.items()} == {"Variants": name, "Materials": "Materials"}
+    ledger = Ledger("a.xlsx")
+    assert tell_other_names(submission, found, ledger) == set()
+    assert [(one.code, one.place) for one in ledger.findings] == [("I520", name)]
 
 
 @pytest.mark.parametrize(
@@ -58,19 +63,37 @@ def test_a_sheet_with_the_headers_of_variants_was_meant(name):
     [
         ("Materials", "Material", "Materials"),
         ("Materials", "Steels", "Materials"),
+        ("Materials", "Materials - Table 1", "Materials"),
         ("Tolerances", "Tolerance", ("Tolerance class", "Dimension")),
-        ("Tolerances", "Tolerences", "Tolerances"),
+        ("Tolerances", "Tolerances (2)", "Tolerances"),
         ("Tolerances", "Tabelle2", "Tolerances"),
         ("Settings", "Setting", "Settings"),
     ],
 )
-def test_a_side_sheet_of_another_name_is_an_error(schema, name, headers):
-    """A sheet meant for a missing one stops the work, so that no built-in table takes its place without a word."""
+def test_a_side_sheet_of_another_name_is_read(schema, name, headers):
+    """A sheet that alone has the headers of a missing one is read, so that no built-in table takes its place."""
     submission = _submission(Variants="Variants", **{name: headers})
+    found = entry_sheets(submission, ReadingLimits())
+    assert found[schema].name == name
     ledger = Ledger("a.xlsx")
-    assert tell_misspelt_sheets(submission, entry_sheets(submission, ReadingLimits()), ledger) == {schema}
-    (found,) = ledger.findings
-    assert (found.code, found.place, found.suggestion, repair_of(found)) == ("E119", name, schema, schema)
+    assert tell_other_names(submission, found, ledger) == set()
+    assert [(one.code, one.place) for one in ledger.findings] == [("I520", name)]
+    assert not ledger.everything
+
+
+def test_of_two_sheets_that_may_be_variants_both_are_named():
+    """Two sheets with the headers of Variants, neither of its name, are refused by both names."""
+    refusal = _refused(_submission(Sheet1="Variants", Sheet2="Variants", Materials="Materials"))
+    assert (refusal.code, refusal.facts["found"], refusal.facts["other"]) == ("E127", "Sheet1, Sheet2", "Variants")
+
+
+def test_of_two_side_sheets_none_is_read():
+    """Two sheets that may be Tolerances stop the work: no built-in class takes their place."""
+    submission = _submission(Variants="Variants", coarse="Tolerances", fine="Tolerances")
+    ledger = Ledger("a.xlsx")
+    assert tell_other_names(submission, entry_sheets(submission, ReadingLimits()), ledger) == {"Tolerances"}
+    assert [(found.code, found.place) for found in ledger.findings] == [("E127", "coarse")]
+    assert "coarse, fine" in ledger.findings[0].message
     assert ledger.everything
 
 
@@ -88,7 +111,7 @@ def test_other_sheets_are_left_alone(sheets):
     """A sheet with few or no such headers, or beside the right one, is the author's own."""
     submission = _submission(Variants="Variants", **sheets)
     ledger = Ledger("a.xlsx")
-    assert tell_misspelt_sheets(submission, entry_sheets(submission, ReadingLimits()), ledger) == set()
+    assert tell_other_names(submission, entry_sheets(submission, ReadingLimits()), ledger) == set()
     assert ledger.findings == []
 
 

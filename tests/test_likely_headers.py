@@ -21,7 +21,8 @@ NEEDED = {
 
 def _found(headers):
     ledger = Ledger("a.xlsx")
-    find_headings(RawSheet(name="Variants", rows={1: dict(enumerate(headers, start=1))}), "Variants", ledger)
+    rows = {1: dict(enumerate(headers, start=1)), 2: dict.fromkeys(range(1, len(headers) + 1), 1.0)}
+    find_headings(RawSheet(name="Variants", rows=rows), "Variants", ledger)
     return [(found.code, found.cell, found.suggestion) for found in ledger.findings]
 
 

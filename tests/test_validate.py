@@ -5,7 +5,6 @@ import decimal
 import math
 
 import numpy as np
-import openpyxl
 import polars as pl
 import pytest
 
@@ -60,26 +59,6 @@ def _told(validated, *levels):
 
 def _kept(validated):
     return [variant.name for variant in validated.variants]
-
-
-@pytest.fixture
-def book(tmp_path):
-    """Return a function that writes sheets of rows as a workbook, changes it, and gives its path."""
-
-    def write(sheets, change=None):
-        workbook = openpyxl.Workbook()
-        workbook.remove(workbook.active)
-        for name, rows in sheets.items():
-            sheet = workbook.create_sheet(name)
-            for row in rows:
-                sheet.append(row)
-        if change:
-            change(workbook)
-        path = tmp_path / "submission.xlsx"
-        workbook.save(path)
-        return path
-
-    return write
 
 
 def test_a_sound_row_in_si():
@@ -377,7 +356,7 @@ def test_a_missing_or_double_column_leaves_nothing(header):
     """Without a required column, or with one twice, nothing is computed and no row is blamed for it."""
     validated = validate(_submission(_named(3), headers=[header]))
     codes = [code for code, _ in _told(validated, "error")]
-    assert codes in (["E111"], ["E114", "E111"])
+    assert codes in (["E111"], ["E112"], ["E114", "E111"])
     assert validated.variants == []
 
 
@@ -398,7 +377,7 @@ def test_no_header_row_leaves_nothing():
 
 def test_a_misspelt_sheet_is_asked_about(book):
     """The message of a misspelt sheet asks whether it was meant."""
-    (found,) = check(book({"Varaints": [KEYS]})).findings
+    (found,) = check(book({"Varaints": [["a"]]})).findings
     assert found.message == "submission.xlsx has no sheet Variants; it has the sheets Varaints; did you mean Varaints?"
 
 

@@ -172,14 +172,6 @@ CATALOGUE = _rules(
         "Files are read by a separate process with little memory and time, so that a faulty file stops only itself.",
     ),
     (
-        "E119",
-        "misspelt sheet",
-        "{place}: this sheet has the headers of {suggestion}, but not its name, and was not read.",
-        "Rename the sheet to {suggestion}; delete it if it is not meant to be used.",
-        "Without the sheet its built-in table would be used and your own values left out without a word, so nothing is "
-        "computed.",
-    ),
-    (
         "E120",
         "not a report",
         "{file} is no report made by flexlash.",
@@ -199,6 +191,22 @@ CATALOGUE = _rules(
         "{file} carries inputs that cannot be read: {found}.",
         "Take the report as flexlash wrote it, or run the submission that it was made of.",
         "The hidden sheet Carried is checked as every submission is; nothing of it is used when one part is wrong.",
+    ),
+    (
+        "E127",
+        "several sheets of one kind",
+        "{place}: several sheets have the headers of {other}, but not one has its name: {found}.",
+        "Rename the one that is meant to {other}, and delete the others or submit them on their own.",
+        "A sheet of another name is read when it alone has the headers of an entry sheet. Of several nobody but their "
+        "author knows which holds.",
+    ),
+    (
+        "E128",
+        "diameter instead of a radius",
+        "{place}: the header {value} names a diameter, but flexlash takes the {name}.",
+        "Enter half of each value under {label}{detail}.",
+        "Cylinder and disk are entered by their radii; the bore alone may be given as a diameter. Rows that hold a "
+        "value under such a header are not computed.",
     ),
     (
         "E201",
@@ -316,6 +324,14 @@ CATALOGUE = _rules(
         "{place} {name} shows {value}: {requirement} is required.",
         "Format the cell as Number and type the value; for a tolerance in per cent choose % as its deviation unit.",
         "Excel stores 5% as 0.05. For a length, torque or modulus it is not certain which of the two is meant.",
+    ),
+    (
+        "E217",
+        "nothing but a name",
+        '{place}: the row "{value}" holds no number, so that it is no variant.',
+        "Fill the row, or delete it.",
+        "A variant needs a torque, a length, a radius and a wall. A row that lacks them all is told once, not cell by "
+        "cell.",
     ),
     (
         "E219",
@@ -814,6 +830,44 @@ CATALOGUE = _rules(
         "out, the row has as many cells as there are headers, and the digits of the decimals stand in its last column.",
     ),
     (
+        "W433",
+        "no row of the table",
+        '{place}: this row was not read, since it looks like {detail}: "{value}".',
+        "Nothing to do; or complete the row, or give it another name, if it is an entry.",
+        "Sums and means below a table, notes and legends are no entries. A row is taken for one only when it lacks "
+        "what every entry needs.",
+    ),
+    (
+        "W434",
+        "column takes no part",
+        "{place}: the column {value} looks like {detail}, but takes no part in the calculation.",
+        "Enter lower and upper deviation, or a grade, on Tolerances (beside a text table: --tolerances FILE.csv).",
+        "Scatter comes from the sheet Tolerances alone: one row per class and dimension; Limits at ± sigma there says "
+        "how wide a normal distribution is within its limits. Means, standard deviations, Cp and Cpk are not taken by "
+        "this version. The column is carried to the report.",
+    ),
+    (
+        "W435",
+        "misspelt header, empty column",
+        "{place}: the header {value} is not understood, but its column is empty.",
+        "Write {label}, or leave it: nothing is lost.",
+        "A header that is nearly that of the template, or with an unknown unit. Over values it would be an error.",
+    ),
+    (
+        "W436",
+        "empty column twice",
+        "{place}: {name} already stands in column {other}; this one is empty and was not read.",
+        "Delete the empty column.",
+        "With values in both columns flexlash could not know which holds, and would compute nothing.",
+    ),
+    (
+        "W437",
+        "fault in an unused row",
+        "{place}: {detail}; no variant uses this {other}.",
+        "Mend the row before a variant uses it, or delete it.",
+        "The same fault is an error as soon as a variant uses the material or the tolerance class.",
+    ),
+    (
         "W438",
         "class leaves dimensions exact",
         '{place}: class "{value}" has no row for {detail}, which class standard scatters; taken as exact.',
@@ -946,6 +1000,14 @@ CATALOGUE = _rules(
         "{place}: this row holds the units of the columns ({value}) and was not read as data.",
         "Nothing to do. A unit belongs into its header's brackets.",
         "A row of units right below the headers is skipped when its units are those that the headers name or imply.",
+    ),
+    (
+        "I520",
+        "sheet of another name",
+        "{place}: this sheet was read as {other}, since it alone has the headers of that sheet.",
+        "Nothing to do, or rename the sheet to {other}.",
+        "Other programs and copies rename sheets: Sheet1, Variants (2), Variants - Table 1-1. The headers tell what a "
+        "sheet holds.",
     ),
     (
         "I525",

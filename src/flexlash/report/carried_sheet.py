@@ -10,14 +10,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from flexlash import __version__
-from flexlash.columns import ENTRY_SHEETS
 from flexlash.outcome import Outcome
 from flexlash.report.styles import Book
+from flexlash.submission.entry_sheets import sheet_names
 from flexlash.submission.reading.carried import FORM, SHEET, SWITCHES
-from flexlash.submission.reading.raw import RawSheet, RawValue
+from flexlash.submission.reading.raw import RawSheet, RawValue, Submission
 from flexlash.submission.reading.wire import to_wire
 from flexlash.submission.reading.workbook import Cells
-from flexlash.submission.spellings import plain
 
 __all__ = ["carried_text", "write_carried"]
 
@@ -51,7 +50,7 @@ def carried_text(outcome: Outcome) -> str:
         | {name: bool(getattr(outcome.options, name)) for name in SWITCHES},
         "cells": to_wire(
             Cells(
-                sheets=_sheets(submission.sheets, {found.sheet for found in outcome.findings}),
+                sheets=_sheets(submission, {found.sheet for found in outcome.findings}),
                 modified=submission.modified,
                 role=submission.role,
                 template_version=submission.template_version,
@@ -63,13 +62,13 @@ def carried_text(outcome: Outcome) -> str:
     return text.replace("_x", "_\\u0078").replace("x005F_", "\\u0078005F_")
 
 
-def _sheets(sheets: Mapping[str, RawSheet], named: set[str]) -> list[RawSheet]:
+def _sheets(submission: Submission, named: set[str]) -> list[RawSheet]:
     """Return the sheets that were read, and of others that a finding names as much as makes it found again."""
-    ours = set(map(plain, ENTRY_SHEETS))
+    ours = set(sheet_names(submission).values())
     return [
-        sheet if plain(name) in ours else replace(sheet, rows=_top(sheet.rows))
-        for name, sheet in sheets.items()
-        if plain(name) in ours or name in named
+        sheet if name in ours else replace(sheet, rows=_top(sheet.rows))
+        for name, sheet in submission.sheets.items()
+        if name in ours or name in named
     ]
 
 

@@ -12,7 +12,7 @@ from flexlash.findings import CATALOGUE, Finding, shown
 from flexlash.outcome import Outcome
 from flexlash.report.links import FIRST_FINDING, finding_list, result_rows, row_of, rules_of, write_link
 from flexlash.report.styles import Book
-from flexlash.report.submission_sheets import title_of
+from flexlash.report.submission_sheets import titles_of
 from flexlash.result_columns import FINDINGS
 
 __all__ = ["write_findings"]
@@ -46,9 +46,10 @@ def write_findings(book: Book, outcome: Outcome) -> None:
         sheet.write_string(header, place, column.label, book.format("header"))
         sheet.write_comment(header, place, column.help)
     findings, rows, by_name = finding_list(outcome), result_rows(outcome), _rows_by_name(outcome)
+    titles = titles_of(outcome.submission)
     for row, found in enumerate(findings, start=header + 1):
         result = rows.get(row_of(outcome, found), by_name.get(found.variant))
-        _write_finding(book, sheet, row, found, result)
+        _write_finding(book, sheet, row, found, title=titles.get(found.sheet, ""), result=result)
     sheet.autofilter(header, 0, header + len(findings), len(FINDINGS) - 1)
     sheet.freeze_panes(0, 2)
 
@@ -95,15 +96,15 @@ def _write_rules(book: Book, sheet: Any, rules: Mapping[str, list[Finding]]) -> 
     return header
 
 
-def _write_finding(book: Book, sheet: Any, row: int, found: Finding, result: int | None) -> None:
+def _write_finding(book: Book, sheet: Any, row: int, found: Finding, *, title: str, result: int | None) -> None:
     """Write one finding, its level coloured, its variant linked to Results and its cell to the submission."""
     texts = found.as_dictionary()
-    label = _LABELS.get((_schema(found), found.column)) or _BY_KEY.get(found.column)
+    label = _LABELS.get((_schema(title), found.column)) or _BY_KEY.get(found.column)
     if label:
         texts["column"] = f"{label}\n{found.column}"
     lines = [1 + len(texts[key]) // width for key, width in _PER_LINE.items()]
     sheet.set_row(row, _LINE * max(2 if label else 1, *lines))
-    title, wrap = title_of(found.sheet), book.format("wrap")
+    wrap = book.format("wrap")
     for place, (key, text) in enumerate(texts.items()):
         if key == "level":
             sheet.write_string(row, place, text, book.format(_STYLES[found.level]))
@@ -117,7 +118,6 @@ def _write_finding(book: Book, sheet: Any, row: int, found: Finding, result: int
             sheet.write_string(row, place, text, wrap)
 
 
-def _schema(found: Finding) -> str:
-    """Return the entry sheet of a finding as the template names it."""
-    title = title_of(found.sheet)
+def _schema(title: str) -> str:
+    """Return the entry sheet that a sheet of the report mirrors."""
     return "Variants" if title == "Submission" else title

@@ -15,12 +15,13 @@ from flexlash.report.paper import print_readably
 from flexlash.report.raw_cells import raw_text, write_raw
 from flexlash.report.styles import Book
 from flexlash.report.wrapping import LINE_HEIGHT, lines_of
+from flexlash.submission.entry_sheets import sheet_names
 from flexlash.submission.headers import STATUS_HEADER, plain
-from flexlash.submission.reading.read import RawSheet, Unstored
+from flexlash.submission.reading.read import RawSheet, Submission, Unstored
 from flexlash.submission.tables import BUILT_IN_SHEETS, built_in_sheet
 from flexlash.submission.templating.template import TITLES
 
-__all__ = ["MOST_COMMENTS", "title_of", "write_submission"]
+__all__ = ["MOST_COMMENTS", "titles_of", "write_submission"]
 
 MOST_COMMENTS = 2000
 """Most guilty cells that say in a comment what is wrong; Findings lists all."""
@@ -31,12 +32,12 @@ _NAME, _LEAST, _MOST = 16.0, 11.0, 90.0
 """Least widths of the first column and the others, and the greatest; longer texts are wrapped."""
 
 _TEMPLATE_TITLES = frozenset(title for title, _ in TITLES.values())
-_TITLES = {plain(name): "Submission" if name == "Variants" else name for name in ENTRY_SHEETS}
+_TITLES = {name: "Submission" if name == "Variants" else name for name in ENTRY_SHEETS}
 
 
-def title_of(name: str) -> str:
-    """Return the sheet of the report that mirrors a sheet of the submission; an empty text for none."""
-    return _TITLES.get(plain(name), "")
+def titles_of(submission: Submission) -> dict[str, str]:
+    """Return the sheets of the report that mirror sheets of the submission, by the names of these."""
+    return {name: _TITLES[schema] for schema, name in sheet_names(submission).items()}
 
 
 @dataclass(kw_only=True)
@@ -68,8 +69,8 @@ def write_submission(book: Book, outcome: Outcome) -> None:
     validated = outcome.validated
     headers = validated.header_rows if validated else {}
     table = validated.table if validated else None
-    by_title = {title_of(raw.name): raw for raw in outcome.submission.sheets.values()}
-    for schema, title in zip(ENTRY_SHEETS, _TITLES.values(), strict=True):
+    by_title = {title: outcome.submission.sheets[name] for name, title in titles_of(outcome.submission).items()}
+    for schema, title in _TITLES.items():
         raw = by_title.get(title)
         if raw:
             mine = {xl_cell_to_rowcol(cell): guilt for (name, cell), guilt in guilty.items() if name == raw.name}

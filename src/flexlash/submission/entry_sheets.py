@@ -1,6 +1,8 @@
-"""Which sheets of a submission are its entry sheets, and which were meant to be."""
+"""Which sheets of a submission are its entry sheets: by their names, else by their headers."""
 
 from __future__ import annotations
+
+from typing import Any
 
 from flexlash.columns import ENTRY_SHEETS, columns_of
 from flexlash.submission.headers import count_headings
@@ -10,7 +12,7 @@ from flexlash.submission.reading.raw import RawSheet, Submission
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.spellings import closest, plain
 
-__all__ = ["entry_sheets", "tell_misspelt_sheets", "tell_second_tables"]
+__all__ = ["entry_sheets", "sheet_names", "tell_other_names", "tell_second_tables"]
 
 _RESEMBLING = 0.75
 """Likeness of names from which on a sheet with headers of a missing one is taken for it."""
@@ -22,18 +24,18 @@ _LISTED = 5
 
 
 def entry_sheets(submission: Submission, limits: ReadingLimits) -> dict[str, RawSheet]:
-    """Return the entry sheets by schema; letter case and spaces of their names do not matter.
+    """Return the entry sheets by schema: by name, letter case and spaces apart, else the only one with its headers.
 
     Raises Refusal when there is no Variants sheet, two of one name, or more in one than a submission can mean.
     """
-    by_plain: dict[str, RawSheet] = {}
-    for name, sheet in submission.sheets.items():
-        if plain(name) in by_plain and plain(name) in map(plain, ENTRY_SHEETS):
-            raise Refusal("E117", found=name, other=by_plain[plain(name)].name)
-        by_plain[plain(name)] = sheet
-    if plain("Variants") not in by_plain:
+    names: dict[str, str] = {}
+    for name in submission.sheets:
+        if plain(name) in names and plain(name) in map(plain, ENTRY_SHEETS):
+            raise Refusal("E117", found=name, other=names[plain(name)])
+        names[plain(name)] = name
+    found = {schema: submission.sheets[name] for schema, name in sheet_names(submission).items()}
+    if "Variants" not in found:
         raise _without_variants(submission)
-    found = {schema: by_plain[plain(schema)] for schema in ENTRY_SHEETS if plain(schema) in by_plain}
     if submission.kind == "workbook":
         for sheet in found.values():
             limits.require("rows", len(sheet.rows))
@@ -41,32 +43,56 @@ def entry_sheets(submission: Submission, limits: ReadingLimits) -> dict[str, Raw
     return found
 
 
+def sheet_names(submission: Submission) -> dict[str, str]:
+    """Return the name of each entry sheet that a submission has, by schema, in the order of the template."""
+    names = {plain(name): name for name in submission.sheets}
+    found = {schema: names[plain(schema)] for schema in ENTRY_SHEETS if plain(schema) in names}
+    for schema in ENTRY_SHEETS.keys() - found.keys():
+        meant = [name for name in _meant(submission, schema) if name not in found.values()]
+        if len(meant) == 1:
+            found[schema] = meant[0]
+    return {schema: found[schema] for schema in ENTRY_SHEETS if schema in found}
+
+
 def _without_variants(submission: Submission) -> Refusal:
-    """Return the refusal of a file without Variants; it names the sheet that was probably meant."""
+    """Return the refusal of a file without Variants; it names the sheets that were probably meant."""
     names = list(submission.sheets)
     listed = f"the sheets {', '.join(names[:_LISTED])}" if names else "no sheet"
-    meant = _meant(submission, "Variants")
-    if meant:
-        return Refusal("E108", found=listed, sheet=meant, suggestion=meant, repair="Variants")
+    if meant := _meant(submission, "Variants"):
+        return Refusal("E127", sheet=meant[0], **_several(meant, "Variants"))
     return Refusal("E108", found=listed, suggestion=closest("Variants", names))
 
 
-def _meant(submission: Submission, schema: str) -> str:
-    """Return the sheet that holds a schema's headers and has a like name, or nearly all of its headers."""
+def _several(names: list[str], schema: str) -> dict[str, Any]:
+    """Return what the message says of sheets that may all be meant."""
+    return {"found": ", ".join(names[:_LISTED]), "other": schema}
+
+
+def _meant(submission: Submission, schema: str) -> list[str]:
+    """Return the sheets of other names that hold nearly all of a schema's headers, or some and a like name."""
+    if submission.kind != "workbook":
+        return []
     others = [name for name in submission.sheets if plain(name) not in map(plain, ENTRY_SHEETS)]
     counts = {name: count_headings(submission.sheets[name], schema) for name in others}
-    like = closest(schema, [name for name in others if counts[name] > 1], _RESEMBLING)
-    best = max(others, key=lambda name: counts[name], default="")
     telling = min(_TELLING, len(columns_of(schema)))
-    return like or (best if best and counts[best] >= telling else "")
+    sure = [name for name in others if counts[name] >= telling]
+    like = closest(schema, [name for name in others if counts[name] > 1], _RESEMBLING)
+    return sure or [like] * bool(like)
 
 
-def tell_misspelt_sheets(submission: Submission, present: dict[str, RawSheet], ledger: Ledger) -> set[str]:
-    """Tell sheets that were meant for a missing one, which no built-in table may replace; return their schemas."""
+def tell_other_names(submission: Submission, present: dict[str, RawSheet], ledger: Ledger) -> set[str]:
+    """Tell sheets that were read under another name, and several that may be meant; return the schemas of the latter.
+
+    No built-in table may take the place of a sheet that is there twice.
+    """
+    for schema, sheet in present.items():
+        if submission.kind == "workbook" and plain(sheet.name) != plain(schema):
+            ledger.add("I520", sheet=sheet.name, value=sheet.name, other=schema)
     found = set()
-    for schema in ENTRY_SHEETS.keys() - present.keys() if submission.kind == "workbook" else ():
-        if meant := _meant(submission, schema):
-            ledger.add("E119", sheet=meant, value=meant, suggestion=schema, repair=schema)
+    for schema in ENTRY_SHEETS.keys() - present.keys():
+        read = {sheet.name for sheet in present.values()}
+        if meant := [name for name in _meant(submission, schema) if name not in read]:
+            ledger.add("E127", sheet=meant[0], **_several(meant, schema))
             ledger.everything = True
             found.add(schema)
     return found

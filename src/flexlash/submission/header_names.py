@@ -7,10 +7,13 @@ from collections.abc import Mapping
 from flexlash.column import Column
 from flexlash.submission.spellings import plain
 
-__all__ = ["LAST_HEADER_ROW", "known_names", "name_and_unit"]
+__all__ = ["BLANK", "LAST_HEADER_ROW", "known_names", "name_and_unit"]
 
 LAST_HEADER_ROW = 15
 """The header row is one of so many first rows."""
+
+BLANK = " \t\r\n\u00a0\u200b\ufeff"
+"""Characters of which a cell may be full and yet be empty."""
 
 _SHORT = {
     "flexspline_type": ("type",),

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from flexlash.columns import Column, columns_of
 from flexlash.findings import shown
-from flexlash.submission.header_names import LAST_HEADER_ROW, known_names, name_and_unit
+from flexlash.submission.header_names import BLANK, LAST_HEADER_ROW, known_names, name_and_unit
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.likely_headers import likely_headers
+from flexlash.submission.other_headers import radius_of_diameter, tolerance_columns
 from flexlash.submission.reading.read import ErrorCell, RawSheet, RawValue, Unstored, column_letters
 from flexlash.submission.spellings import closest, misspelt, plain
 from flexlash.units import Unit, find_unit
@@ -19,13 +21,16 @@ __all__ = ["STATUS_HEADER", "Heading", "closest", "count_headings", "find_headin
 STATUS_HEADER = "Row status"
 """Header of the template's own formula column, which is never data."""
 
+_OF_TOLERANCES = frozenset({"tolerance_class", "lower_deviation", "upper_deviation", "deviation_unit", "limits_sigma"})
+"""Columns of the template whose names speak of tolerances themselves."""
+
 
 @dataclass(kw_only=True)
 class Heading:
     """The columns found in a sheet: place and factor to the printed unit by key, extra headers by place.
 
-    `doubtful` are the places of headers with an error and the key that was probably meant; `ignored` those of
-    the template's own formulas.
+    `doubtful` are the places of headers that cannot be taken and the key that was probably meant, `diameters` those of
+    them that hold twice what is meant; `ignored` those of the template's own formulas.
     """
 
     row: int
@@ -33,6 +38,7 @@ class Heading:
     factors: dict[str, float] = field(default_factory=dict)
     extra: dict[int, str] = field(default_factory=dict)
     doubtful: dict[int, str] = field(default_factory=dict)
+    diameters: set[int] = field(default_factory=set)
     ignored: set[int] = field(default_factory=set)
 
 
@@ -43,6 +49,24 @@ def _as_header(cell: RawValue) -> str:
     if isinstance(cell, Unstored):
         return "(formula without a result)"
     return cell if isinstance(cell, str) else shown(cell)
+
+
+def _filled(sheet: RawSheet, header: int) -> set[int]:
+    """Return the places that hold anything below the header row."""
+    return {
+        place
+        for row, cells in sheet.rows.items()
+        if row > header
+        for place, value in cells.items()
+        if not (isinstance(value, str) and not value.strip(BLANK))
+    }
+
+
+class _Unknown(NamedTuple):
+    """The columns that an unknown header may mean, or else what of the scatter it seems to tell."""
+
+    keys: Sequence[str]
+    scatter: str = ""
 
 
 def find_headings(sheet: RawSheet, schema: str, ledger: Ledger) -> Heading | None:
@@ -63,6 +87,7 @@ class _Recogniser:
         self.ledger = ledger
         self.columns = columns_of(schema)
         self.spellings = known_names(self.columns)
+        self._filled: set[int] = set()
 
     def recognise(self) -> Heading | None:
         """Return the headings of the row, within the first fifteen, that has most of them."""
@@ -76,10 +101,10 @@ class _Recogniser:
         headers = {place: _as_header(cell) for place, cell in self.sheet.rows[best].items()}
         heading.ignored |= {place for place, header in headers.items() if plain(header) == plain(STATUS_HEADER)}
         headers = {place: text for place, text in headers.items() if text.strip() and place not in heading.ignored}
-        names = {place: name_and_unit(header)[0] for place, header in headers.items()}
-        likely = likely_headers(names, self.columns, self.spellings)
+        self._filled = _filled(self.sheet, best)
+        unknown = self._unknown(heading, headers)
         for place, header in headers.items():
-            self._place(heading, place, header, likely.get(place, []))
+            self._place(heading, place, header, unknown.get(place))
         self._require(heading, max(self.sheet.rows[best]) + 1)
         return heading
 
@@ -102,47 +127,95 @@ class _Recogniser:
                 facts: dict[str, Any] = {"column": key, "name": column.name, "label": column.label}
                 self.ledger.add("E111", sheet=self.sheet.name, cell=address, **facts)
 
-    def _place(self, heading: Heading, place: int, header: str, likely: list[str]) -> None:
-        """Recognise one header cell, or say what is wrong with it; `likely` are the columns an unknown one may be."""
+    def _unknown(self, heading: Heading, headers: Mapping[int, str]) -> dict[int, _Unknown]:
+        """Return what each unknown header may mean."""
+        split = {place: name_and_unit(header) for place, header in headers.items()}
+        present = {self.spellings[plain(name)] for name, _ in split.values() if plain(name) in self.spellings}
+        unknown = {place: one for place, one in split.items() if plain(one[0]) not in self.spellings}
+        is_variants = "mean_radius_mm" in self.columns
+        diameters = {place: radius_of_diameter(name, present) for place, (name, _) in unknown.items() if is_variants}
+        scatter = {} if "setting" in self.columns or "source" in self.columns else tolerance_columns(unknown)
+        names = {place: name for place, (name, _) in split.items() if not diameters.get(place)}
+        likely = likely_headers(names, self.columns, self.spellings)
+        found = {}
+        for place in unknown:
+            diameter, keys = diameters.get(place), likely.get(place, [])
+            is_needed = any(self.columns[key].required and key not in present for key in keys)
+            if diameter:
+                heading.diameters |= {place} if "radius" in diameter else set()
+                found[place] = _Unknown([diameter])
+            elif place in scatter and place in self._filled and not is_needed and not _OF_TOLERANCES.intersection(keys):
+                found[place] = _Unknown([], scatter[place])
+            else:
+                found[place] = _Unknown(keys)
+        return found
+
+    def _place(self, heading: Heading, place: int, header: str, unknown: _Unknown | None) -> None:
+        """Recognise one header cell, or say what is wrong with it; `unknown` is what it may mean else."""
         name, unit_text = name_and_unit(header)
-        key = self.spellings.get(plain(name))
-        meant = key or next(iter(likely), None)
-        place_facts: dict[str, Any] = {
-            "sheet": self.sheet.name,
-            "cell": f"{column_letters(place)}{heading.row}",
-            "value": header.strip(),
-        }
-        if meant is None:
+        meant = unknown.keys if unknown else [self.spellings[plain(name)]]
+        address = f"{column_letters(place)}{heading.row}"
+        facts: dict[str, Any] = {"sheet": self.sheet.name, "cell": address, "value": header.strip()}
+        if not meant:
             heading.extra[place] = header.strip()
-            self.ledger.add("I502", **place_facts)
+            scatter = unknown.scatter if unknown else ""
+            self.ledger.add("W434" if scatter else "I502", detail=scatter, **facts)
             return
-        column = self.columns[meant]
-        facts = place_facts | {
-            "column": meant,
+        column = self.columns[meant[0]]
+        facts |= {
+            "column": column.key,
             "name": column.name,
             "label": column.label,
             "unit": column.unit or "the unit that Deviation unit names",
         }
-        unit = _unit(column, unit_text, by_key=plain(name) == plain(meant))
-        if key is None:
-            heading.doubtful[place] = meant
-            labels = [_label(self.columns[one], unit_text) for one in likely]
-            sure = misspelt(name, self.spellings) == meant and (unit is not None or column.unit in {"", "-"})
-            repair = labels[0] if sure and len(labels) == 1 else None
-            facts["label"] = " or ".join(labels)
-            facts["name"] = " or ".join(self.columns[one].name for one in likely)
-            self.ledger.add("E112", suggestion=facts["label"], repair=repair, **facts)
-        elif key in heading.places:
-            heading.doubtful[place] = key
-            self.ledger.add("E114", other=column_letters(heading.places[key]), **facts)
-            self.ledger.everything = True
+        if unknown:
+            heading.doubtful[place] = column.key
+            self._tell_unknown(heading, place, meant, facts)
+            return
+        unit = _unit(column, unit_text, by_key=plain(name) == plain(column.key))
+        if column.key in heading.places:
+            self._tell_twice(heading, place, facts)
         elif unit is None and unit_text is not None and column.is_number:
-            heading.doubtful[place] = key
-            self.ledger.add("E113", suggestion=column.label, **facts)
+            heading.doubtful[place] = column.key
+            self.ledger.add(self._error_if_filled("E113", place, column), suggestion=column.label, **facts)
         else:
-            heading.places[key] = place
-            heading.factors[key] = unit.si / column.si_unit.si if unit else 1.0
+            heading.places[column.key] = place
+            heading.factors[column.key] = unit.si / column.si_unit.si if unit else 1.0
             self._tell_unit(column, unit, facts, unit_text)
+
+    def _tell_unknown(self, heading: Heading, place: int, keys: Sequence[str], facts: Mapping[str, Any]) -> None:
+        """Tell which columns a header probably means: by half its values, or under another header."""
+        name, unit_text = name_and_unit(facts["value"])
+        columns = [self.columns[key] for key in keys]
+        labels = [_label(column, unit_text) for column in columns]
+        if place in heading.diameters:
+            bore = (
+                f", or the bore under {self.columns['bore_diameter_mm'].label}" if keys[0] == "mean_radius_mm" else ""
+            )
+            self.ledger.add("E128", **{**facts, "label": labels[0], "detail": bore})
+            return
+        unit = _unit(columns[0], unit_text, by_key=False)
+        is_known = unit is not None or columns[0].unit in {"", "-"}
+        sure = misspelt(name, self.spellings) == keys[0] and is_known and len(labels) == 1
+        meant = {"label": " or ".join(labels), "name": " or ".join(column.name for column in columns)}
+        code = self._error_if_filled("E112", place, columns[0])
+        self.ledger.add(code, suggestion=meant["label"], repair=labels[0] if sure else None, **{**facts, **meant})
+
+    def _tell_twice(self, heading: Heading, place: int, facts: Mapping[str, Any]) -> None:
+        """Tell that a column stands twice; an empty second one does no harm."""
+        key = facts["column"]
+        other = column_letters(heading.places[key])
+        if place not in self._filled:
+            heading.ignored.add(place)
+            self.ledger.add("W436", other=other, **facts)
+            return
+        heading.doubtful[place] = key
+        self.ledger.add("E114", other=other, **facts)
+        self.ledger.everything = True
+
+    def _error_if_filled(self, code: str, place: int, column: Column) -> str:
+        """Return the code of an error, or of a warning where nothing is lost: no value, and no column that must be."""
+        return code if place in self._filled or column.required else "W435"
 
     def _tell_unit(self, column: Column, unit: Unit | None, facts: dict[str, Any], text: str | None) -> None:
         """Tell a unit that was assumed or converted."""

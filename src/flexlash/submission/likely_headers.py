@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from flexlash.column import Column
 from flexlash.submission.spellings import likeness, plain, words
@@ -22,16 +22,42 @@ _EQUALLY = 0.05
 _RADII = ("mean_radius_mm", "bore_diameter_mm")
 """Columns of which one is required."""
 
-_FOREIGN = {
-    "variant": ("variante", "name", "bezeichnung", "nom", "nome"),
-    "material": ("werkstoff", "matériau", "materiau", "matière", "materiale"),
-    "torque_Nm": ("drehmoment", "moment", "couple", "coppia"),
-    "cylinder_length_mm": ("länge", "laenge", "zylinderlänge", "longueur", "lunghezza"),
-    "mean_radius_mm": ("mittlererradius", "rayon", "rayonmoyen", "raggio", "raggiomedio"),
-    "wall_thickness_mm": ("wanddicke", "wandstärke", "wandstaerke", "épaisseur", "epaisseur", "spessore"),
-    "disk_inner_radius_mm": ("innenradius", "nabenradius", "innerradius", "rayonintérieur", "raggiointerno"),
+_CALLED = {
+    "variant": "variante name bezeichnung nom nome part partname version design",
+    "flexspline_type": "flexsplineshape bauform",
+    "material": "werkstoff matériau materiau matière materiale steel steelgrade stahl",
+    "torque_Nm": "drehmoment moment couple coppia load loadtorque outputtorque peaktorque torsionalmoment",
+    "cylinder_length_mm": "länge laenge zylinderlänge zylinderlaenge longueur lunghezza cuplength cupdepth depth l "
+    "flexsplinelength walllength barrellength insidedepth height cupheight höhe tiefe bechertiefe",
+    "mean_radius_mm": "mittlererradius rayon rayonmoyen raggio raggiomedio midradius middleradius middlesurfaceradius "
+    "neutralradius neutrallineradius nominalradius cylinderradius flexsplineradius cupradius meanr r",
+    "bore_diameter_mm": "innendurchmesser bohrungsdurchmesser bohrung innerdiameter insidediameter bore borediam "
+    "boredia alésage flexsplinebore",
+    "wall_thickness_mm": "wanddicke wandstärke wandstaerke wallthk s épaisseur epaisseur spessore cupthickness "
+    "shellthickness cylinderthickness cupwall cylinderwall",
+    "disk_thickness_mm": "bottomthickness diaphragmthickness basethickness bodendicke membrandicke scheibendicke "
+    "flangethickness",
+    "disk_inner_radius_mm": "innenradius nabenradius innerradius rayonintérieur raggiointerno hubradius hubr hubrad "
+    "rhub innerr radiusathub radiusofhub hubouterradius innerradiusofdisk innerdiskradius discinnerradius bossradius "
+    "clampingradius clampradius diskinnerr diaphragminnerradius",
+    "disk_outer_radius_mm": "boltcircleradius flangeradius flangeouterradius lochkreisradius outerradiusofdisk "
+    "outerdiskradius",
+    "disk_hub_thickness_mm": "hubthickness thicknessathub nabendicke",
+    "hub_fillet_radius_mm": "hubfillet filletathub",
+    "junction_fillet_radius_mm": "junctionfillet cornerradius cornerfillet innercornerradius",
+    "rim_length_mm": "toothrimwidth rimwidth",
+    "rated_torque_Nm": "nenndrehmoment nominaltorque ratedload",
+    "backlash_limit_arcmin": "maxbacklash backlashmax allowablebacklash permissiblebacklash backlashspec spielgrenze "
+    "zulässigesspiel",
+    "tolerance_class": "toleranzklasse classedetolérance tolclass",
+    "lower_deviation": "lower unteresabmaß unteresabmass untereabweichung lowertolerance minus",
+    "upper_deviation": "upper oberesabmaß oberesabmass obereabweichung uppertolerance plus",
+    "youngs_modulus_GPa": "emodul elastizitätsmodul elasticmodulus youngmodulus modulusofelasticity e",
+    "poisson_ratio": "querkontraktionszahl poissonzahl poisson nu ν",
+    "shear_modulus_GPa": "schubmodul gmodul modulusofrigidity g",
+    "yield_MPa": "streckgrenze yieldstress yield rp02 re",
 }
-"""What German, French and Italian drawings call the columns of Variants that a cup needs."""
+"""What engineers call the columns, in English, German, French and Italian; whole names in plain spelling."""
 
 
 def likely_headers(
@@ -44,20 +70,34 @@ def likely_headers(
     present = {spellings[plain(name)] for name in names.values() if plain(name) in spellings}
     unknown = {place: name for place, name in names.items() if plain(name) not in spellings}
     alike = {place: _likenesses(name, spellings) for place, name in unknown.items()}
-    missing = _missing(columns, present)
+    absent = columns.keys() - present - (set() if present.isdisjoint(_RADII) else set(_RADII))
+    called = _called(unknown, absent)
+    missing = _missing(columns, present | {*called.values()})
     pairs = sorted(
         (-_nearness(name, key, columns[key], spellings), place, key)
         for place, name in unknown.items()
         for key in missing
+        if place not in called
     )
     rivals = Counter((opposite, place) for opposite, place, _ in pairs)
-    found: dict[int, list[str]] = {}
+    found = {place: [key] for place, key in called.items()}
     for opposite, place, key in pairs:
         if -opposite < max(_MISSING, *alike[place].values()) or place in found or rivals[opposite, place] > 1:
             continue
         if [key] not in found.values():
             found[place] = [key]
     return {place: _resembling(alike[place], present) for place in unknown} | found
+
+
+def _called(unknown: Mapping[int, str], absent: Collection[str]) -> dict[int, str]:
+    """Return the absent column that each header names in other words, by its place; the first header of two."""
+    spelt = {name: key for key, names in _CALLED.items() if key in absent for name in map(plain, names.split())}
+    found: dict[int, str] = {}
+    for place, name in unknown.items():
+        key = spelt.get(plain(name)) or spelt.get(plain(" ".join(words(name))))
+        if key and key not in found.values():
+            found[place] = key
+    return found
 
 
 def _missing(columns: Mapping[str, Column], present: set[str]) -> list[str]:
@@ -70,10 +110,8 @@ def _missing(columns: Mapping[str, Column], present: set[str]) -> list[str]:
 
 
 def _nearness(name: str, key: str, column: Column, spellings: Mapping[str, str]) -> float:
-    """Return how near a header is to a column that is missing: 1 for a word of it, or its name in another language."""
+    """Return how near a header is to a column that is missing: 1 for a word of it."""
     wanted = plain(" ".join(words(name)))
-    if wanted in map(plain, _FOREIGN.get(key, ())):
-        return 1.0
     known = [spelling for spelling, meant in spellings.items() if meant == key]
     if key != "disk_inner_radius_mm":
         known += [word for word in words(column.plain_name) if len(word) > 3]  # noqa: PLR2004

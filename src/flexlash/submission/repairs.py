@@ -24,10 +24,7 @@ def repair_of(finding: Finding) -> str | float | None:
     | E209, E307, E309 | a name at least 85 % like one of the list, no other as near, digits alike | name |
     | E210 | IT 7 · it7 · H 7 · ISO 2768-mK · 2768 m | grade |
     | E210 | 7 | nothing |
-    | E108, E119 | a sheet whose header row is that of the missing sheet; to be renamed | name of the sheet |
     | I504 | other letter case or spaces in a name | name |
-
-    A finding without a cell is about its sheet: the repair is the sheet's name.
 
     >>> from flexlash.findings import finding
     >>> repair_of(finding("E203", name="Torque", value="2026-04-01", requirement="a number in N·m")) is None

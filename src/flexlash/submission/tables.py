@@ -263,7 +263,7 @@ def settings_of(table: Table, ledger: Ledger) -> Settings:
         facts |= {"requirement": column.requirement, "choices": ", ".join(column.choices), **value.facts}
         cell = table.address(row, "value")
         ledger.add(value.code, sheet=table.sheet, cell=cell, column=name, name=name, value=value.value, **facts)
-    faulty = any((row, "setting") in table.faulty for row in table.frame["row"])
+    faulty = any((row, key) in table.faulty for row in table.frame["row"] for key in ("setting", "value"))
     if faulty or any(one.level == "error" for one in ledger.findings[before:]):
         ledger.everything = True
     return settings_from(values)

@@ -12,8 +12,10 @@ import polars as pl
 from flexlash.columns import DIMENSIONS, Column, columns_of
 from flexlash.findings import cell_ranges
 from flexlash.submission.cells import Fault, as_number, as_text
+from flexlash.submission.header_names import BLANK
 from flexlash.submission.headers import Heading, find_headings, plain
 from flexlash.submission.ledger import Ledger
+from flexlash.submission.no_entries import NoEntries, NoEntry
 from flexlash.submission.number_texts import Measure
 from flexlash.submission.reading.raw import Percentage, RawSheet, RawValue, Unstored, column_letters
 from flexlash.submission.units_row import take_units_row
@@ -30,8 +32,6 @@ _JUDGED_LATER = ("Settings", "value")
 _DEVIATIONS = frozenset({"lower_deviation", "upper_deviation"})
 _MANY = 100
 """Rows of one name from which on each is told the range of all instead of its partners."""
-
-_BLANK = " \t\r\n\u00a0\u200b\ufeff"
 
 
 @dataclass(kw_only=True)
@@ -83,12 +83,14 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
     read = {place: columns[key] for key, place in heading.places.items()}
     records: list[dict[str, Any]] = []
     first_key = next(iter(columns))
-    for number, cells in _data_rows(sheet, heading, first_key, ledger):
-        if number == units:
-            continue
+    for number, cells, bare in _entries(table, sheet, units, ledger):
         record: dict[str, Any] = {"row": number}
         if surplus := _surplus(sheet, heading, number):
             _blame_surplus(table, number, surplus, sheet, ledger)
+        if bare:
+            table.faulty |= {(number, key) for key in columns}
+            where = {"sheet": sheet.name, "cell": table.address(number, first_key), "column": first_key}
+            ledger.add(bare.code, rows=[number], **where, **bare.facts)
         for place, value in cells.items():
             if surplus and place != heading.places.get(first_key):
                 continue
@@ -103,6 +105,21 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
     types = {key: pl.Float64 if column.is_number else pl.String for key, column in columns.items()}
     table.frame = pl.DataFrame(records, schema={"row": pl.Int64, **types}, orient="row")
     return table
+
+
+def _entries(
+    table: Table, sheet: RawSheet, units: int | None, ledger: Ledger
+) -> Iterator[tuple[int, dict[int, RawValue], NoEntry | None]]:
+    """Yield the rows of a table but that of units, each with why it is no entry after all; tell what is none at all."""
+    no_entries, last = NoEntries(table.schema, table.heading), table.heading.row
+    for number, cells in _data_rows(sheet, table.heading, next(iter(columns_of(table.schema))), ledger):
+        none = no_entries.of(cells, apart=number > last + 1) if number != units else None
+        if none and none.code[0] == "W":
+            ledger.add(none.code, sheet=sheet.name, cell=f"{column_letters(none.place)}{number}", **none.facts)
+            continue
+        last = number
+        if number != units:
+            yield number, cells, none
 
 
 def _surplus(sheet: RawSheet, heading: Heading, row: int) -> list[int]:
@@ -151,7 +168,7 @@ def _data_rows(
             place: value
             for place, value in every.items()
             if place not in heading.ignored
-            and not (isinstance(value, str) and not value.strip(_BLANK))
+            and not (isinstance(value, str) and not value.strip(BLANK))
             and not (isinstance(value, Unstored) and place not in ours)
         }
         entered = {place: value for place, value in cells.items() if place in named}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
+from typing import Any
 
 from flexlash.columns import columns_of
 from flexlash.submission.ledger import Ledger
@@ -31,7 +32,7 @@ def tell_unused_classes(tolerances: Table | None, variants: Table, known: Iterab
     for row, name in islice(_unused(tolerances, {"", "standard", *used}), affordable(candidates)):
         if meant := misspelt(name, candidates) or swapped.get("".join(sorted(plain(name)))):
             cell = tolerances.address(row, _KEY)
-            facts = {"column": _KEY, "name": column.name, "value": name, "suggestion": meant}
+            facts: dict[str, Any] = {"column": _KEY, "name": column.name, "value": name, "suggestion": meant}
             ledger.add("W429", sheet=tolerances.sheet, cell=cell, **facts)
 
 

@@ -12,7 +12,7 @@ import polars as pl
 from flexlash.columns import columns_of
 from flexlash.submission.cells import is_no_value, no_value_facts
 from flexlash.submission.checks import check_cells, check_relations
-from flexlash.submission.entry_sheets import entry_sheets, tell_misspelt_sheets, tell_second_tables
+from flexlash.submission.entry_sheets import entry_sheets, tell_other_names, tell_second_tables
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.manners import tell_manner
 from flexlash.submission.overlooked import tell_overlooked
@@ -28,6 +28,7 @@ from flexlash.submission.tables import (
 )
 from flexlash.submission.tabulate import Table, tabulate
 from flexlash.submission.unused_classes import tell_unused_classes
+from flexlash.submission.unused_faults import excuse_unused
 from flexlash.submission.versions import TEMPLATE_VERSION, check_version, tell_additions
 from flexlash.variant import Material, Settings, ToleranceRow, Variant
 
@@ -75,7 +76,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     result = Validated(ledger=ledger)
     check_version(submission)
     sheets = entry_sheets(submission, limits or ReadingLimits())
-    misspelt_sheets = tell_misspelt_sheets(submission, sheets, ledger)
+    unclear = tell_other_names(submission, sheets, ledger)
     tell_second_tables(submission, sheets, ledger)
     tables: dict[str, Table] = {}
     for schema, sheet in sheets.items():
@@ -88,10 +89,11 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     for sheet in sheets.values():
         tell_manner(sheet, ledger)
     tell_additions(submission, {schema: table.heading for schema, table in tables.items()}, ledger)
-    _fill_tables(result, submission, sheets.keys() | misspelt_sheets, tables)
+    _fill_tables(result, submission, sheets.keys() | unclear, tables)
     result.table, result.tolerances = tables.get("Variants"), tables.get("Tolerances")
     if result.table is not None:
         _check_rows(result, result.table)
+        excuse_unused(result.table, tables, ledger)
         tell_unused_classes(tables.get("Tolerances"), result.table, result.classes, ledger)
     _tell_other_sources(submission, ledger)
     if result.table is not None and not ledger.everything:

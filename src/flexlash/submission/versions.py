@@ -7,11 +7,11 @@ from collections.abc import Mapping
 
 from flexlash.columns import ENTRY_SHEETS
 from flexlash.findings import shown
+from flexlash.submission.entry_sheets import sheet_names
 from flexlash.submission.headers import Heading
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.reading.raw import Submission
 from flexlash.submission.reading.refusal import Refusal
-from flexlash.submission.spellings import plain
 
 __all__ = ["TEMPLATE_VERSION", "check_version", "tell_additions", "template_version"]
 
@@ -38,11 +38,10 @@ def template_version(submission: Submission) -> int | None:
 
 def _visible_texts(submission: Submission) -> list[str]:
     """Return the texts at the top of Variants."""
-    sheets = [sheet for name, sheet in submission.sheets.items() if plain(name) == plain("Variants")]
+    name = sheet_names(submission).get("Variants", "")
     return [
         cell
-        for sheet in sheets
-        for number, cells in sheet.rows.items()
+        for number, cells in (submission.sheets[name].rows.items() if name else ())
         if number <= _TOP and submission.kind == "workbook"
         for cell in cells.values()
         if isinstance(cell, str)

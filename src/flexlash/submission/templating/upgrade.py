@@ -10,7 +10,7 @@ from typing import Any
 
 from flexlash.columns import ENTRY_SHEETS, SETTINGS, Column
 from flexlash.submission.cells import as_number
-from flexlash.submission.entry_sheets import entry_sheets, tell_misspelt_sheets
+from flexlash.submission.entry_sheets import entry_sheets
 from flexlash.submission.headers import Heading, find_headings
 from flexlash.submission.ledger import Ledger
 from flexlash.submission.reading.isolated import ask
@@ -98,13 +98,11 @@ def refilled(submission: Submission, limits: ReadingLimits, beside: Leftovers | 
 
 
 def _entry_sheets(submission: Submission, limits: ReadingLimits, remarks: list[str]) -> dict[str, RawSheet]:
-    """Return the entry sheets by schema, a misspelt one in the place that was meant."""
+    """Return the entry sheets by schema, one of another name in the place that was meant."""
     found = entry_sheets(submission, limits)
-    ledger = Ledger(submission.name)
-    tell_misspelt_sheets(submission, found, ledger)
-    for told in ledger.findings:
-        found[told.suggestion] = submission.sheets[told.sheet]
-        remarks.append(f"The sheet {told.sheet} was taken as {told.suggestion}.")
+    for schema, sheet in found.items():
+        if submission.kind == "workbook" and plain(sheet.name) != plain(schema):
+            remarks.append(f"The sheet {sheet.name} was taken as {schema}.")
     return found
 
 
@@ -239,7 +237,7 @@ def _keys(heading: Heading) -> dict[int, str]:
     """Return the key of each place that fills a column of the template; a doubtful header fills the one it meant."""
     keys = {place: key for key, place in heading.places.items()}
     for place, key in heading.doubtful.items():
-        if key not in keys.values():
+        if key not in keys.values() and place not in heading.diameters:
             keys[place] = key
     return keys
 
