@@ -51,7 +51,7 @@ def _results(path):
         keys, *rest = ([cell.value for cell in row] for row in rows)
         return pl.DataFrame([dict(zip(keys, row, strict=True)) for row in rest], infer_schema_length=None)
     if path.suffix == ".json":
-        return pl.DataFrame(json.loads(path.read_text(encoding="utf-8")), infer_schema_length=None)
+        return pl.DataFrame(json.loads(path.read_text(encoding="utf-8"))["results"], infer_schema_length=None)
     return (pl.read_parquet if path.suffix == ".parquet" else pl.read_csv)(path)
 
 
