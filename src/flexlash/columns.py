@@ -191,7 +191,8 @@ VARIANTS = (
     _variant(
         "rated_torque_Nm",
         "Rated torque [N·m]",
-        "Gives the lost motion of the flexspline alone, and of a catalogue drive, at a per cent of it (Settings: lost_motion_percent).",
+        "Gives the lost motion of the flexspline alone, and of a catalogue drive, at a few per cent of it (Settings: "
+        "lost_motion_percent).",
         **_TORQUE,
         group="Requirements",
     ),
