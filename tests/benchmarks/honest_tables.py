@@ -22,14 +22,16 @@ KEYS = (
 )  # fmt: skip
 MATERIALS = 3000
 ONE = """
-import json, resource, sys, time
+import json, os, sys
+from pathlib import Path
 from flexlash.pipeline import check
 from flexlash.summary import finding_lines
-start = time.process_time()
-outcome = check(sys.argv[1], **({"materials": sys.argv[2]} if len(sys.argv) > 2 else {}))
+start = sum(os.times()[:4])
+outcome = check(Path(sys.argv[1]), materials=Path(sys.argv[2]))
 list(finding_lines(outcome.findings))
 json.dumps(outcome.as_dictionary())
-print(json.dumps([time.process_time() - start, len(outcome.findings), outcome.counts["computed"]]))
+if not outcome.validated: sys.exit(outcome.findings[0].message)
+print(json.dumps([sum(os.times()[:4]) - start, len(outcome.findings), outcome.counts["computed"]]))
 """
 
 
@@ -63,7 +65,7 @@ def _written(path: Path, headers: tuple[str, ...], rows: int, row: Callable[[int
 
 def _checked(*paths: Path) -> tuple[float, int, int]:
     """Return seconds of processor time, number of findings, and rows that can be computed."""
-    told = subprocess.run([sys.executable, "-c", ONE, *map(str, paths)], check=True, capture_output=True, text=True)
+    told = subprocess.run([sys.executable, "-c", ONE, *map(str, paths)], check=True, stdout=subprocess.PIPE, text=True)
     seconds, findings, computed = json.loads(told.stdout)
     return float(seconds), int(findings), int(computed)
 
