@@ -5,10 +5,11 @@ from flexlash.submission.reading.refusal import Refusal
 WHERE = "flexlash.submission.reading.isolated._answer"
 
 
-def answer_here(task, limits, arguments):
+def answer_here(task, limits, arguments, then):
     """Take the place of the limited process; faults of the program show themselves as they are."""
     try:
-        return task(*arguments)
+        answer = task(*arguments)
+        return then(answer) if then else answer
     except Refusal as refusal:
         return refusal
     except MemoryError:

@@ -31,11 +31,12 @@ PROMISED = {
     "characters": 32_767,
     "rows": 20_000,
     "columns": 256,
-    "seconds": 20,
+    "seconds": 60,
     "processor_seconds": 15,
     "memory_mebibytes": 1_024,
 }
 MEBI = 2**20
+WHOLE = "a whole number of at least 1"
 VARIANTS = workbook_part(['<sheet name="Variants" sheetId="1" r:id="rId1"/>'])
 
 
@@ -148,9 +149,11 @@ def test_a_limit_lets_in_its_value_alone(setting):
 def test_limits_are_whole_numbers_above_nothing():
     """Limits come from texts as well; what is no whole number above 0, or no limit, is refused."""
     assert ReadingLimits.of({"cells": "7", "rows": 8}) == ReadingLimits(cells=7, rows=8)
-    for wrong in ("0", "-1", "1.5", "", "many", "٣", "1_0", " 7"):
-        with pytest.raises(ValueError, match="cells="):
+    for wrong in ("0", "-1", "1.5", "", "many", "٣", "1_0", " 7", "9" * 40, "9" * 15):
+        with pytest.raises(ValueError, match=r"cells = .*: a whole number"):
             ReadingLimits.of({"cells": wrong})
+    with pytest.raises(ValueError, match="at most 86400 is required"):
+        ReadingLimits(seconds=10**20)
     with pytest.raises(ValueError, match=r"cell is no limit; there are .*cells"):
         ReadingLimits.of({"cell": "7"})
     with pytest.raises(dataclasses.FrozenInstanceError):
@@ -172,14 +175,18 @@ def test_limits_on_the_command_line(command, tmp_path):
 
 @pytest.mark.parametrize(
     ("given", "words"),
-    [("cell=3", "cell is no limit"), ("cells=0", "a whole number above 0"), ("cells", "a whole number above 0"),
-     ("cells=x", "a whole number above 0"), ("=3", "is no limit")],
+    [("cell=3", "cell is no limit"), ("cells=0", WHOLE), ("cells", WHOLE),
+     ("seconds=99999999999999999999", WHOLE), ("cells=7\x1b[31m", "7·[31m"),
+     ("seconds=86401", "at most 86400"), ("cells=x", WHOLE), ("=3", "is no limit")],
 )  # fmt: skip
 def test_a_limit_that_is_none_is_a_usage_error(given, words, tmp_path):
-    """An unknown limit, or one that is no whole number above 0, is a usage error."""
+    """An unknown limit, or one that is no whole number in its bounds, is a usage error that says where it is set."""
     path = tmp_path / "a.csv"
     path.write_bytes(b"x")
-    for arguments, environment in ((["--limit", given], {}), ([], {"FLEXLASH_LIMIT": given})):
+    for arguments, environment, where in (
+        (["--limit", given], {}, "--limit: "),
+        ([], {"FLEXLASH_LIMIT": given}, "FLEXLASH_LIMIT: "),
+    ):
         done = CliRunner().invoke(cli, ["check", str(path), *arguments], env=environment)
-        assert done.exit_code == 2
-        assert words in " ".join(done.output.split())
+        said = " ".join(done.output.split())
+        assert (done.exit_code, where in said, words in said, "\x1b" in said) == (2, True, True, False)

@@ -109,7 +109,7 @@ CATALOGUE = _rules(
     (
         "E110",
         "too large",
-        "{file} exceeds a limit: {what} is {found}; at most {limit} is allowed (setting {setting}).",
+        "{file} exceeds a limit: {what} is {found}; at most {limit} is allowed (setting {setting}).{detail}",
         "Split the submission, copy the cells into a fresh template, or raise the limit: --limit {setting}=NUMBER.",
         "Limits keep one damaged or hostile file from stopping the work of others.",
     ),

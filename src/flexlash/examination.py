@@ -1,6 +1,7 @@
 """From bytes to findings: read, validate, set the limits, compute at the entered dimensions.
 
-All of this is done in the limited process, since nothing of it is the program's own before it was judged.
+All of this is done in the limited process, since nothing of it is the program's own before it was judged. What follows
+validation, `assessed`, grows with the number of sound rows alone and has a clock but no other limits.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from flexlash.assessment import assess
 from flexlash.findings import Finding, finding
 from flexlash.options import Options
 from flexlash.outcome import Outcome
-from flexlash.results import results_frame, results_of
+from flexlash.results import results_frame
 from flexlash.submission.products import require_submission
 from flexlash.submission.reading.raw import Submission, column_number
 from flexlash.submission.reading.read import ReadReport, Source, report_of, submission_of, table_of
@@ -22,11 +23,11 @@ from flexlash.submission.reading.refusal import Refusal
 from flexlash.submission.validate import validate
 from flexlash.variant import Settings
 
-__all__ = ["examine", "in_order", "refused"]
+__all__ = ["assessed", "examine", "in_order", "refused"]
 
 
 def examine(given: Source | ReadReport, tables: Mapping[str, Source], options: Options) -> Outcome:
-    """Return what a submission holds, what is wrong with it and its nominal numbers; nothing is sampled.
+    """Return what a submission holds and what is wrong with it; nothing is computed yet.
 
     `tables` stand beside it, by the sheet that each replaces. Raises Refusal when the file is no readable submission.
     """
@@ -36,8 +37,30 @@ def examine(given: Source | ReadReport, tables: Mapping[str, Source], options: O
     if isinstance(given, Source) and given.path:
         require_submission(submission, given.path, options.given, marked_copies=options.marked_copies)
     beside = {name: table_of(table, name, options.limits) for name, table in tables.items()}
-    outcome = _validated(replace(submission, sheets=submission.sheets | beside), options)
-    outcome.processor_seconds = time.process_time() - start
+    submission = replace(submission, sheets=submission.sheets | beside)
+    validated = validate(submission, options.limits)
+    overrides = {
+        name: getattr(options, name) for name in ("seed", "method", "samples") if getattr(options, name) is not None
+    }
+    return Outcome(
+        submission=submission,
+        results=results_frame([]),
+        findings=[],
+        settings=replace(validated.settings, **overrides),
+        options=options,
+        validated=validated,
+        processor_seconds=time.process_time() - start,
+    )
+
+
+def assessed(outcome: Outcome) -> Outcome:
+    """Return an examined submission with nominal numbers and limits of its sound rows, and all its findings."""
+    if outcome.validated is None:
+        raise LookupError("a submission that was not validated")
+    outcome.computed = assess(outcome.validated, outcome.settings)
+    if outcome.options.strict and len(outcome.computed) < len(outcome.validated.submitted):
+        outcome.computed = {}
+    outcome.findings = in_order(outcome.validated.ledger.findings, outcome.submission)
     return outcome
 
 
@@ -59,29 +82,6 @@ def refused(name: str, data: bytes, refusal: Refusal) -> Outcome:
         settings=Settings(),
         skipped=found.level == "info",
     )
-
-
-def _validated(submission: Submission, options: Options) -> Outcome:
-    """Validate, set the limits and compute at the entered dimensions."""
-    validated = validate(submission, options.limits)
-    overrides = {
-        name: getattr(options, name) for name in ("seed", "method", "samples") if getattr(options, name) is not None
-    }
-    settings = replace(validated.settings, **overrides)
-    computed = assess(validated, settings)
-    if options.strict and len(computed) < len(validated.submitted):
-        computed = {}
-    outcome = Outcome(
-        submission=submission,
-        results=results_frame([]),
-        findings=in_order(validated.ledger.findings, submission),
-        settings=settings,
-        options=options,
-        validated=validated,
-        computed=computed,
-    )
-    outcome.results = results_of(outcome)
-    return outcome
 
 
 def in_order(findings: list[Finding], submission: Submission) -> list[Finding]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from flexlash.elasticity import MISSING, is_available
-from flexlash.examination import examine, in_order, refused
+from flexlash.examination import assessed, examine, in_order, refused
 from flexlash.findings import readable
 from flexlash.handback import certain_repairs, marked, mended, worth_marking
 from flexlash.options import Options
@@ -42,6 +42,7 @@ def check(submission: str | Path | Source | ReadReport, **options: Any) -> Outco
     plan = _plan(submission, chosen)
     copy = _copy(plan, chosen)
     outcome = _examined(_source(submission, chosen), chosen)
+    outcome.results = results_of(outcome)
     _mark(outcome, chosen, copy)
     return outcome
 
@@ -70,6 +71,7 @@ def mend(
         if not made:
             break
         outcome = _examined(Source(name=original.submission.name, data=data), chosen)
+    outcome.results = results_of(outcome)
     if repairs:
         _write(outcome, new, data, mended_role(original.submission.data))
     _mark(outcome, chosen, copy)
@@ -145,7 +147,7 @@ def _examined(source: Source | ReadReport | Refusal, options: Options) -> Outcom
     limits = limits_of_reports(options.limits) if options.from_report else options.limits
     try:
         asked = replace(options, progress=None, marked_copy=None)
-        outcome = ask(examine, limits, source, _tables(options), asked)
+        outcome = ask(examine, limits, source, _tables(options), asked, then=assessed)
     except Refusal as refusal:
         return refused(source.name, source.data, refusal)
     outcome.submission = replace(outcome.submission, data=source.data)
@@ -187,6 +189,7 @@ def _write(outcome: Outcome, output: Output, data: bytes, role: str) -> Path:
 def _spread(outcome: Outcome, options: Options) -> None:
     """Put the tolerance spread into every computed row, and what would help the worst beside them."""
     if not outcome.computed:
+        outcome.results = results_of(outcome)
         return
     progress, steps = options.progress, 2 if options.elasticity else 1
     outcome.computed = scattered(

@@ -27,15 +27,19 @@ def planned(plan: Callable[..., Planned], *paths: Any, **options: bool) -> Plann
         raise click.UsageError(shown(fault, longest=400)) from fault
 
 
-def _limits(_: click.Context, __: click.Parameter, given: tuple[str, ...]) -> ReadingLimits:
-    """Return the limits of reading; raise a usage error for one that does not exist."""
+def _limits(context: click.Context, parameter: click.Parameter, given: tuple[str, ...]) -> ReadingLimits:
+    """Return the limits of reading; raise a usage error for one that does not exist, with where it was set."""
+    from click.core import ParameterSource
+
     from flexlash.submission.reading.limits import ReadingLimits
 
     pairs = {name.strip(): value.strip() for name, _, value in (text.partition("=") for text in given)}
     try:
         return ReadingLimits.of(pairs)
     except ValueError as fault:
-        raise click.UsageError(f"--limit: {fault}.") from fault
+        in_environment = context.get_parameter_source(parameter.name or "") is ParameterSource.ENVIRONMENT
+        where = "The environment variable FLEXLASH_LIMIT" if in_environment else "--limit"
+        raise click.UsageError(f"{where}: {fault}.") from fault
 
 
 SUBMISSIONS = click.argument("submissions", nargs=-1, required=True, type=click.Path(path_type=Path, readable=False))

@@ -47,14 +47,20 @@ def begin() -> ProcessPool:
     return _POOLS[number]
 
 
-def ask(task: Callable[..., Result], limits: ReadingLimits, *arguments: object) -> Result:
-    """Return a task of these arguments, done in the limited process.
+def ask(
+    task: Callable[..., Result],
+    limits: ReadingLimits,
+    *arguments: object,
+    then: Callable[[Result], Result] | None = None,
+) -> Result:
+    """Return a task of these arguments, done in the limited process; `then` goes on there with what it has found.
 
+    What `then` does has the clock of the task, but no other limits: it must grow with what was found to be sound only.
     Raises Refusal when the task refuses its file, exceeds a limit or stops the process, ChangedLibrary when a library
     is to blame, ProcessFaultError when the task itself is at fault or no process can be started.
     """
     with _ONE_AT_A_TIME:
-        answer = _answer(task, limits, arguments)
+        answer = _answer(task, limits, arguments, then)
     if isinstance(answer, Refusal | ChangedLibrary):
         raise answer
     if isinstance(answer, Fault):
@@ -63,11 +69,14 @@ def ask(task: Callable[..., Result], limits: ReadingLimits, *arguments: object) 
 
 
 def _answer(
-    task: Callable[..., Result], limits: ReadingLimits, arguments: tuple[object, ...]
+    task: Callable[..., Result],
+    limits: ReadingLimits,
+    arguments: tuple[object, ...],
+    then: Callable[[Result], Result] | None,
 ) -> Result | Refusal | ChangedLibrary | Fault:
     """Return what the limited process answers, or what it died of."""
     try:
-        future = begin().schedule(carried_out, (task, limits, arguments), timeout=limits.seconds)
+        future = begin().schedule(carried_out, (task, limits, arguments, then), timeout=limits.seconds)
         return future.result(limits.seconds + _ANSWERING)  # type: ignore[no-any-return]
     except TookTooLong:
         if not future.done():

@@ -86,13 +86,22 @@ def _warm_up() -> None:
     from flexlash.submission.reading import parquet, sheet_cells  # noqa: F401
 
 
-def carried_out(task: Callable[..., Any], limits: ReadingLimits, arguments: tuple[Any, ...]) -> Any:
-    """Return what a task gives within limits, the Refusal or ChangedLibrary it raises, or the Fault that it has."""
+def carried_out(
+    task: Callable[..., Any],
+    limits: ReadingLimits,
+    arguments: tuple[Any, ...],
+    then: Callable[[Any], Any] | None = None,
+) -> Any:
+    """Return what a task gives within limits, the Refusal or ChangedLibrary it raises, or the Fault that it has.
+
+    `then` goes on with what the task gave, within no limits.
+    """
     if _State.fault:
         return _State.fault
     try:
         with limited(limits):
-            return task(*arguments)
+            answer = task(*arguments)
+        return then(answer) if then else answer
     except (Refusal, ChangedLibrary) as told:
         return told
     except MemoryError:

@@ -124,8 +124,7 @@ def report_of(source: Source, limits: ReadingLimits) -> ReadReport:
 
 def limits_of_reports(limits: ReadingLimits) -> ReadingLimits:
     """Return the limits within which a report of a submission within `limits` can be read."""
-    settings = ("cells", "seconds", "processor_seconds")
-    return replace(limits, **{name: _MORE * getattr(limits, name) for name in settings})
+    return limits.times(_MORE, "cells", "seconds", "processor_seconds")
 
 
 @contextmanager
