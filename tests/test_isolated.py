@@ -22,7 +22,7 @@ from flexlash.submission.reading.read import Source, read_submission, submission
 from flexlash.submission.reading.refusal import Refusal
 from here import WHERE, answer_here
 from small_workbook import book_of
-from worker_tasks import each_parquet, obey, own_number
+from worker_tasks import each_parquet, fail, obey, own_number, slowly, square
 
 pytestmark = pytest.mark.limited_process
 
@@ -342,3 +342,12 @@ def test_no_network_and_no_stray_write(workbook, sound, tmp_path):
     assert {Path(path).parent for _, path in seen} == {report}
     assert {path.name for path in report.iterdir()} - {"bad-checked.xlsx"} == {"good.xlsx", "bad.xlsx"}
     assert set(tmp_path.iterdir()) == before
+
+
+def test_what_follows_has_no_limits():
+    """What goes on with an answer that was found within limits takes its time; a refusal has nothing to go on."""
+    assert ask(square, ReadingLimits(seconds=1), 3, then=slowly)[0] == 9
+    with pytest.raises(Refusal):
+        ask(obey, ReadingLimits(seconds=1), "import time; time.sleep(9)", then=slowly)
+    with pytest.raises(ProcessFaultError, match="dimensions"):
+        ask(square, ReadingLimits(), 3, then=fail)

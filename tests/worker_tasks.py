@@ -11,7 +11,7 @@ from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.read import Source, submission_of
 from flexlash.submission.reading.refusal import Refusal
 
-__all__ = ["die", "die_once", "each_parquet", "fail", "obey", "own_number", "sleep", "square"]
+__all__ = ["die", "die_once", "each_parquet", "fail", "obey", "own_number", "sleep", "slowly", "square"]
 
 
 def square(number):
@@ -44,6 +44,12 @@ def sleep(seconds):
     """Do nothing for some seconds."""
     time.sleep(seconds)
     return os.getpid()
+
+
+def slowly(answer):
+    """Return what was given, after more time than a file has."""
+    time.sleep(1.5)
+    return answer
 
 
 def own_number():

@@ -1,7 +1,7 @@
 """From bytes to findings: read, validate, set the limits, compute at the entered dimensions.
 
 All of this is done in the limited process, since nothing of it is the program's own before it was judged. What follows
-validation, `assessed`, grows with the number of sound rows alone and has a clock but no other limits.
+validation, `assessed`, grows with the number of sound rows alone and has no limits.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from typing import TypeVar
 from pebble import ProcessExpired, ProcessPool
 
 from flexlash.submission.reading.libraries import ChangedLibrary
-from flexlash.submission.reading.limited import Fault, carried_out, prepare
+from flexlash.submission.reading.limited import Fault, carried_out, gone_on, kept, prepare
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
 from flexlash.workers import end, started
@@ -55,7 +55,7 @@ def ask(
 ) -> Result:
     """Return a task of these arguments, done in the limited process; `then` goes on there with what it has found.
 
-    What `then` does has the clock of the task, but no other limits: it must grow with what was found to be sound only.
+    What `then` does has no limits: it must grow with what was found to be sound alone.
     Raises Refusal when the task refuses its file, exceeds a limit or stops the process, ChangedLibrary when a library
     is to blame, ProcessFaultError when the task itself is at fault or no process can be started.
     """
@@ -76,8 +76,13 @@ def _answer(
 ) -> Result | Refusal | ChangedLibrary | Fault:
     """Return what the limited process answers, or what it died of."""
     try:
-        future = begin().schedule(carried_out, (task, limits, arguments, then), timeout=limits.seconds)
-        return future.result(limits.seconds + _ANSWERING)  # type: ignore[no-any-return]
+        start = kept if then else carried_out
+        future = begin().schedule(start, (task, limits, arguments), timeout=limits.seconds)
+        answer = future.result(limits.seconds + _ANSWERING)
+        if then and answer is None:
+            future = begin().schedule(gone_on, (then,))
+            answer = future.result()
+        return answer  # type: ignore[no-any-return]
     except TookTooLong:
         if not future.done():
             _abandon()

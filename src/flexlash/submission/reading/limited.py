@@ -20,7 +20,7 @@ from flexlash.submission.reading.libraries import ChangedLibrary, require_known_
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
 
-__all__ = ["Fault", "carried_out", "forbid", "limited", "prepare"]
+__all__ = ["Fault", "carried_out", "forbid", "gone_on", "kept", "limited", "prepare"]
 
 _MEBI = 2**20
 _FORBIDDEN = (
@@ -44,10 +44,11 @@ class Fault:
 
 
 class _State:
-    """What this process knows of itself: whether it handles a file now, and what failed while it was prepared."""
+    """What this process knows of itself: whether it handles a file, what failed at first, what it keeps."""
 
     handles_a_file = False
     fault: Fault | ChangedLibrary | None = None
+    kept: Any = None
 
 
 def prepare() -> None:
@@ -86,28 +87,37 @@ def _warm_up() -> None:
     from flexlash.submission.reading import parquet, sheet_cells  # noqa: F401
 
 
-def carried_out(
-    task: Callable[..., Any],
-    limits: ReadingLimits,
-    arguments: tuple[Any, ...],
-    then: Callable[[Any], Any] | None = None,
-) -> Any:
-    """Return what a task gives within limits, the Refusal or ChangedLibrary it raises, or the Fault that it has.
-
-    `then` goes on with what the task gave, within no limits.
-    """
+def carried_out(task: Callable[..., Any], limits: ReadingLimits, arguments: tuple[Any, ...]) -> Any:
+    """Return what a task gives within limits, the Refusal or ChangedLibrary it raises, or the Fault that it has."""
     if _State.fault:
         return _State.fault
     try:
         with limited(limits):
-            answer = task(*arguments)
-        return then(answer) if then else answer
+            return task(*arguments)
     except (Refusal, ChangedLibrary) as told:
         return told
     except MemoryError:
         return limits.exceeded("memory_mebibytes")
     except BaseException as fault:  # noqa: BLE001
         # A library of Rust panics with what is no Exception; nothing may end this process without an answer.
+        return Fault.of(fault)
+
+
+def kept(task: Callable[..., Any], limits: ReadingLimits, arguments: tuple[Any, ...]) -> Any:
+    """Return nothing where a task gives something, which is kept here; else what `carried_out` returns."""
+    answer = carried_out(task, limits, arguments)
+    if isinstance(answer, Refusal | ChangedLibrary | Fault):
+        return answer
+    _State.kept = answer
+    return None
+
+
+def gone_on(then: Callable[[Any], Any]) -> Any:
+    """Return what follows from the answer that was kept, within no limits, or the Fault that this has."""
+    answer, _State.kept = _State.kept, None
+    try:
+        return then(answer)
+    except Exception as fault:  # noqa: BLE001
         return Fault.of(fault)
 
 
