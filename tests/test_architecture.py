@@ -94,6 +94,7 @@ EDGES = {
     "click": {"cli", "commands", "terminal"},
     "scipy": {"mechanics", "report", "tolerance"},
     "pebble": {"submission", "workers"},
+    "rapidfuzz": {"submission"},
     "skfem": {"elasticity"},
     "matplotlib": {"report"},
 }

@@ -8,7 +8,7 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import TimeoutError as TookTooLong
 from concurrent.futures.process import BrokenProcessPool
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pebble import ProcessExpired, ProcessPool
 
@@ -78,11 +78,8 @@ def _answer(
     try:
         start = kept if then else carried_out
         future = begin().schedule(start, (task, limits, arguments), timeout=limits.seconds)
-        answer = future.result(limits.seconds + _ANSWERING)
-        if then and answer is None:
-            future = begin().schedule(gone_on, (then,))
-            answer = future.result()
-        return answer  # type: ignore[no-any-return]
+        answer: Any = future.result(limits.seconds + _ANSWERING)
+        return begin().schedule(gone_on, (then,)).result() if then and answer is None else answer  # type: ignore[no-any-return]
     except TookTooLong:
         if not future.done():
             _abandon()
