@@ -117,8 +117,6 @@ def _variants(folder: Path) -> Made:
         {"mean_radius_mm": 160, "torque_Nm": 100, "cylinder_length_mm": 1600},
         {"mean_radius_mm": 0.08},
         {"wall_thickness_mm": 450},
-        {"disk_inner_radius_mm": 79.5},
-        {"flexspline_type": "hat", "disk_inner_radius_mm": "", "disk_outer_radius_mm": 80.5},
         {"wall_thickness_mm": "TBD"},
         {"notes": "n" * 1001},
         {"rated_torque_Nm": 1e9},

@@ -179,8 +179,8 @@ def test_thick_walls(judge, change, told, status):
         ("wall_thickness,-1.5,1.5,mm,,truncated normal", False),
         ("wall_thickness,-1.5,1.5,mm,,uniform", False),
         ("wall_thickness,-1.5,1.5,mm,,triangular", False),
-        ("disk_inner_radius,-10.5,10.5,mm,,normal", False),
-        ("disk_inner_radius,-10.6,10.6,mm,,normal", True),
+        ("disk_inner_radius,-10.8,10.8,mm,,normal", False),
+        ("disk_inner_radius,-10.9,10.9,mm,,normal", True),
     ],
 )
 def test_a_tail_that_is_cut(judge, tolerance, told):
@@ -194,14 +194,13 @@ def test_a_tail_that_is_cut(judge, tolerance, told):
 
 
 def test_tails_of_hub_and_wall_that_meet(judge):
-    """Where the tails of hub and wall could cross, both are cut at one radius of the bore between their limits."""
+    """Where the tails of hub and wall could cross, both are cut at one radius between their limits."""
     tolerances = ["disk_inner_radius,-0.1,0.1,mm,,normal", "mean_radius,-0.1,0.1,mm,,normal"]
-    outcome = judge({"disk_inner_radius_mm": 78.7}, tolerances=tolerances)
+    outcome = judge({"disk_inner_radius_mm": 79.5}, tolerances=tolerances)
     assert _found(outcome) == [("W405", "mean_radius_mm"), ("W405", "disk_inner_radius_mm")]
     limits = outcome.computed[2].limits
     fence = limits["disk_inner_radius"].cut[1]
-    assert fence == pytest.approx(limits["mean_radius"].cut[0] - 0.0008, abs=1e-15)
-    assert fence == pytest.approx(0.07895, abs=1e-9)
+    assert fence == limits["mean_radius"].cut[0] == pytest.approx(0.07975, abs=1e-9)
     assert outcome.results["status"].to_list() == ["warning"]
 
 
@@ -214,18 +213,18 @@ IMPOSSIBLE = [
     ({}, "youngs_modulus,-100,0,%,,uniform", "material", "211", "reaches 0."),
     ({}, "torque,-800,0,N·m,,uniform", "torque_Nm", "800", "reaches 0."),
     (
-        {"disk_inner_radius_mm": 79.1},
+        {"disk_inner_radius_mm": 79.9},
         "disk_inner_radius,-0.1,0.1,mm,,uniform",
         "disk_inner_radius_mm",
-        "79.1",
-        "reaches the wall: no disk is left.",
+        "79.9",
+        "reaches the other radius of the disk.",
     ),
     (
-        {"disk_inner_radius_mm": 79.1},
+        {"disk_inner_radius_mm": 79.9},
         "mean_radius,-0.1,0.1,mm,,uniform",
         "disk_inner_radius_mm",
-        "79.1",
-        "reaches the wall: no disk is left.",
+        "79.9",
+        "reaches the other radius of the disk.",
     ),
     (
         {"flexspline_type": "cylinder", "wall_thickness_mm": 155, "disk_inner_radius_mm": ""},
@@ -240,13 +239,6 @@ IMPOSSIBLE = [
         "junction_fillet_radius_mm",
         "79",
         "reaches beyond the axis.",
-    ),
-    (
-        {"flexspline_type": "hat", "disk_inner_radius_mm": "", "disk_outer_radius_mm": 80.9},
-        "disk_outer_radius,-0.1,0.1,mm,,uniform",
-        "disk_outer_radius_mm",
-        "80.9",
-        "reaches the wall: no flange is left.",
     ),
     (
         {"flexspline_type": "hat", "disk_inner_radius_mm": 90, "disk_outer_radius_mm": 90.1},
@@ -371,7 +363,7 @@ def test_calibration_with_refinements(tmp_path, sound, setting, change, told):
 
 def test_a_hat_whose_wall_reaches_its_bolt_circle(judge):
     """A hat with a blank inner radius whose mean radius may reach the bolt circle is stopped with a finding."""
-    change = {"flexspline_type": "hat", "disk_inner_radius_mm": "", "disk_outer_radius_mm": 80.85}
+    change = {"flexspline_type": "hat", "disk_inner_radius_mm": "", "disk_outer_radius_mm": 80.05}
     outcome = judge(change, tolerances=["mean_radius,-0.1,0.1,mm,,uniform"])
     assert [found.code for found in outcome.findings] == ["E314"]
     assert outcome.exit_code == 4
@@ -413,12 +405,13 @@ def test_a_size_that_no_computation_holds(table, sound, torque):
 
 
 def test_a_faulty_class_that_nobody_uses(table, sound, tmp_path):
-    """An error in a class that no row names stops no row, but the exit code is never 0 where an error stands."""
+    """What is wrong with a class that no row names is a warning: every row is computed, and the exit code is 0."""
     beside = tmp_path / "tolerances.csv"
     beside.write_text("tolerance_class,dimension,grade\nunused,wall_thickness,IT13\n")
     outcome = check(table([sound]), tolerances=beside)
     assert outcome.results["status"].to_list() == ["ok"]
-    assert outcome.exit_code == 3
+    assert [found.code for found in outcome.findings if found.level != "info"] == ["W437"]
+    assert outcome.exit_code == 0
 
 
 SHOP = ["wall_thickness,-0.0125,0.0125,mm,,normal"]

@@ -28,8 +28,6 @@ REFUSED = {
     "bolts within the wall": ("hat", {"disk_outer_radius_mm": 75.0}, "E303"),
     "wall of twice the radius": ("cup", {"wall_thickness_mm": 160.0}, "E330"),
     "wall in micrometres": ("cylinder", {"wall_thickness_mm": 450.0}, "E330"),
-    "hub as wide as the bore": ("refined", {"disk_inner_radius_mm": 80.2}, "E331"),
-    "bolts within the outer half of the wall": ("hat", {"disk_outer_radius_mm": 80.5}, "E332"),
     "hub fillet wider than the disk": ("refined", {"hub_fillet_radius_mm": 45.0}, "E312"),
     "rim beyond the cylinder": ("refined", {"rim_length_mm": 170.0}, "E305"),
     "rim as long as the cylinder": ("rimmed cylinder", {"rim_length_mm": 160.0}, "E305"),

@@ -109,7 +109,7 @@ CATALOGUE = _rules(
     (
         "E110",
         "too large",
-        "{file} exceeds a limit: {what} is {found}; at most {limit} is allowed (setting {setting}).{detail}",
+        "{file} exceeds a limit: {what} is {found}; at most {limit} is allowed (setting {setting}){detail}.",
         "Split the submission, copy the cells into a fresh template, or raise the limit: --limit {setting}=NUMBER.",
         "Limits keep one damaged or hostile file from stopping the work of others.",
     ),
@@ -577,20 +577,6 @@ CATALOGUE = _rules(
         "Check the wall and the mean radius, and their units.",
         "The mean radius is that of the middle of the wall, so half the wall reaches inwards from it. A wall of twice "
         "the mean radius fills the bore: the part is a rod, not a flexspline.",
-    ),
-    (
-        "E331",
-        "hub fills the bore",
-        "{place} {name} = {value} mm: less than the radius of the bore, {other} mm, is required.",
-        "Check for a diameter entered as a radius.",
-        "A cup's disk spans from its hub to the wall. A hub as wide as the bore leaves no disk between them.",
-    ),
-    (
-        "E332",
-        "flange within the wall",
-        "{place} {name} = {value} mm: more than the outer radius of the wall, {other} mm, is required.",
-        "Check for another radius entered here, or for a radius where a diameter is meant.",
-        "A hat's flange spans from the wall outwards to its bolt circle. One that ends within the wall is no flange.",
     ),
     (
         "E333",

@@ -20,7 +20,7 @@ from flexlash.submission.unusual import report_unusual
 
 __all__ = ["check_cells", "check_relations"]
 
-_OF_SIZES = frozenset({"E303", "E305", "E306", "E312", "E313", "E328", "E330", "E331", "E332"})
+_OF_SIZES = frozenset({"E303", "E305", "E306", "E312", "E313", "E328", "E330"})
 """Relations between lengths, which a slipped unit breaks."""
 
 

@@ -80,7 +80,9 @@ class NoEntries:
             return None
         is_alone = self.others.isdisjoint(cells)
         is_note = _begins_like_a_note(value) and self.texts.isdisjoint(cells)
-        if is_note or (is_alone and (apart or len(value.split()) >= _SENTENCE)):
+        # A material may have a name of many words; without constants it is told as one that lacks them.
+        reads_like_one = self.schema != "Materials" and len(value.split()) >= _SENTENCE
+        if is_note or (is_alone and (apart or reads_like_one)):
             return NoEntry("W433", "a remark", place, value)
         is_bare = self.schema == "Variants" and self.numbers.isdisjoint(cells)
         return NoEntry("E217", "", place, value) if is_bare else None

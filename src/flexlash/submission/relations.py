@@ -92,8 +92,7 @@ def _fillet_on_a_cone(key: str) -> Relation:
 
 _WALL_SHARE = pl.col("wall_thickness_mm") / (2 * _RADIUS)
 _HAS_BORE = _BORE > _EDGE
-_HAS_DISK = pl.min_horizontal(_BORE - _EDGE, _OUTER) > _INNER
-_OUTSIDE = _RADIUS + pl.col("wall_thickness_mm") / 2
+_HAS_DISK = _OUTER > _INNER
 
 RELATIONS = (
     Relation(
@@ -147,18 +146,6 @@ RELATIONS = (
         key="wall_thickness_mm",
         broken=~_HAS_BORE,
         facts=lambda row: {"other": 2 * radius(row)},
-    ),
-    Relation(
-        code="E331",
-        key="disk_inner_radius_mm",
-        broken=_is("cup") & _HAS_BORE & (_INNER < _OUTER) & (_INNER >= _BORE - _EDGE),
-        facts=lambda row: {"other": _bore(row)},
-    ),
-    Relation(
-        code="E332",
-        key="disk_outer_radius_mm",
-        broken=_is("hat") & _HAS_BORE & (_OUTER > _INNER) & (_OUTSIDE + _EDGE >= _OUTER),
-        facts=lambda row: {"other": radius(row) + row["wall_thickness_mm"] / 2},
     ),
     Relation(
         code="E304",
@@ -247,7 +234,7 @@ RELATIONS = (
     Relation(
         code="W419",
         key="disk_inner_radius_mm",
-        broken=_is("cup") & _HAS_DISK & (pl.col("disk_inner_radius_mm") > _HUB_SHARE * _BORE + _EDGE),
+        broken=_is("cup") & _HAS_BORE & _HAS_DISK & (pl.col("disk_inner_radius_mm") > _HUB_SHARE * _BORE + _EDGE),
         facts=lambda row: {"other": _bore(row)},
     ),
     Relation(

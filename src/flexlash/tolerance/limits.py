@@ -181,10 +181,10 @@ def _mean_radius(variant: Variant) -> dict[str, float]:
     return {"mean_radius": 1.0}
 
 
-def _side_of_wall(variant: Variant, half: float) -> dict[str, float]:
-    """Return what makes up the bore's radius (`half` −0.5) or the wall's outer radius (0.5)."""
+def _bore(variant: Variant) -> dict[str, float]:
+    """Return what makes up the bore's radius, each dimension with its factor."""
     factors = _mean_radius(variant)
-    factors["wall_thickness"] = factors.get("wall_thickness", 0.0) + half
+    factors["wall_thickness"] = factors.get("wall_thickness", 0.0) - 0.5
     return {name: factor for name, factor in factors.items() if factor}
 
 
@@ -198,31 +198,22 @@ def _difference(one: Mapping[str, float], other: Mapping[str, float], first: str
 
 
 def _gaps(variant: Variant) -> Iterator[_Gap]:
-    """Yield what a part needs to have an inside: a bore, and a free disk or flange beside its wall."""
-    bore, outside = _side_of_wall(variant, -0.5), _side_of_wall(variant, 0.5)
+    """Yield what a part needs to have an inside: a bore, and a disk or flange between its two radii."""
+    bore = _bore(variant)
     if "bore_diameter" not in variant.dimensions:
         yield _Gap(factors=_difference(bore, {}, "wall_thickness"), barrier="the axis: no bore is left")
-    sides = _disk_sides(variant)
-    if sides is None:
+    if variant.flexspline_type == "cylinder":
         return
-    inner, outer = sides
-    if variant.dimensions.keys() >= {"disk_inner_radius", "disk_outer_radius"}:
-        yield _Gap(factors=_difference(outer, inner, "disk_inner_radius"), barrier="the other radius of the disk")
-    if variant.flexspline_type == "hat":
-        factors = _difference(outer, outside, "disk_outer_radius")
-        yield _Gap(factors=factors, barrier="the wall: no flange is left")
-        return
-    yield _Gap(factors=_difference(bore, inner, "disk_inner_radius"), barrier="the wall: no disk is left")
+    inner, outer = _disk_sides(variant)
+    yield _Gap(factors=_difference(outer, inner, next(iter(inner))), barrier="the other radius of the disk")
     if "junction_fillet_radius" in variant.dimensions:
         fillet = {"junction_fillet_radius": 1.0}
         factors = _difference(bore, fillet, "junction_fillet_radius")
         yield _Gap(factors=factors, barrier="beyond the axis", may_close=True)
 
 
-def _disk_sides(variant: Variant) -> tuple[dict[str, float], dict[str, float]] | None:
-    """Return what makes up inner and outer radius of the disk, each dimension with its factor; None without disk."""
-    if variant.flexspline_type == "cylinder":
-        return None
+def _disk_sides(variant: Variant) -> tuple[dict[str, float], dict[str, float]]:
+    """Return what makes up inner and outer radius of the disk, each dimension with its factor."""
     mean_radius = _mean_radius(variant)
     inner = {"disk_inner_radius": 1.0} if "disk_inner_radius" in variant.dimensions else mean_radius
     outer = {"disk_outer_radius": 1.0} if "disk_outer_radius" in variant.dimensions else mean_radius

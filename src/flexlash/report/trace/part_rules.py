@@ -201,8 +201,6 @@ def _shape(inputs: _Inputs) -> Iterator[_Rule]:
     yield _rule("E330", "wall is not below twice the mean radius: no bore", bore <= _EDGE)
     has_disk = inputs.is_type("cup", "hat")
     yield _rule("E303", "disk inner radius is not below disk outer radius", has_disk, inner >= outer)
-    yield _rule("E331", "hub is as wide as the bore", is_cup, inner >= bore - _EDGE)
-    yield _rule("E332", "flange ends within the wall", inputs.is_type("hat"), outer <= mean + wall / 2 + _EDGE)
     yield _rule("E305", "tooth rim is not shorter than the cylinder", inputs.is_given("rim_length"), rim >= length)
     thin = inputs.is_given("rim_thickness"), inputs["rim_thickness"] < wall
     yield _rule("E306", "tooth rim is thinner than the wall", *thin)

@@ -23,7 +23,7 @@ _WHOLE = re.compile(r"0*[1-9]\d{0,17}", re.ASCII)
 """A number that a computer takes at all; the bounds of each limit are closer."""
 _DAY = 86_400
 _TEBI = 2**20
-_BUSY = " The computer may be busy."
+_BUSY = "; the computer may be busy"
 
 
 @dataclass(frozen=True, kw_only=True)

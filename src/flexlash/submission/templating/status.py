@@ -59,12 +59,8 @@ def _bore(row: Row) -> float:
 
 
 def _hub_too_large(row: Row, _: Sequence[Row]) -> bool:
-    bore = _bore(row)
-    return _type(row) == "cup" and row["disk_inner_radius_mm"] >= min(row.get("disk_outer_radius_mm") or bore, bore)
-
-
-def _flange_too_small(row: Row, _: Sequence[Row]) -> bool:
-    return _type(row) == "hat" and row["disk_outer_radius_mm"] <= _bore(row) + row["wall_thickness_mm"]
+    mean = _bore(row) + row["wall_thickness_mm"] / 2
+    return _type(row) == "cup" and row["disk_inner_radius_mm"] >= (row.get("disk_outer_radius_mm") or mean)
 
 
 _BORE = "MAX({mean_radius_mm}-{wall_thickness_mm}/2,{bore_diameter_mm}/2)"
@@ -132,13 +128,9 @@ _RULES = (
     ),
     _Rule(
         text="hub larger than the disk",
-        excel=f"AND({_CUP},{{disk_inner_radius_mm}}>=MIN({{disk_outer_radius_mm}},{_BORE}))",
+        excel=f'AND({_CUP},{{disk_inner_radius_mm}}>=IF({{disk_outer_radius_mm}}<>"",{{disk_outer_radius_mm}},'
+        f"{_BORE}+{{wall_thickness_mm}}/2))",
         holds=_hub_too_large,
-    ),
-    _Rule(
-        text="flange ends within the wall",
-        excel=f'AND({{flexspline_type}}="hat",{{disk_outer_radius_mm}}<={_BORE}+{{wall_thickness_mm}})',
-        holds=_flange_too_small,
     ),
     _Rule(
         text="rim length and thickness belong together",
