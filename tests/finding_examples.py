@@ -322,10 +322,6 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
         Limits=[["Tolerance class", "Dimension", "Grade", "Distribution"]],
     ),
     "other rows": _sheets(Variants=[*_lines([CUP]), ["C-2"], [], ["Mean", "cup", None, 800]]),
-    "unused": _sheets(
-        Variants=_lines([CUP]),
-        Materials=[["Material", "Shear modulus G [GPa]"], ["20Cr2Ni4", 81], ["new steel", None]],
-    ),
     "other columns": _plain(
         _text(
             [CUP | {"Rim lenght [mm]": "", "Wall tol": "±0.02", "variant ": "", "disk_inner_radius_mm": 80}],

@@ -405,13 +405,12 @@ def test_a_size_that_no_computation_holds(table, sound, torque):
 
 
 def test_a_faulty_class_that_nobody_uses(table, sound, tmp_path):
-    """What is wrong with a class that no row names is a warning: every row is computed, and the exit code is 0."""
+    """An error in a class that no row names stops no row, but the exit code is never 0 where an error stands."""
     beside = tmp_path / "tolerances.csv"
     beside.write_text("tolerance_class,dimension,grade\nunused,wall_thickness,IT13\n")
     outcome = check(table([sound]), tolerances=beside)
     assert outcome.results["status"].to_list() == ["ok"]
-    assert [found.code for found in outcome.findings if found.level != "info"] == ["W437"]
-    assert outcome.exit_code == 0
+    assert outcome.exit_code == 3
 
 
 SHOP = ["wall_thickness,-0.0125,0.0125,mm,,normal"]

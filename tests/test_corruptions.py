@@ -104,8 +104,8 @@ def _stopped(case: Case) -> set[int]:
 
 
 def test_the_submission_is_sound_before(sound):
-    """Without a corruption nothing is found and every row is computed, so that what is found later was corrupted."""
-    assert sound.findings == []
+    """Without a corruption only its short classes are told and every row is computed: what is found was corrupted."""
+    assert {found.code for found in sound.findings} == {"W438"}
     assert sound.counts["computed"] == len(records("Variants"))
 
 

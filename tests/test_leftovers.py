@@ -12,7 +12,7 @@ import regenerate
 from flexlash.submission.reading.isolated import ask
 from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.refusal import Refusal
-from flexlash.submission.templating.leftovers import Leftovers, leftovers
+from flexlash.submission.templating.leftovers import leftovers
 
 PIXEL = (
     b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x06\x00\x00\x00\x1f\x15\xc4\x89\x00\x00"
@@ -48,7 +48,7 @@ def _with(data, parts):
 
 def test_each_kind_is_found():
     """Formulas with their text, notes with their cell, charts, pictures and text boxes with their number."""
-    found = Leftovers.of(leftovers(_book(), ReadingLimits()))
+    found = leftovers(_book(), ReadingLimits())
     assert found.formulas == {"One": {(2, 2): "1+2", (9, 4): 'IF(A1<>"","x","")'}, "Two": {}}
     assert found.notes == {"One": [], "Two": [(1, 1), (7, 3)]}
     assert found.things == {"chart": 1, "picture": 1, "text box or shape": 1}

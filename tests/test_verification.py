@@ -102,17 +102,6 @@ def test_the_formula_and_the_spread_do_not_change(table, sound):
             "disk_outer_radius_mm",
             "the flange ends within the wall",
         ),
-        (
-            {
-                "flexspline_type": "hat",
-                "mean_radius_mm": 40.0,
-                "wall_thickness_mm": 80.0,
-                "disk_inner_radius_mm": None,
-                "disk_outer_radius_mm": 90.0,
-            },
-            "wall_thickness_mm",
-            "the wall fills its bore",
-        ),
     ],
 )
 def test_what_cannot_be_made_is_told_and_stays_unchecked(table, sound, change, column, cause):

@@ -847,13 +847,6 @@ CATALOGUE = _rules(
         "With values in both columns flexlash could not know which holds, and would compute nothing.",
     ),
     (
-        "W437",
-        "fault in an unused row",
-        "{place}: {detail}; no variant uses this {other}.",
-        "Mend the row before a variant uses it, or delete it.",
-        "The same fault is an error as soon as a variant uses the material or the tolerance class.",
-    ),
-    (
         "W438",
         "class leaves dimensions exact",
         '{place}: class "{value}" has no row for {detail}, which class standard scatters; taken as exact.',

@@ -109,12 +109,13 @@ class _Recogniser:
         return heading
 
     def known_by_row(self) -> dict[int, int]:
-        """Return how many known headers each of the first rows holds."""
+        """Return how many columns each of the first rows names; a header that stands there twice counts once."""
         rows = {number: cells for number, cells in self.sheet.rows.items() if number <= LAST_HEADER_ROW}
-        return {number: sum(map(self._is_known, cells.values())) for number, cells in rows.items()}
+        return {number: len(set(map(self._known, cells.values())) - {None}) for number, cells in rows.items()}
 
-    def _is_known(self, cell: RawValue) -> bool:
-        return isinstance(cell, str) and plain(name_and_unit(cell)[0]) in self.spellings
+    def _known(self, cell: RawValue) -> str | None:
+        """Return the column that a cell names as its header, None for another."""
+        return self.spellings.get(plain(name_and_unit(cell)[0])) if isinstance(cell, str) else None
 
     def _require(self, heading: Heading, next_place: int) -> None:
         """Tell which required columns are missing, at the cell where they could be added."""

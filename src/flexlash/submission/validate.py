@@ -28,7 +28,6 @@ from flexlash.submission.tables import (
 )
 from flexlash.submission.tabulate import Table, tabulate
 from flexlash.submission.unused_classes import tell_unused_classes
-from flexlash.submission.unused_faults import excuse_unused
 from flexlash.submission.versions import TEMPLATE_VERSION, check_version, tell_additions
 from flexlash.variant import Material, Settings, ToleranceRow, Variant
 
@@ -93,7 +92,6 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     result.table, result.tolerances = tables.get("Variants"), tables.get("Tolerances")
     if result.table is not None:
         _check_rows(result, result.table)
-        excuse_unused(result.table, tables, ledger)
         tell_unused_classes(tables.get("Tolerances"), result.table, result.classes, ledger)
     _tell_other_sources(submission, ledger)
     if result.table is not None and not ledger.everything:
