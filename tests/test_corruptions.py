@@ -68,6 +68,10 @@ def sound():
         return _checked(small_template())
 
 
+_TEXTS = {"E202": ("E202", "E220", "E221")}
+"""A text in the place of a number is told by what it is: a number stored as text, a word for no value, another text."""
+
+
 def _row(cell: str) -> int:
     return int(cell.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
 
@@ -118,7 +122,11 @@ def test_every_kind_is_drawn(cases):
 def test_corrupted_cells_are_found_where_they_are(cases):
     """Nearly every corrupted cell has the finding that names its fault, at its own address."""
     expected = [(case.seed, *place) for case in cases for one in case.made for place in one.expected]
-    missed = [place for place in expected if place[1:] not in cases[place[0]].places]
+    missed = [
+        (seed, sheet, cell, code)
+        for seed, sheet, cell, code in expected
+        if cases[seed].places.isdisjoint((sheet, cell, one) for one in _TEXTS.get(code, (code,)))
+    ]
     assert len(missed) <= (1 - RIGHT) * len(expected), missed
 
 

@@ -18,6 +18,7 @@ from flexlash.report import selection
 from flexlash.report.about_sheet import PROOF
 from flexlash.report.workbook import report_bytes
 from flexlash.result_columns import CROSS_CHECK, FINDINGS, RESULTS, result_columns
+from flexlash.stamps import stamped
 from flexlash.summary import dimension_words
 from flexlash.tolerance.curves import CURVE_SCORES
 from flexlash.units import ARCMIN
