@@ -26,13 +26,13 @@ PROMISED = {
     "sheets": 100,
     "cells": 1_000_000,
     "table_rows": 1_048_576,
-    "table_cells": 3_000_000,
+    "table_cells": 1_500_000,
     "merged_areas": 100_000,
     "characters": 32_767,
     "rows": 20_000,
     "columns": 256,
     "seconds": 60,
-    "processor_seconds": 15,
+    "processor_seconds": 20,
     "memory_mebibytes": 1_024,
 }
 MEBI = 2**20

@@ -46,9 +46,9 @@ def marked(outcome: Outcome, limits: ReadingLimits) -> tuple[bytes, tuple[str, .
 
 
 def _rest(limits: ReadingLimits, used: float) -> ReadingLimits:
-    """Return the limits of marking: what reading has left of its processor time, and a third of that time more."""
+    """Return the limits of marking: what reading has left of its processor time, and a quarter of that time more."""
     seconds = limits.processor_seconds
-    return replace(limits, processor_seconds=max(math.ceil(seconds / 5), math.floor(seconds * 4 / 3 - used)))
+    return replace(limits, processor_seconds=max(math.ceil(seconds / 5), math.floor(seconds * 5 / 4 - used)))
 
 
 def certain_repairs(findings: Iterable[Finding]) -> list[Repair]:

@@ -41,13 +41,13 @@ class ReadingLimits:
     sheets: int = _limit(100, 100_000, "the number of sheets")
     cells: int = _limit(1_000_000, 10**9, "the number of cells")
     table_rows: int = _limit(1_048_576, 10**9, "the number of rows of a table")
-    table_cells: int = _limit(3_000_000, 10**10, "the number of cells of a table")
+    table_cells: int = _limit(1_500_000, 10**10, "the number of cells of a table")
     merged_areas: int = _limit(100_000, 10**9, "the number of merged areas")
     characters: int = _limit(32_767, 10**9, "the length of one cell's text", "characters")
     rows: int = _limit(20_000, 1_048_576, "the number of rows with data")
     columns: int = _limit(256, 16_384, "the number of columns")
     seconds: int = _limit(60, _DAY, "the time for reading", "s", remark=_BUSY)
-    processor_seconds: int = _limit(15, _DAY, "the computing time for reading", "s")
+    processor_seconds: int = _limit(20, _DAY, "the computing time for reading", "s")
     memory_mebibytes: int = _limit(1_024, _TEBI, "the memory for reading", "MiB")
 
     def times(self, factor: int, *settings: str) -> ReadingLimits:
