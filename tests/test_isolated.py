@@ -1,6 +1,7 @@
 """Asking the limited process: whatever a file does to its reader, a refusal by name comes back and nothing stays."""
 
 import json
+import multiprocessing
 import os
 import random
 import signal
@@ -22,7 +23,7 @@ from flexlash.submission.reading.read import Source, read_submission, submission
 from flexlash.submission.reading.refusal import Refusal
 from here import WHERE, answer_here
 from small_workbook import book_of
-from worker_tasks import each_parquet, fail, obey, own_number, slowly, square
+from worker_tasks import ask_for_a_process, each_parquet, fail, obey, own_number, slowly, square
 
 pytestmark = pytest.mark.limited_process
 
@@ -351,3 +352,9 @@ def test_what_follows_has_no_limits():
         ask(obey, ReadingLimits(seconds=1), "import time; time.sleep(9)", then=slowly)
     with pytest.raises(ProcessFaultError, match="dimensions"):
         ask(square, ReadingLimits(), 3, then=fail)
+
+
+def test_a_process_that_may_start_none_is_told_what_to_do():
+    """A worker of multiprocessing.Pool may start no process: the message says so, and what to use instead."""
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        assert "ProcessPoolExecutor" in pool.apply(ask_for_a_process)

@@ -11,7 +11,18 @@ from flexlash.submission.reading.limits import ReadingLimits
 from flexlash.submission.reading.read import Source, submission_of
 from flexlash.submission.reading.refusal import Refusal
 
-__all__ = ["die", "die_once", "each_parquet", "fail", "obey", "own_number", "sleep", "slowly", "square"]
+__all__ = [
+    "ask_for_a_process",
+    "die",
+    "die_once",
+    "each_parquet",
+    "fail",
+    "obey",
+    "own_number",
+    "sleep",
+    "slowly",
+    "square",
+]
 
 
 def square(number):
@@ -55,6 +66,17 @@ def slowly(answer):
 def own_number():
     """Return the number of the process that does this."""
     return os.getpid()
+
+
+def ask_for_a_process():
+    """Return why the limited process cannot be started from here, an empty text where it can."""
+    from flexlash.submission.reading.isolated import ProcessFaultError, begin
+
+    try:
+        begin()
+    except ProcessFaultError as fault:
+        return str(fault)
+    return ""
 
 
 def obey(text):

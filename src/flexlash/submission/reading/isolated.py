@@ -8,6 +8,7 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import TimeoutError as TookTooLong
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import current_process
 from typing import Any, TypeVar
 
 from pebble import ProcessExpired, ProcessPool
@@ -28,6 +29,11 @@ _VARIABLES = {"POLARS_MAX_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "RUST_BACK
 _ANSWERING = 30
 """Seconds beyond its time after which a process that gives no answer never will: it died while it gave one."""
 
+_DAEMON = (
+    "flexlash reads files in a process of its own, which a daemonic process, such as one of multiprocessing.Pool, may "
+    "not start; call it from concurrent.futures.ProcessPoolExecutor instead"
+)
+
 _ONE_AT_A_TIME = threading.Lock()
 
 _POOLS: dict[int, ProcessPool] = {}
@@ -39,9 +45,14 @@ class ProcessFaultError(RuntimeError):
 
 
 def begin() -> ProcessPool:
-    """Have the limited process start, if there is none, and load its libraries while this one does something else."""
+    """Have the limited process start, if there is none, and load its libraries while this one does something else.
+
+    Raises ProcessFaultError in a process that may start none.
+    """
     number = os.getpid()
     if number not in _POOLS:
+        if current_process().daemon:
+            raise ProcessFaultError(_DAEMON)
         _POOLS.clear()
         _POOLS[number] = started(1, prepare, _VARIABLES)
     return _POOLS[number]
