@@ -358,3 +358,33 @@ def test_a_process_that_may_start_none_is_told_what_to_do():
     """A worker of multiprocessing.Pool may start no process: the message says so, and what to use instead."""
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         assert "ProcessPoolExecutor" in pool.apply(ask_for_a_process)
+
+
+LOST = """
+import sys
+sys.path[:0] = {paths!r}
+from flexlash.submission.reading.isolated import ask
+from flexlash.submission.reading.limits import ReadingLimits
+from flexlash.submission.reading.refusal import Refusal
+from worker_tasks import obey
+try:
+    ask(obey, ReadingLimits({limit}), {order!r})
+except Refusal as refusal:
+    print(refusal.facts.get("setting", refusal.code))
+"""
+
+
+@limits_are_there
+@pytest.mark.parametrize(
+    ("order", "limit", "told"),
+    [("import os; os._exit(3)", "", "E118"), ("import time; time.sleep(60)", "seconds=1", "seconds")],
+)
+def test_a_program_that_ends_after_a_lost_process_says_nothing(order, limit, told):
+    """The process that is started in the place of a lost one does not complain where the program ends at once."""
+    paths = [str(regenerate.ROOT / one) for one in ("src", "tests")]
+    for _ in range(3):
+        done = subprocess.run(
+            [sys.executable, "-c", LOST.format(paths=paths, limit=limit, order=order)],
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        assert (done.stdout.strip(), done.stderr) == (told, "")

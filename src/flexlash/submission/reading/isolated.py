@@ -92,10 +92,11 @@ def _answer(
         answer: Any = future.result(limits.seconds + _ANSWERING)
         return begin().schedule(gone_on, (then,)).result() if then and answer is None else answer  # type: ignore[no-any-return]
     except TookTooLong:
-        if not future.done():
-            _abandon()
+        _abandon()
         return limits.exceeded("seconds")
     except ProcessExpired as lost:
+        # Another process is being started in its place, which would complain if this one ended meanwhile.
+        _abandon()
         processor_time = lost.exitcode == -getattr(signal, "SIGXCPU", 0)
         return limits.exceeded("processor_seconds") if processor_time else Refusal("E118")
     except (BrokenProcessPool, OSError) as fault:
