@@ -130,7 +130,7 @@ def test_every_limit_has_a_test():
 
 def test_limits_are_the_promised_ones():
     """The limits are those that were measured and promised."""
-    assert ReadingLimits().as_dictionary() == PROMISED
+    assert dataclasses.asdict(ReadingLimits()) == PROMISED
 
 
 @pytest.mark.parametrize("setting", PROMISED)

@@ -17,7 +17,7 @@ from flexlash.submission.reading.wire import from_wire
 from flexlash.submission.reading.workbook import Cells, read_workbook
 from flexlash.submission.reading.worksheet import MAXIMUM_COLUMN, MAXIMUM_ROW
 
-__all__ = ["FORM", "NONSENSE", "SHEET", "SWITCHES", "carried_submission", "read_report"]
+__all__ = ["FORM", "SHEET", "SWITCHES", "carried_submission", "read_report"]
 
 SHEET = "Carried"
 """The sheet of a report that holds, in pieces below each other, the text that it carries."""
@@ -27,7 +27,7 @@ FORM = 1
 
 RESULTS = "Results"
 SWITCHES = ("cross_check", "elasticity", "strict")
-NONSENSE = (ValueError, TypeError, LookupError, AttributeError, RecursionError, OverflowError)
+_NONSENSE = (ValueError, TypeError, LookupError, AttributeError, RecursionError, OverflowError)
 """What arises where a text is not what it should be."""
 
 _DIGEST = re.compile("[0-9a-f]{64}")
@@ -58,7 +58,7 @@ def _parsed(sheet: RawSheet) -> Any:
     """Return what the text on the sheet says."""
     try:
         return json.loads("".join(str(cells[1]) for cells in sheet.rows.values() if 1 in cells))
-    except NONSENSE as fault:
+    except _NONSENSE as fault:
         raise Refusal("E122", found=_ALTERED) from fault
 
 
@@ -81,7 +81,7 @@ def carried_submission(found: Any, limits: ReadingLimits) -> Submission:
             template_version=cells.template_version,
             run_with=_options(found["options"]),
         )
-    except NONSENSE as fault:
+    except _NONSENSE as fault:
         raise Refusal("E122", found=_ALTERED) from fault
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from flexlash.findings import shown
@@ -89,7 +89,3 @@ class ReadingLimits:
         """Raise the refusal when a number exceeds its limit."""
         if found > getattr(self, setting):
             raise self.exceeded(setting, found)
-
-    def as_dictionary(self) -> dict[str, int]:
-        """Return every limit by its setting."""
-        return asdict(self)
