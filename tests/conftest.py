@@ -10,10 +10,10 @@ from typing import Any
 
 import openpyxl
 import pytest
-
 from filled import SOUND, filled
-from flexlash.submission.reading import isolated
 from here import WHERE, answer_here
+
+from flexlash.reading import limited_process as isolated
 
 _APART = isolated._answer
 

@@ -9,7 +9,7 @@ Data flows one way, and each stage is one folder or module:
 message. A submission goes through like this:
 
 >>> import flexlash, pathlib, tempfile
->>> from flexlash.submission.templating.template import study, template_bytes
+>>> from flexlash.feedback.template.template_workbook import study, template_bytes
 >>> folder = pathlib.Path(tempfile.mkdtemp())
 >>> _ = (folder / "study.xlsx").write_bytes(template_bytes(study()))
 >>> outcome = flexlash.run(folder / "study.xlsx")
@@ -25,7 +25,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from flexlash.outcome import Outcome
+    from flexlash.analysis.outcome import Outcome
     from flexlash.pipeline import check, mend, run
 
 __all__ = ["Outcome", "__version__", "check", "mend", "run"]

@@ -6,24 +6,24 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from flexlash.elasticity import MISSING, is_available
-from flexlash.examination import assessed, examine, in_order, refused
-from flexlash.findings import readable
-from flexlash.handback import certain_repairs, marked, mended, worth_marking
-from flexlash.options import Options
-from flexlash.outcome import DRAWN, PICTURED, Outcome
+from flexlash.analysis.examination import assessed, examine, in_order, refused
+from flexlash.analysis.options import Options
+from flexlash.analysis.outcome import DRAWN, PICTURED, Outcome
+from flexlash.analysis.recommendations import remedies_of
+from flexlash.analysis.results import results_of
+from flexlash.analysis.run_summary import worst_first
+from flexlash.analysis.tolerance_spread import drawn_curves, scattered
+from flexlash.feedback.fixing.fix import Repair
+from flexlash.feedback.returned_files import certain_repairs, marked, mended, worth_marking
+from flexlash.mechanics.elasticity import MISSING, is_available
 from flexlash.outputs.naming import MENDED, REPORTS, WORKBOOK, named_output
 from flexlash.outputs.plan import Output, Plan
-from flexlash.parameters import file_path
-from flexlash.remedies import remedies_of
-from flexlash.results import results_of
-from flexlash.scatter import drawn_curves, scattered
-from flexlash.submission.mending.repair import Repair
-from flexlash.submission.products import mended_role
-from flexlash.submission.reading.isolated import ask
-from flexlash.submission.reading.read import ReadReport, Source, limits_of_reports, of_table
-from flexlash.submission.reading.refusal import Refusal
-from flexlash.summary import worst_first
+from flexlash.reading.limited_process import ask
+from flexlash.reading.products import mended_role
+from flexlash.reading.read import ReadReport, Source, limits_of_reports, of_table
+from flexlash.reading.refusal import Refusal
+from flexlash.schema.argument_checks import file_path
+from flexlash.schema.findings import readable
 
 __all__ = ["Options", "Outcome", "check", "mend", "run"]
 
@@ -213,7 +213,7 @@ def _verify(outcome: Outcome, options: Options) -> None:
     """Put the elasticity check into every computed row."""
     if outcome.validated is None or not outcome.computed:
         return
-    from flexlash.verification import verified
+    from flexlash.analysis.verification import verified
 
     rows = len(outcome.computed)
     progress = options.progress
@@ -229,7 +229,7 @@ def _verify(outcome: Outcome, options: Options) -> None:
 
 def _picture(outcome: Outcome) -> None:
     """Solve the worst few of the checked variants once more, for their stress fields."""
-    from flexlash.verification import pictured
+    from flexlash.analysis.verification import pictured
 
     by_name = {one.variant.name: one for one in outcome.computed.values()}
     worst = [by_name[row["variant"]] for row in worst_first(outcome)]

@@ -26,7 +26,7 @@ ONE = """
 import json, sys
 from pathlib import Path
 from flexlash.pipeline import check
-from flexlash.summary import finding_lines
+from flexlash.analysis.run_summary import finding_lines
 outcome = check(Path(sys.argv[1]), materials=Path(sys.argv[2]))
 list(finding_lines(outcome.findings))
 json.dumps(outcome.as_dictionary())

@@ -10,13 +10,13 @@ from functools import partial
 
 import numpy as np
 
-from flexlash.elasticity.twist import elasticity_check
+from flexlash.mechanics.elasticity.twist import elasticity_check
 from flexlash.mechanics.flexspline import backlash
-from flexlash.submission.tables import standard_class
-from flexlash.tolerance.limits import limits_of
-from flexlash.tolerance.spreading import spread_rows
-from flexlash.tolerance.variation import Draws
-from flexlash.variant import Variant
+from flexlash.schema.variant import Variant
+from flexlash.tolerance.dimension_limits import limits_of
+from flexlash.tolerance.row_spreads import spread_rows
+from flexlash.tolerance.spread_statistics import Draws
+from flexlash.validation.materials_and_classes import standard_class
 
 PLAIN = {
     "torque": 800.0,

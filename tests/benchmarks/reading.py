@@ -34,12 +34,12 @@ def least(work: Callable[[], object]) -> float:
 
 def measure(rows: int, folder: Path) -> None:
     """Print the steps of reading a submission of so many rows, and their share of the whole command."""
-    from flexlash.submission.reading.archive import unpacked
-    from flexlash.submission.reading.isolated import ask
-    from flexlash.submission.reading.limits import ReadingLimits
-    from flexlash.submission.reading.package import open_package
-    from flexlash.submission.reading.read import Source, submission_of
-    from flexlash.submission.reading.workbook import look_at, read_workbook
+    from flexlash.reading.archive import unpacked
+    from flexlash.reading.limited_process import ask
+    from flexlash.reading.package import open_package
+    from flexlash.reading.read import Source, submission_of
+    from flexlash.reading.reading_limits import ReadingLimits
+    from flexlash.reading.xlsx import look_at, read_workbook
 
     path = folder / f"{rows}.xlsx"
     make_submission(rows, path)

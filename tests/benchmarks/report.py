@@ -27,10 +27,10 @@ import polars as pl
 import xlsxwriter
 from xlsxwriter.url import Url
 
-from flexlash.outcome import Outcome
+from flexlash.analysis.outcome import Outcome
+from flexlash.feedback.template.template_workbook import study
 from flexlash.pipeline import run
 from flexlash.report.workbook import report_bytes
-from flexlash.submission.templating.template import study
 
 RUNS = 3
 VARIED = ("torque_Nm", "cylinder_length_mm", "wall_thickness_mm", "backlash_limit_arcmin")

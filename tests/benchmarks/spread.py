@@ -300,7 +300,7 @@ def drawn_tasks(rows):
 
     from flexlash import pipeline
     from flexlash.mechanics.flexspline import backlash
-    from flexlash.tolerance.limits import limits_of, shape_problems
+    from flexlash.tolerance.dimension_limits import limits_of, shape_problems
 
     with tempfile.TemporaryDirectory() as name:
         path = Path(name, "two.xlsx")
@@ -335,8 +335,8 @@ def spread_once(rows):
     """Print seconds, peak memory [MiB] before and after, and by which methods rows were answered, as JSON."""
     from collections import Counter
 
-    from flexlash.tolerance.spreading import spread_rows
-    from flexlash.tolerance.variation import Draws
+    from flexlash.tolerance.row_spreads import spread_rows
+    from flexlash.tolerance.spread_statistics import Draws
 
     tasks = drawn_tasks(rows)
     draws = Draws(method="line", samples=None, seed=0)

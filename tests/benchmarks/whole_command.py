@@ -44,7 +44,7 @@ book.close()
 
 def make_submission(rows: int, path: Path) -> None:
     """Write a submission of plausible cups, every fifth with fillets and rim."""
-    from flexlash.submission.templating.template import Filling, template_bytes
+    from flexlash.feedback.template.template_workbook import Filling, template_bytes
 
     source = random.Random(1)  # noqa: S311
     variants = []

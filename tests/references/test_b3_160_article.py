@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from flexlash.columns import VARIANTS
 from flexlash.mechanics import windup
 from flexlash.mechanics.flexspline import CYLINDER_SEGMENTS, DISK_SEGMENTS, backlash, windups
 from flexlash.pipeline import run
+from flexlash.schema.columns import VARIANTS
 
 PRINTED_MODULUS = 8.10769e10
 BASELINE = {

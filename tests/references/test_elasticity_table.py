@@ -3,7 +3,7 @@
 Source: `elasticity_reference.csv` beside this file. Axisymmetric torsion is the scalar problem
 ∇·(G r³ ∇φ) = 0 for the twist φ on the half-section; P2 elements, mesh-converged to about 1e-4. The meridian
 and two-term columns were computed apart from flexlash. `triangle_torsion.csv`: thirty-four more cups and hats of
-wall 1 to 3 % of the radius, converged to 2e-6 by tests/triangle_torsion.py, which takes nothing from flexlash.
+wall 1 to 3 % of the radius, converged to 2e-6 by tests/support/triangle_torsion.py, which takes nothing from flexlash.
 """
 
 import csv
@@ -11,12 +11,12 @@ import math
 from pathlib import Path
 
 import pytest
-
 import triangle_torsion
-from flexlash.columns import VARIANTS
-from flexlash.elasticity.twist import elasticity_check
+
+from flexlash.mechanics.elasticity.twist import elasticity_check
 from flexlash.mechanics.flexspline import backlash, windups
 from flexlash.pipeline import run
+from flexlash.schema.columns import VARIANTS
 
 REFINEMENTS = {
     "disk_hub_thickness",

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from flexlash.result_columns import result_columns
+from flexlash.schema.result_columns import result_columns
 
 __all__ = ["AGREEING", "POINTS", "is_within_error"]
 

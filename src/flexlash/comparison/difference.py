@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from flexlash.column import Column
-from flexlash.columns import SETTINGS, VARIANTS
 from flexlash.comparison.calculation_error import POINTS, is_within_error
 from flexlash.comparison.sides import Name, Side, Used
-from flexlash.result_columns import result_columns
-from flexlash.submission.spellings import plain
+from flexlash.schema.column import Column
+from flexlash.schema.columns import SETTINGS, VARIANTS
+from flexlash.schema.result_columns import result_columns
+from flexlash.schema.spellings import plain
 
 __all__ = ["FIRST", "ROUNDING", "Change", "Difference", "Differing", "changed_results", "difference"]
 

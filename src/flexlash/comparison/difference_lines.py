@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from flexlash.columns import DIMENSIONS
 from flexlash.comparison.calculation_error import AGREEING
 from flexlash.comparison.difference import FIRST, Change, Difference, Differing
 from flexlash.comparison.sides import Name
-from flexlash.findings import shown
-from flexlash.submission.reading.carried import SWITCHES
+from flexlash.reading.carried import SWITCHES
+from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.findings import shown
 
 __all__ = ["comparison_line", "difference_lines"]
 

@@ -10,20 +10,20 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from flexlash.assessment import assess
-from flexlash.columns import DIMENSIONS, MATERIALS, columns_of
-from flexlash.findings import shown
-from flexlash.result_columns import result_columns
-from flexlash.submission.reading.isolated import ask
-from flexlash.submission.reading.limits import ReadingLimits
-from flexlash.submission.reading.raw import RawSheet, Submission
-from flexlash.submission.reading.read import Source, limits_of_reports, report_of, submission_of
-from flexlash.submission.reading.refusal import Refusal
-from flexlash.submission.spellings import plain
-from flexlash.submission.stops import stopped_by
-from flexlash.submission.tabulate import Table
-from flexlash.submission.validate import Validated, validate
-from flexlash.variant import ToleranceRow
+from flexlash.analysis.assessment import assess
+from flexlash.reading.limited_process import ask
+from flexlash.reading.raw import RawSheet, Submission
+from flexlash.reading.read import Source, limits_of_reports, report_of, submission_of
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.reading.refusal import Refusal
+from flexlash.schema.columns import DIMENSIONS, MATERIALS, columns_of
+from flexlash.schema.findings import shown
+from flexlash.schema.result_columns import result_columns
+from flexlash.schema.spellings import plain
+from flexlash.schema.variant import ToleranceRow
+from flexlash.validation.blocking_errors import stopped_by
+from flexlash.validation.typed_columns import Table
+from flexlash.validation.validate import Validated, validate
 
 if TYPE_CHECKING:
     import polars as pl

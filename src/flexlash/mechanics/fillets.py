@@ -15,7 +15,7 @@ from typing import TypeAlias
 import numpy as np
 from scipy.special import boxcox, expm1
 
-from flexlash.arrays import Array
+from flexlash.schema.arrays import Array
 
 __all__ = [
     "ARC_RULE",

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from scipy.special import expm1, xlogy
 
-from flexlash.arrays import Array
 from flexlash.mechanics import fillets, windup
+from flexlash.schema.arrays import Array
 
 __all__ = [
     "CYLINDER_SEGMENTS",

@@ -9,10 +9,10 @@ from typing import TypeAlias
 
 import numpy as np
 
-from flexlash.arrays import Array
 from flexlash.mechanics import flexspline, strength, windup
 from flexlash.mechanics.stiffness import catalogue_stiffness, drive_lost_motion, natural_frequency, resonance_speed
-from flexlash.variant import Variant
+from flexlash.schema.arrays import Array
+from flexlash.schema.variant import Variant
 
 __all__ = ["Numbers", "nominal_numbers"]
 

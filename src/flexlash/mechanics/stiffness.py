@@ -8,7 +8,7 @@ from collections.abc import Collection
 from functools import cache
 from typing import NamedTuple
 
-from flexlash import tables
+from flexlash.schema import tables
 
 __all__ = [
     "DriveTorque",

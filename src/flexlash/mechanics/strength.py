@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.special import cosdg, sindg
 
-from flexlash.arrays import Array
+from flexlash.schema.arrays import Array
 
 __all__ = [
     "GREATEST_SLENDERNESS",

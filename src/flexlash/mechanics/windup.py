@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import boxcox, sindg
 
-from flexlash.arrays import Array
+from flexlash.schema.arrays import Array
 
 __all__ = [
     "NEARLY",

@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from flexlash.outputs.plan import Output, Plan
-from flexlash.parameters import file_path
-from flexlash.submission.products import CHECKED_NAME, MENDED_NAME, REPORT_NAME, is_made_by_name, made_of
+from flexlash.reading.products import CHECKED_NAME, MENDED_NAME, REPORT_NAME, is_made_by_name, made_of
+from flexlash.schema.argument_checks import file_path
 
 __all__ = [
     "MENDED",
@@ -90,7 +90,7 @@ def recreated_outputs(plan: Plan, report: Path, output: Path | None, name: str) 
 
 def template_output(output: Path | None, old: Path | None, *, force: bool) -> Output:
     """Return where a template goes; raise ValueError where it would replace a file that may be filled."""
-    from flexlash.submission.versions import TEMPLATE_VERSION
+    from flexlash.validation.template_versions import TEMPLATE_VERSION
 
     default = old.parent / f"{old.stem}-v{TEMPLATE_VERSION}.xlsx" if old else Path("flexlash-template.xlsx")
     target = output or default

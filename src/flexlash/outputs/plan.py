@@ -16,10 +16,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from flexlash.findings import shown
 from flexlash.outputs.writing import put_new, remove_leftovers, replace, temporary
-from flexlash.stamps import stamp_at, stamped
-from flexlash.submission.products import is_replaced, results_header
+from flexlash.reading.products import is_replaced, results_header
+from flexlash.schema.findings import shown
+from flexlash.schema.stamps import stamp_at, stamped
 
 __all__ = ["Output", "Plan", "Written"]
 

@@ -7,16 +7,16 @@ from typing import Any
 
 from xlsxwriter.utility import quote_sheetname
 
-from flexlash.column import Column
-from flexlash.columns import DIMENSIONS, SETTINGS
-from flexlash.outcome import Outcome
-from flexlash.report.links import write_link
+from flexlash.analysis.outcome import Outcome
+from flexlash.report.layout.links import write_link
+from flexlash.report.layout.styles import Book
 from flexlash.report.results_sheet import AS_SUBMITTED, ERROR_DIGITS, SHARE_DECIMALS
-from flexlash.report.styles import Book
-from flexlash.report.verdict import NO_VERDICT, RULES
-from flexlash.result_columns import result_columns
-from flexlash.tolerance.line_nets import LINE_REPLICATES
-from flexlash.tolerance.line_spread import MOST_LINES, OF_PROBABILITY, OF_SD
+from flexlash.report.wording.verdict import NO_VERDICT, RULES
+from flexlash.schema.column import Column
+from flexlash.schema.columns import DIMENSIONS, SETTINGS
+from flexlash.schema.result_columns import result_columns
+from flexlash.tolerance.engine.line_points import LINE_REPLICATES
+from flexlash.tolerance.engine.line_spread import MOST_LINES, OF_PROBABILITY, OF_SD
 from flexlash.tolerance.sampling import REPLICATES
 
 __all__ = ["CHECKSUMS", "ERRATA", "LEFT_OUT", "MODEL", "PROOF", "SHEETS", "TABS", "write_about"]

@@ -10,13 +10,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from flexlash import __version__
-from flexlash.outcome import Outcome
-from flexlash.report.styles import Book
-from flexlash.submission.entry_sheets import sheet_names
-from flexlash.submission.reading.carried import FORM, SHEET, SWITCHES
-from flexlash.submission.reading.raw import RawSheet, RawValue, Submission
-from flexlash.submission.reading.wire import to_wire
-from flexlash.submission.reading.workbook import Cells
+from flexlash.analysis.outcome import Outcome
+from flexlash.reading.carried import FORM, SHEET, SWITCHES
+from flexlash.reading.raw import RawSheet, RawValue, Submission
+from flexlash.reading.wire import to_wire
+from flexlash.reading.xlsx import Cells
+from flexlash.report.layout.styles import Book
+from flexlash.validation.entry_sheets import sheet_names
 
 __all__ = ["carried_text", "write_carried"]
 

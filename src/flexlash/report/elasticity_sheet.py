@@ -5,12 +5,12 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 
-from flexlash.findings import shown
-from flexlash.outcome import PICTURED, Outcome
+from flexlash.analysis.outcome import PICTURED, Outcome
+from flexlash.report.layout.styles import Book
 from flexlash.report.section_picture import section_png
 from flexlash.report.selection import Drawn
-from flexlash.report.styles import Book
-from flexlash.units import ARCMIN
+from flexlash.schema.findings import shown
+from flexlash.schema.units import ARCMIN
 
 __all__ = ["NOTES", "write_elasticity", "write_stress"]
 

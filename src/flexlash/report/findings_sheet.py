@@ -6,14 +6,14 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
-from flexlash.columns import ENTRY_SHEETS
-from flexlash.explanations import explanation_of
-from flexlash.findings import CATALOGUE, Finding, shown
-from flexlash.outcome import Outcome
-from flexlash.report.links import FIRST_FINDING, finding_list, result_rows, row_of, rules_of, write_link
-from flexlash.report.styles import Book
+from flexlash.analysis.outcome import Outcome
+from flexlash.report.layout.links import FIRST_FINDING, finding_list, result_rows, row_of, rules_of, write_link
+from flexlash.report.layout.styles import Book
 from flexlash.report.submission_sheets import titles_of
-from flexlash.result_columns import FINDINGS
+from flexlash.schema.columns import ENTRY_SHEETS
+from flexlash.schema.finding_explanations import explanation_of
+from flexlash.schema.findings import CATALOGUE, Finding, shown
+from flexlash.schema.result_columns import FINDINGS
 
 __all__ = ["write_findings"]
 

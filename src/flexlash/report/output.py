@@ -5,9 +5,9 @@ from __future__ import annotations
 import io
 import json
 
-from flexlash.outcome import Outcome
+from flexlash.analysis.outcome import Outcome
 from flexlash.report.results_table import csv_text, results_table
-from flexlash.stamps import placeholder
+from flexlash.schema.stamps import placeholder
 
 __all__ = ["outcome_bytes"]
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from flexlash.columns import Column
-from flexlash.outcome import Outcome
-from flexlash.report.links import FIRST_ROW, finding_rows, name_cell, result_rows, write_link
-from flexlash.report.paper import print_readably
-from flexlash.report.raw_cells import write_raw
-from flexlash.report.result_formats import ESTIMATED_SHARES, number_formats, usual_format
-from flexlash.report.styles import PALETTE, Book
-from flexlash.report.wrapping import LINE_HEIGHT, lines_of
-from flexlash.result_columns import RESULTS, result_columns
+from flexlash.analysis.outcome import Outcome
+from flexlash.report.layout.links import FIRST_ROW, finding_rows, name_cell, result_rows, write_link
+from flexlash.report.layout.paper import print_readably
+from flexlash.report.layout.raw_cells import write_raw
+from flexlash.report.layout.result_formats import ESTIMATED_SHARES, number_formats, usual_format
+from flexlash.report.layout.styles import PALETTE, Book
+from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
+from flexlash.schema.columns import Column
+from flexlash.schema.result_columns import RESULTS, result_columns
 
 if TYPE_CHECKING:
     import polars as pl

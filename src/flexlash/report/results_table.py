@@ -9,9 +9,9 @@ from collections.abc import Iterator, Sequence
 
 import polars as pl
 
-from flexlash.outcome import Outcome
-from flexlash.result_columns import result_columns
-from flexlash.submission.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Percentage, RawValue
+from flexlash.analysis.outcome import Outcome
+from flexlash.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Percentage, RawValue
+from flexlash.schema.result_columns import result_columns
 
 __all__ = ["csv_text", "results_table"]
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from flexlash.arrays import Array
-from flexlash.elasticity.twist import ElasticityCheck
-from flexlash.report.styles import PALETTE
+from flexlash.mechanics.elasticity.twist import ElasticityCheck
+from flexlash.report.layout.styles import PALETTE
+from flexlash.schema.arrays import Array
 
 __all__ = ["PICTURE_SIZE", "section_png"]
 

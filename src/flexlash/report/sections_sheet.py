@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from flexlash.report.labels import distinct_labels
+from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.selection import Drawn
-from flexlash.report.styles import GRID, PALETTE, Book
-from flexlash.units import ARCMIN
+from flexlash.report.wording.labels import distinct_labels
+from flexlash.schema.units import ARCMIN
 
 __all__ = ["write_sections"]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from flexlash.assessment import Computed
-from flexlash.outcome import Outcome
-from flexlash.tolerance.curves import Curve
+from flexlash.analysis.assessment import Computed
+from flexlash.analysis.outcome import Outcome
+from flexlash.tolerance.distribution_curves import Curve
 
 __all__ = ["Drawn", "drawn_variants"]
 

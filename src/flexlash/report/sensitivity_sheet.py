@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from flexlash.columns import DIMENSIONS
-from flexlash.findings import shown
-from flexlash.outcome import Outcome
-from flexlash.report.paper import SMALL, fits, print_readably
-from flexlash.report.result_formats import SHARE_OF_VARIANCE_ERROR
+from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.run_summary import dimension_words
+from flexlash.report.layout.paper import SMALL, fits, print_readably
+from flexlash.report.layout.result_formats import SHARE_OF_VARIANCE_ERROR
+from flexlash.report.layout.styles import GRID, PALETTE, Book, percent_of
 from flexlash.report.results_sheet import SHARE_DECIMALS
 from flexlash.report.selection import Drawn
-from flexlash.report.styles import GRID, PALETTE, Book, percent_of
-from flexlash.summary import dimension_words
-from flexlash.tolerance.variation import Variation
-from flexlash.units import ARCMIN
+from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.findings import shown
+from flexlash.schema.units import ARCMIN
+from flexlash.tolerance.spread_statistics import Variation
 
 __all__ = ["write_sensitivity"]
 

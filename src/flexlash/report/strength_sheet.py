@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from flexlash.report.labels import distinct_labels
-from flexlash.report.paper import SMALL, print_readably
+from flexlash.report.layout.paper import SMALL, print_readably
+from flexlash.report.layout.styles import Book
 from flexlash.report.selection import Drawn
-from flexlash.report.styles import Book
+from flexlash.report.wording.labels import distinct_labels
 
 __all__ = ["write_strength"]
 

@@ -8,18 +8,18 @@ from typing import Any, TypeGuard
 
 from xlsxwriter.utility import xl_cell_to_rowcol
 
-from flexlash.columns import ENTRY_SHEETS
-from flexlash.outcome import Outcome
-from flexlash.report.links import finding_list, result_rows, write_link
-from flexlash.report.paper import print_readably
-from flexlash.report.raw_cells import raw_text, write_raw
-from flexlash.report.styles import Book
-from flexlash.report.wrapping import LINE_HEIGHT, lines_of
-from flexlash.submission.entry_sheets import sheet_names
-from flexlash.submission.headers import STATUS_HEADER, plain
-from flexlash.submission.reading.read import RawSheet, Submission, Unstored
-from flexlash.submission.tables import BUILT_IN_SHEETS, built_in_sheet
-from flexlash.submission.templating.template import TITLES
+from flexlash.analysis.outcome import Outcome
+from flexlash.feedback.template.template_workbook import TITLES
+from flexlash.reading.read import RawSheet, Submission, Unstored
+from flexlash.report.layout.links import finding_list, result_rows, write_link
+from flexlash.report.layout.paper import print_readably
+from flexlash.report.layout.raw_cells import raw_text, write_raw
+from flexlash.report.layout.styles import Book
+from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
+from flexlash.schema.columns import ENTRY_SHEETS
+from flexlash.validation.entry_sheets import sheet_names
+from flexlash.validation.headers import STATUS_HEADER, plain
+from flexlash.validation.materials_and_classes import BUILT_IN_SHEETS, built_in_sheet
 
 __all__ = ["MOST_COMMENTS", "titles_of", "write_submission"]
 

@@ -7,7 +7,7 @@ import io
 
 import xlsxwriter
 
-from flexlash.outcome import Outcome
+from flexlash.analysis.outcome import Outcome
 from flexlash.report.about_sheet import write_about
 from flexlash.report.carried_sheet import write_carried
 from flexlash.report.compare.compare_sheet import write_compare
@@ -18,13 +18,12 @@ from flexlash.report.elasticity_sheet import write_elasticity, write_stress
 from flexlash.report.explorer.curves_sheet import CURVES_NOTE, stored_curves
 from flexlash.report.explorer.explorer_sheet import write_explorer
 from flexlash.report.findings_sheet import write_findings
-from flexlash.report.packing import packed
+from flexlash.report.layout.styles import Book
 from flexlash.report.results_sheet import write_results
 from flexlash.report.sections_sheet import write_sections
 from flexlash.report.selection import drawn_variants
 from flexlash.report.sensitivity_sheet import write_sensitivity
 from flexlash.report.strength_sheet import write_strength
-from flexlash.report.styles import Book
 from flexlash.report.submission_sheets import write_submission
 from flexlash.report.summary.summary_sheet import write_summary
 from flexlash.report.trace.inputs import INPUTS_NOTE, stored_inputs
@@ -71,4 +70,4 @@ def report_bytes(outcome: Outcome) -> bytes:
     write_trace(book, trace, inputs, len(outcome.computed))
     write_carried(book, outcome)
     workbook.close()
-    return packed(buffer.getvalue())
+    return buffer.getvalue()

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexlash.tolerance.sampled import SampledSpread
-from flexlash.tolerance.variation import PERCENTILES, Variation
+from flexlash.tolerance.sampled_spread import SampledSpread
+from flexlash.tolerance.spread_statistics import PERCENTILES, Variation
 
 __all__ = ["AGREES", "cross_checked"]
 

@@ -13,8 +13,8 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from flexlash.arrays import Array
-from flexlash.parameters import number
+from flexlash.schema.argument_checks import number
+from flexlash.schema.arrays import Array
 
 __all__ = ["Distribution", "Normal", "Triangular", "TruncatedNormal", "Uniform"]
 

@@ -7,12 +7,12 @@ from typing import get_args
 
 import numpy as np
 
-from flexlash.arrays import Array
-from flexlash.parameters import function, named_arguments, of_type, one_of, whole_number
-from flexlash.tolerance.course import RowModel, Rows
+from flexlash.schema.argument_checks import function, named_arguments, of_type, one_of, whole_number
+from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution
-from flexlash.tolerance.line_spread import LineSpread, NoLines
-from flexlash.tolerance.sampled import Model, SampledSpread
+from flexlash.tolerance.engine.line_direction import RowModel, Rows
+from flexlash.tolerance.engine.line_spread import LineSpread, NoLines
+from flexlash.tolerance.sampled_spread import Model, SampledSpread
 from flexlash.tolerance.sampling import UnitPoints
 from flexlash.tolerance.spread import Method, Spread
 

@@ -13,9 +13,9 @@ from typing import Literal
 import numpy as np
 from scipy.special import ndtri, stdtrit
 
-from flexlash.arrays import Array
+from flexlash.schema.arrays import Array
+from flexlash.tolerance.digital_nets import scrambled_net
 from flexlash.tolerance.distributions import Distribution
-from flexlash.tolerance.nets import scrambled_net
 
 __all__ = ["DEFAULT_SAMPLES", "REPLICATES", "UnitPoints", "standard_error"]
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from scipy.special import ndtri
 
-from flexlash.arrays import Array
+from flexlash.schema.arrays import Array
 
 __all__ = ["WorstCase", "first_order_sd", "first_order_valid", "gradient", "worst_case"]
 

@@ -9,8 +9,8 @@ from typing import Any, Literal, overload
 import numpy as np
 import numpy.typing as npt
 
-from flexlash.arrays import Array
-from flexlash.parameters import number, numbers, whole_number
+from flexlash.schema.argument_checks import number, numbers, whole_number
+from flexlash.schema.arrays import Array
 
 __all__ = ["Method", "Spread"]
 

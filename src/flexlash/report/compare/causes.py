@@ -7,10 +7,10 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from flexlash.columns import DIMENSIONS
-from flexlash.findings import shown
-from flexlash.outcome import Outcome
-from flexlash.summary import dimension_words, listed
+from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.run_summary import dimension_words, listed
+from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.findings import shown
 
 __all__ = ["MATTERS", "Cause", "cause_sentences", "causes_of", "left_out", "mean_share", "ranked_dimensions"]
 

@@ -7,12 +7,12 @@ from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
 
-from flexlash.findings import shown
-from flexlash.outcome import Outcome
-from flexlash.report.axes import axis_over
+from flexlash.analysis.outcome import Outcome
+from flexlash.report.formula.stored import Stored
+from flexlash.report.layout.axes import axis_over
+from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.selection import Drawn
-from flexlash.report.stored import Stored
-from flexlash.report.styles import GRID, PALETTE, Book
+from flexlash.schema.findings import shown
 
 __all__ = ["BOXES", "write_compare"]
 

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexlash.arrays import Array
-from flexlash.report.labels import distinct_labels
+from flexlash.report.formula.stored import Row, Stored
 from flexlash.report.selection import Drawn
-from flexlash.report.stored import Row, Stored
-from flexlash.tolerance.curves import CURVE_SCORES
-from flexlash.units import ARCMIN
+from flexlash.report.wording.labels import distinct_labels
+from flexlash.schema.arrays import Array
+from flexlash.schema.units import ARCMIN
+from flexlash.tolerance.distribution_curves import CURVE_SCORES
 
 __all__ = ["COMPARED_NOTE", "CONNECTED", "compared_variants", "percentile_between", "share_heading"]
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from flexlash.findings import shown
-from flexlash.outcome import Outcome
-from flexlash.report.axes import axis_over
+from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.run_summary import dimension_words
 from flexlash.report.compare.causes import Cause, cause_sentences, causes_of, left_out, mean_share, ranked_dimensions
 from flexlash.report.compare.compared import CONNECTED, share_heading
-from flexlash.report.labels import distinct_labels
+from flexlash.report.formula.stored import Stored
+from flexlash.report.layout.axes import axis_over
+from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.selection import Drawn
-from flexlash.report.stored import Stored
-from flexlash.report.styles import GRID, PALETTE, Book
-from flexlash.summary import dimension_words
+from flexlash.report.wording.labels import distinct_labels
+from flexlash.schema.findings import shown
 
 __all__ = ["MAPPED", "write_contributions"]
 

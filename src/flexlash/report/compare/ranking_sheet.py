@@ -7,16 +7,16 @@ from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
-from flexlash.outcome import Outcome
-from flexlash.report.functions import greatest, is_number, place_of_name
-from flexlash.report.labels import distinct_labels
-from flexlash.report.links import result_rows, write_link
-from flexlash.report.live import Live, fill, put, when
+from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.run_summary import dimension_words, share_words
+from flexlash.report.formula.functions import greatest, is_number, place_of_name
+from flexlash.report.formula.live import Live, fill, put, when
+from flexlash.report.formula.stored import Row, Stored
+from flexlash.report.layout.links import result_rows, write_link
+from flexlash.report.layout.styles import Book, decimals_of
 from flexlash.report.selection import Drawn
-from flexlash.report.stored import Row, Stored
-from flexlash.report.styles import Book, decimals_of
-from flexlash.report.verdict import COLOURS, RULES, light
-from flexlash.summary import dimension_words, share_words
+from flexlash.report.wording.labels import distinct_labels
+from flexlash.report.wording.verdict import COLOURS, RULES, light
 
 __all__ = ["BASE_ROW", "DIFFERENCES", "FIRST_ROW", "HEADER", "column_of", "write_ranking"]
 

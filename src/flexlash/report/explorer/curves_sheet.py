@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from flexlash.arrays import Array
-from flexlash.report.labels import distinct_labels
+from flexlash.analysis.run_summary import dimension_words, share_words
+from flexlash.report.formula.stored import Stored
 from flexlash.report.selection import Drawn
-from flexlash.report.stored import Stored
-from flexlash.summary import dimension_words, share_words
-from flexlash.tolerance.curves import CURVE_SCORES, HISTOGRAM_BINS
-from flexlash.units import ARCMIN
+from flexlash.report.wording.labels import distinct_labels
+from flexlash.schema.arrays import Array
+from flexlash.schema.units import ARCMIN
+from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS
 
 __all__ = ["CAUSES", "CURVES_NOTE", "FIGURE_ERRORS", "SEGMENTS", "error_heading", "score_heading", "stored_curves"]
 

@@ -7,10 +7,10 @@ from typing import Any
 from flexlash.report.explorer.curves_sheet import CAUSES, SEGMENTS
 from flexlash.report.explorer.explorer_choice import Choice
 from flexlash.report.explorer.explorer_working import COLUMN, CURVE_ROW, Working
-from flexlash.report.functions import all_of, decimal_logarithm, fixed, greatest, least, whole
-from flexlash.report.live import Live, joined, live, put, when
-from flexlash.report.styles import GRID, PALETTE, Book
-from flexlash.tolerance.curves import CURVE_SCORES, HISTOGRAM_BINS
+from flexlash.report.formula.functions import all_of, decimal_logarithm, fixed, greatest, least, whole
+from flexlash.report.formula.live import Live, joined, live, put, when
+from flexlash.report.layout.styles import GRID, PALETTE, Book
+from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS
 
 __all__ = ["write_charts"]
 

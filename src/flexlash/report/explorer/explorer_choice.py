@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from flexlash.report.functions import all_of, greatest, is_number, place_of_name
-from flexlash.report.live import Live, fill, joined, live, put, when
-from flexlash.report.stored import Stored
-from flexlash.report.styles import Book
-from flexlash.report.verdict import BOUNDS
+from flexlash.report.formula.functions import all_of, greatest, is_number, place_of_name
+from flexlash.report.formula.live import Live, fill, joined, live, put, when
+from flexlash.report.formula.stored import Stored
+from flexlash.report.layout.styles import Book
+from flexlash.report.wording.verdict import BOUNDS
 
 __all__ = ["NONE", "USUAL_SHARE", "Choice"]
 

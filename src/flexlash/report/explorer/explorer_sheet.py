@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from flexlash.number_words import INTERVAL
 from flexlash.report.explorer.curves_sheet import FIGURE_ERRORS
 from flexlash.report.explorer.explorer_charts import write_charts
 from flexlash.report.explorer.explorer_choice import NONE, USUAL_SHARE, Choice
 from flexlash.report.explorer.explorer_working import Read, Working
-from flexlash.report.functions import (
+from flexlash.report.formula.functions import (
     all_of,
     decimals_to,
     fixed,
@@ -24,10 +23,11 @@ from flexlash.report.functions import (
     normal_share,
     root,
 )
-from flexlash.report.live import Live, joined, live, put, when
-from flexlash.report.stored import Stored
-from flexlash.report.styles import Book
-from flexlash.report.verdict import BOUNDS
+from flexlash.report.formula.live import Live, joined, live, put, when
+from flexlash.report.formula.stored import Stored
+from flexlash.report.layout.styles import Book
+from flexlash.report.wording.verdict import BOUNDS
+from flexlash.schema.number_words import INTERVAL
 
 __all__ = ["write_explorer"]
 

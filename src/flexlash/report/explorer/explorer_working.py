@@ -13,10 +13,10 @@ from xlsxwriter.utility import xl_col_to_name
 
 from flexlash.report.explorer.curves_sheet import error_heading, score_heading
 from flexlash.report.explorer.explorer_choice import Choice
-from flexlash.report.functions import count_up_to, entry_of, greatest, least, middle, normal_share
-from flexlash.report.live import Live, fill, put, when
-from flexlash.report.styles import Book
-from flexlash.tolerance.curves import CURVE_SCORES
+from flexlash.report.formula.functions import count_up_to, entry_of, greatest, least, middle, normal_share
+from flexlash.report.formula.live import Live, fill, put, when
+from flexlash.report.layout.styles import Book
+from flexlash.tolerance.distribution_curves import CURVE_SCORES
 
 __all__ = ["COLUMN", "CURVE_ROW", "Read", "Working"]
 

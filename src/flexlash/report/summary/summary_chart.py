@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from flexlash.report.formula.stored import Stored
+from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.selection import Drawn
-from flexlash.report.stored import Stored
-from flexlash.report.styles import GRID, PALETTE, Book
-from flexlash.report.verdict import firm, light
+from flexlash.report.wording.verdict import firm, light
 
 __all__ = ["chart_words", "variants_chart"]
 

@@ -7,20 +7,20 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from flexlash.findings import shown
-from flexlash.number_words import glance, share_words
-from flexlash.outcome import Outcome
-from flexlash.report.links import result_rows, write_link
+from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.run_summary import counted, dimension_words, points_words
+from flexlash.report.formula.stored import Stored
+from flexlash.report.layout.links import result_rows, write_link
+from flexlash.report.layout.styles import Book, decimals_of
+from flexlash.report.layout.wrapping import LINE_HEIGHT, fitted, lines_of, merged_width
 from flexlash.report.selection import Drawn
-from flexlash.report.stored import Stored
-from flexlash.report.styles import Book, decimals_of
-from flexlash.report.summary.distances import distance, distance_format
-from flexlash.report.summary.sentences import FINDINGS, sentences
 from flexlash.report.summary.summary_chart import chart_words, variants_chart
-from flexlash.report.summary.told import labels_of, rough
-from flexlash.report.verdict import COLOURS, NO_VERDICT, RULES, UNSETTLED, light, verdict_counts
-from flexlash.report.wrapping import LINE_HEIGHT, fitted, lines_of, merged_width
-from flexlash.summary import counted, dimension_words, points_words
+from flexlash.report.wording.distances import distance, distance_format
+from flexlash.report.wording.quoted import labels_of, rough
+from flexlash.report.wording.sentences import FINDINGS, sentences
+from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, RULES, UNSETTLED, light, verdict_counts
+from flexlash.schema.findings import shown
+from flexlash.schema.number_words import glance, share_words
 
 __all__ = ["light", "sentences", "write_summary"]
 

@@ -6,9 +6,9 @@ from typing import Any
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
-from flexlash.report.functions import elsewhere
-from flexlash.report.live import Live, fill, put
-from flexlash.report.styles import Book
+from flexlash.report.formula.functions import elsewhere
+from flexlash.report.formula.live import Live, fill, put
+from flexlash.report.layout.styles import Book
 from flexlash.report.trace.trace_page import SHEET, Page
 
 __all__ = ["Block"]

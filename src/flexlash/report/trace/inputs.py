@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from flexlash.assessment import Computed
-from flexlash.columns import DIMENSIONS, MATERIALS, SETTINGS, VARIANTS, Column
-from flexlash.report.stored import Stored
-from flexlash.units import ARCMIN, as_entered
-from flexlash.variant import Variant
+from flexlash.analysis.assessment import Computed
+from flexlash.report.formula.stored import Stored
+from flexlash.schema.columns import DIMENSIONS, MATERIALS, SETTINGS, VARIANTS, Column
+from flexlash.schema.units import ARCMIN, as_entered
+from flexlash.schema.variant import Variant
 
 __all__ = ["ENTERED", "INPUTS_NOTE", "PROGRAM", "stored_inputs"]
 

@@ -11,8 +11,7 @@ from typing import Any
 
 from xlsxwriter.utility import xl_range_abs
 
-from flexlash.columns import VARIANTS, Column
-from flexlash.report.functions import (
+from flexlash.report.formula.functions import (
     all_of,
     any_of,
     elsewhere,
@@ -22,9 +21,10 @@ from flexlash.report.functions import (
     number_in,
     place_of_first,
 )
-from flexlash.report.live import Live, fill, joined, live, put, when
+from flexlash.report.formula.live import Live, fill, joined, live, put, when
 from flexlash.report.trace.inputs import ENTERED
 from flexlash.report.trace.trace_page import LEFT_OUT, SHEET, Page
+from flexlash.schema.columns import VARIANTS, Column
 
 __all__ = ["ALWAYS", "RULES_WIDTH", "TYPES", "write_rules"]
 

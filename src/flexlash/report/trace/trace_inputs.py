@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
-from flexlash.columns import Column
-from flexlash.report.functions import all_of, any_of, is_number
-from flexlash.report.live import Live, Operand, fill, put, when
+from flexlash.report.formula.functions import all_of, any_of, is_number
+from flexlash.report.formula.live import Live, Operand, fill, put, when
 from flexlash.report.trace.inputs import ENTERED
 from flexlash.report.trace.part_rules import ALWAYS, TYPES
 from flexlash.report.trace.trace_page import CHANGE, LEFT_OUT, SUBMITTED, Page
+from flexlash.schema.columns import Column
 
 __all__ = ["write_inputs"]
 

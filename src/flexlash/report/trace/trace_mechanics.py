@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from flexlash.report.functions import PI, all_of, is_number, logarithm, sine
-from flexlash.report.live import Live, when
+from flexlash.report.formula.functions import PI, all_of, is_number, logarithm, sine
+from flexlash.report.formula.live import Live, when
 from flexlash.report.trace.trace_page import Page
 from flexlash.report.trace.trace_steps import Steps, thickness_at
 

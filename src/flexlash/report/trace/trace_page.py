@@ -6,10 +6,10 @@ from typing import Any
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
-from flexlash.report.functions import PI, all_of, elsewhere
-from flexlash.report.live import Live, Value, put, when
-from flexlash.report.stored import Stored
-from flexlash.report.styles import Book
+from flexlash.report.formula.functions import PI, all_of, elsewhere
+from flexlash.report.formula.live import Live, Value, put, when
+from flexlash.report.formula.stored import Stored
+from flexlash.report.layout.styles import Book
 from flexlash.report.trace.inputs import PROGRAM
 
 __all__ = ["CHANGE", "HEADER", "LEFT_OUT", "SHEET", "SUBMITTED", "VALUE", "Page", "Words"]

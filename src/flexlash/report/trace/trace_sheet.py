@@ -11,10 +11,10 @@ from typing import Any
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
-from flexlash.report.functions import PI, any_of, filled, fixed, greatest, greatest_in, least_in, place_of_name
-from flexlash.report.live import Live, fill, joined, put, when
-from flexlash.report.stored import Stored
-from flexlash.report.styles import PALETTE, Book
+from flexlash.report.formula.functions import PI, any_of, filled, fixed, greatest, greatest_in, least_in, place_of_name
+from flexlash.report.formula.live import Live, fill, joined, put, when
+from flexlash.report.formula.stored import Stored
+from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.trace.trace_inputs import write_inputs
 from flexlash.report.trace.trace_mechanics import write_integrals, write_shape, write_sums, write_windups
 from flexlash.report.trace.trace_page import CHANGE, HEADER, LEFT_OUT, SHEET, SUBMITTED, VALUE, Page

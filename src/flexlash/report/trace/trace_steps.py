@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from flexlash.mechanics.fillets import ARC_RULE, GRADED_RULE, JUNCTION_RULE, UNLIKE, WIDE
 from flexlash.mechanics.strength import PASSES, STATIONS
 from flexlash.mechanics.windup import NEARLY, TAPER_PLACES, TAPER_WEIGHTS
-from flexlash.report.functions import (
+from flexlash.report.formula.functions import (
     PI,
     any_of,
     cosine,
@@ -24,7 +24,7 @@ from flexlash.report.functions import (
     sine,
     total,
 )
-from flexlash.report.live import Live, Operand, live, when
+from flexlash.report.formula.live import Live, Operand, live, when
 from flexlash.report.trace.blocks import Block
 from flexlash.report.trace.part_rules import RULES_WIDTH, write_rules
 from flexlash.report.trace.trace_page import Page

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from flexlash.mechanics.strength import GREATEST_SLENDERNESS, KNOCK_DOWN, LEAST_CURVATURE
-from flexlash.report.functions import PI, all_of, greatest, is_number, root
-from flexlash.report.live import Live, live, when
+from flexlash.report.formula.functions import PI, all_of, greatest, is_number, root
+from flexlash.report.formula.live import Live, live, when
 from flexlash.report.trace.trace_mechanics import in_disk, only
 from flexlash.report.trace.trace_page import Page
 from flexlash.report.trace.trace_steps import Steps, shear

@@ -1,0 +1,240 @@
+"""The outcome in words: plain sentences for the terminal and the report's first page."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from flexlash.analysis.outcome import Outcome
+from flexlash.feedback.fixing.fix import Repair
+from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.findings import CATALOGUE, Finding, cell_ranges, shown
+from flexlash.schema.limit_verdict import BOUNDS, VERDICTS, misses_limit
+from flexlash.schema.number_words import ALL_UNITS, angle_words, rounded, share_words
+from flexlash.validation.blocking_errors import waiting_rows
+
+__all__ = [
+    "angle_words",
+    "are",
+    "counted",
+    "dimension_words",
+    "finding_lines",
+    "limit_lines",
+    "listed",
+    "points_range",
+    "points_words",
+    "quoted",
+    "repair_lines",
+    "rounded",
+    "share_words",
+    "spread_notes",
+    "summary_lines",
+    "to_fix_words",
+    "worst_first",
+]
+
+_SHOWN_MESSAGES = 3
+_SHOWN_REPAIRS = 10
+_NO_MEND = "Nothing to do"
+"""How the mend begins of a finding that needs none."""
+
+_NAME = 30
+"""Most characters of a name in a sentence."""
+_LEVELS = ("error", "warning", "info")
+
+
+def dimension_words(name: str) -> str:
+    """Return a dimension's name as a sentence uses it.
+
+    >>> dimension_words("wall_thickness"), dimension_words("youngs_modulus")
+    ('wall thickness', "Young's modulus")
+    """
+    text = DIMENSIONS[name].plain_name.replace("_", " ")
+    return text if text.startswith(("Young", "Poisson")) else text[0].lower() + text[1:]
+
+
+def finding_lines(findings: Sequence[Finding]) -> Iterator[tuple[str, str]]:
+    """Yield level (empty for details) and line: findings grouped by rule, worst first, with count and ranges."""
+    groups: dict[tuple[int, str, str], list[Finding]] = defaultdict(list)
+    for found in findings:
+        groups[_LEVELS.index(found.level), found.code, found.sheet].append(found)
+    for (_, code, sheet), group in sorted(groups.items()):
+        level = group[0].level
+        cells = {found.cell: None for found in group if found.cell}
+        where = f", {counted(len(cells), 'cell')}: {shown(sheet)}!{cell_ranges(list(cells))}" if cells else ""
+        yield level, f"{level} {code} {CATALOGUE[code].title}{where}"
+        for found in group[:_SHOWN_MESSAGES]:
+            yield "", f"    {found.message}"
+        if len(group) > _SHOWN_MESSAGES:
+            whole = "" if level == "info" else "; the marked copy (check --annotate) lists them all"
+            yield "", f"    … and {len(group) - _SHOWN_MESSAGES} more of the same kind{whole}"
+        for fix in dict.fromkeys(found.fix for found in group[:_SHOWN_MESSAGES]):
+            if not fix.startswith(_NO_MEND):
+                yield "", f"    Mend: {fix}"
+
+
+def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
+    """Yield the closing lines of the terminal: what was computed, what it says, what to do next."""
+    counts = outcome.counts
+    if outcome.skipped:
+        return
+    rows, computed = counts["rows"], counts["computed"]
+    ready = f"{computed} of {rows} rows {'computed' if ran else 'ready'}" if rows else "nothing to compute"
+    fixes = to_fix_words(outcome.findings)
+    warned = counted(counts["warnings"], "warning") if counts["warnings"] else ""
+    yield f"{name}: {'; '.join(filter(None, [ready, fixes, *_waiting_words(outcome), warned]))}."
+    if ran and rows:
+        yield from limit_lines(outcome)
+        yield from spread_notes(outcome)
+    if ran and not computed:
+        yield "No report was written: there is no computed row."
+    for path in outcome.outputs:
+        yield _written(outcome, path)
+    if not ran:
+        quoted = f'"{name}"' if " " in name else name
+        yield f"Next: {_next_step(counts, quoted)}"
+
+
+def _waiting_words(outcome: Outcome) -> Iterator[str]:
+    """Yield how many rows wait for which faulty material or class."""
+    for one in waiting_rows(outcome.validated) if outcome.validated else ():
+        rows = counted(len(one.rows), "row")
+        yield f"{rows} wait{'s' if len(one.rows) == 1 else ''} for {one.kind} {shown(one.name, longest=_NAME)}"
+
+
+def _written(outcome: Outcome, path: Path) -> str:
+    """Return the sentence about a file that was written."""
+    named = shown(path, longest=4096)
+    if path != outcome.marked_copy:
+        return f"Written: {named}"
+    if outcome.not_carried is None:
+        return f"Findings alone, since your file itself could not be marked: {named}"
+    without = f", without its {', '.join(outcome.not_carried)}" if outcome.not_carried else ""
+    return f"Marked copy of your file{without}: {named}"
+
+
+def repair_lines(repairs: Sequence[Repair]) -> Iterator[str]:
+    """Yield what was changed in a mended submission, every cell of it."""
+    yield (
+        f"{counted(len(repairs), 'cell')} mended:"
+        if repairs
+        else "There is nothing that could be mended with certainty."
+    )
+    for repair in repairs[:_SHOWN_REPAIRS]:
+        yield f'    {shown(repair.place)}: "{shown(repair.found)}" → {shown(repair.written)} ({repair.code})'
+    if len(repairs) > _SHOWN_REPAIRS:
+        yield f"    … and {len(repairs) - _SHOWN_REPAIRS} more; a workbook lists them all on its sheet Fixes"
+
+
+def _next_step(counts: Mapping[str, int], name: str) -> str:
+    """Return what to do after a check, the command last."""
+    computed = counts["computed"]
+    if not computed:
+        return f"mend that, then: flexlash check {name}"
+    if computed < counts["rows"] or counts["errors"]:
+        return f"mend that and check again, or compute the {counted(computed, 'row')}: flexlash run {name}"
+    return f"flexlash run {name}"
+
+
+def to_fix_words(findings: Sequence[Finding]) -> str:
+    """Return how much there is to fix: `5 cells to fix`, an empty text where there is nothing."""
+    errors = [found for found in findings if found.level == "error"]
+    cells = len({(found.sheet, found.cell) for found in errors if found.cell})
+    others = sum(not found.cell for found in errors)
+    words = [counted(cells, "cell") if cells else "", f"{counted(others, 'problem')} of the file" if others else ""]
+    return f"{' and '.join(filter(None, words))} to fix" if errors else ""
+
+
+def counted(count: int, what: str) -> str:
+    """Return a number with its noun: `1 cell`, `5 cells`."""
+    return f"{count} {what}{'' if count == 1 else 's'}"
+
+
+def are(count: int) -> str:
+    """Return the verb for so many."""
+    return "is" if count == 1 else "are"
+
+
+def quoted(name: str) -> str:
+    """Return a name as it stands in a sentence."""
+    return f"“{name}”"
+
+
+def listed(words: Sequence[str], most: int) -> str:
+    """Return the first few of a list as a sentence names them, and how many more there are.
+
+    >>> listed(["a", "b"], 3), listed(["a", "b", "c", "d"], 2)
+    ('a and b', 'a, b and 2 more')
+    """
+    named = list(words[:most])
+    if len(words) > most:
+        named.append(f"{len(words) - most} more")
+    return " and ".join(filter(None, [", ".join(named[:-1]), *named[-1:]]))
+
+
+def limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
+    """Yield how many variants meet their limits, and by name the worst of those that do not."""
+    counts = outcome.counts
+    judged = sum(counts[verdict] for verdict in VERDICTS)
+    if not judged:
+        return
+    yield (
+        f"Backlash limit met by {counts['meets']} of {counted(judged, 'variant')} with a limit (at most "
+        f"{BOUNDS['meets']:.3%} of units over it); marginal: {counts['marginal']} (at most {BOUNDS['marginal']:.1%}); "
+        f"not met: {counts['fails']}."
+    ).replace("%", " %")
+    over = [row for row in worst_first(outcome) if misses_limit(row["probability_over_limit"])]
+    for row in over[:most]:
+        words = share_words(row)
+        units = f"{words} units" if words in ALL_UNITS else f"{words} of units"
+        yield f"  {shown(row['variant'], longest=200)}: {units} are over {row['backlash_limit_arcmin']:g}′."
+
+
+def points_words(outcome: Outcome) -> str:
+    """Return how many lines or points stand behind the spread of a variant."""
+    counts = outcome.results["spread_points"].drop_nulls().to_list()
+    return points_range(counts, "lines" if outcome.settings.method == "line" else "points") if counts else "no points"
+
+
+def points_range(counts: Sequence[float], what: str) -> str:
+    """Return how many lines or points there are, from the fewest to the most.
+
+    >>> points_range([64.0, 16384.0], "lines"), points_range([64.0], "points")
+    ('64 to 16384 lines', '64 points')
+    """
+    least, most = int(min(counts)), int(max(counts))
+    return f"{least} {what}" if least == most else f"{least} to {most} {what}"
+
+
+def spread_notes(outcome: Outcome) -> Iterator[str]:
+    """Yield what a reader must know of how the spread was found: other methods, precision missed, cross-check."""
+    results = outcome.results
+    noted = results.filter(results["spread_note"].is_not_null())
+    if noted.height:
+        first = noted.row(0, named=True)
+        more = f" and {noted.height - 1} more, see Results" if noted.height > 1 else ""
+        yield f"Spread of {quoted(shown(first['variant'], longest=_NAME))}: {first['spread_note']}{more}."
+    if "cross_check" in results.columns:
+        checked = results.filter(results["cross_check"].is_not_null())
+        agreeing = (checked["cross_check"] == "agrees").sum()
+        if outcome.settings.method == "random":
+            yield "The spread is plain Monte Carlo itself: there is nothing to cross-check it with."
+        elif checked.height:
+            yield (
+                f"Plain Monte Carlo agrees for {agreeing} of {checked.height} variants; the greatest difference is "
+                f"{max(checked['cross_check_deviation'].to_list()):.1f} combined standard errors."
+            )
+
+
+def worst_first(outcome: Outcome) -> list[dict[str, Any]]:
+    """Return the computed Results rows, greatest probability over limit first, then greatest P97.5."""
+    rows = [row for row in outcome.results.iter_rows(named=True) if row["p97_5_arcmin"] is not None]
+
+    def badness(row: dict[str, Any]) -> tuple[float, float]:
+        limit = row["backlash_limit_arcmin"]
+        share = -1.0 if limit is None else row["probability_over_limit"]
+        return share, row["p99_865_arcmin"] / (limit or 1.0)
+
+    return sorted(rows, key=badness, reverse=True)

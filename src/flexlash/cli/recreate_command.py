@@ -1,0 +1,35 @@
+"""`flexlash run --from-report`: the submission that a report carries, and the report made anew."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from flexlash.cli.recreation import recreate
+from flexlash.cli.submissions import Submissions
+from flexlash.cli.terminal import progress
+from flexlash.comparison.difference_lines import comparison_line
+from flexlash.outputs.plan import Plan
+from flexlash.schema.exit_codes import ExitCode
+from flexlash.schema.findings import shown
+
+__all__ = ["recreate_all"]
+
+
+def recreate_all(
+    reports: Sequence[Path], output: Path | None, *, as_json: bool, quiet: bool, **options: Any
+) -> ExitCode:
+    """Write the submission and the report of each report anew and say whether they are the same; return the code."""
+    all_of_them = Submissions(len(reports), as_json=as_json, quiet=quiet, ran=True)
+    beside = [Path(options[name]) for name in ("tolerances", "materials") if options.get(name)]
+    plan = Plan(inputs=[*reports, *beside])
+    for report in reports:
+        with all_of_them.one(report) as ended, progress(quiet=quiet or as_json) as advance:
+            found = recreate(report, output, plan, progress=advance, **options)
+            ended.outcome = found.outcome
+            ended.further = {"compared": {"numbers": found.numbers, "different": found.different}}
+            if found.numbers:
+                ended.remarks = [f"  {shown(remark, longest=400)}" for remark in found.remarks]
+                ended.closing = [comparison_line(found.different, found.numbers, shown(report.name))]
+    return all_of_them.end()

@@ -1,0 +1,1 @@
+"""What goes back to the engineer: the template, the marked copy, the fixed file."""

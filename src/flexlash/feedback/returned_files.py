@@ -1,0 +1,75 @@
+"""What goes back to the sender: the submission with its findings marked in it, or with the certain ones mended."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+
+from flexlash.analysis.outcome import Outcome
+from flexlash.feedback.fixing.certain_fixes import repair_of
+from flexlash.feedback.fixing.fix import Repair
+from flexlash.feedback.fixing.fixed_table import mended_table
+from flexlash.feedback.fixing.fixed_workbook import mended_workbook
+from flexlash.reading.limited_process import ProcessFaultError, ask
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.reading.refusal import Refusal
+from flexlash.schema.findings import Finding
+
+__all__ = ["certain_repairs", "marked", "mended", "worth_marking"]
+
+
+def worth_marking(outcome: Outcome) -> bool:
+    """Whether there is an error or a warning to mark; what was merely repaired needs no copy."""
+    return not outcome.skipped and any(found.level != "info" for found in outcome.findings)
+
+
+def marked(outcome: Outcome, limits: ReadingLimits) -> tuple[bytes, tuple[str, ...] | None]:
+    """Return a workbook that marks every finding in the submission, and what of the submission it could not take over.
+
+    Where the submission cannot be marked, the workbook holds the findings alone and says why; then that is None.
+    """
+    from flexlash.feedback.annotation.marked_copy import findings_workbook, marked_copy, marked_table
+
+    submission, findings = outcome.submission, outcome.findings
+    within = _rest(limits, outcome.processor_seconds)
+    why = f"flexlash could not read {submission.name}, so that nothing in it could be marked"
+    try:
+        if submission.kind == "workbook":
+            copy = ask(marked_copy, within, submission.data, findings, submission.name, limits)
+            return copy.data, copy.lost
+        if submission.kind in {"csv", "parquet"}:
+            return ask(marked_table, within, submission.sheets, findings, submission.name), ()
+    except (Refusal, ProcessFaultError):
+        why = f"{submission.name} was read, but holds too much or too unusual things to be marked"
+    return findings_workbook(findings, submission.name, why), None
+
+
+def _rest(limits: ReadingLimits, used: float) -> ReadingLimits:
+    """Return the limits of marking: what reading has left of its processor time, and a quarter of that time more."""
+    seconds = limits.processor_seconds
+    return replace(limits, processor_seconds=max(math.ceil(seconds / 5), math.floor(seconds * 5 / 4 - used)))
+
+
+def certain_repairs(findings: Iterable[Finding]) -> list[Repair]:
+    """Return what to write into which cell, for the findings that leave no doubt."""
+    return [
+        Repair(sheet=found.sheet, cell=found.cell, found=found.value, value=value, code=found.code)
+        for found in findings
+        if found.cell and (value := repair_of(found)) is not None
+    ]
+
+
+def mended(outcome: Outcome, repairs: list[Repair], limits: ReadingLimits) -> tuple[bytes, list[Repair]]:
+    """Return the submission with these cells replaced, and the repairs that could be made.
+
+    Raises Refusal when the submission cannot be written anew.
+    """
+    submission = outcome.submission
+    if not repairs or submission.kind not in {"csv", "workbook"}:
+        return submission.data, []
+    if submission.kind == "workbook":
+        return ask(mended_workbook, limits, submission.data, repairs, limits)
+    own = [repair for repair in repairs if repair.sheet in submission.sheets]
+    (sheet,) = (sheet for sheet in submission.sheets.values() if sheet.manner == submission.manner)
+    return ask(mended_table, limits, sheet, own), own

@@ -1,0 +1,71 @@
+"""What a template is filled with: rows of our own making, or whole sheets carried over from another file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from flexlash.schema import tables
+from flexlash.schema.columns import ENTRY_SHEETS, MATERIALS, SETTINGS, TOLERANCES, VARIANTS, Column
+
+__all__ = ["Entries", "Filling", "study"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Entries:
+    """What an entry sheet holds: its rows in order, blank ones as they stand.
+
+    A row's values stand under the keys of their `columns`. The user's `own` columns stand behind the template's: their
+    headers here, None without one, and their values in the rows under the column's number, counted from 0.
+    """
+
+    rows: Sequence[Mapping[Any, Any]]
+    columns: Sequence[Column]
+    own: Sequence[Any] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Filling:
+    """Rows to fill a template with, each by key; what is not given is as in the empty template.
+
+    `sheets` are whole entry sheets, which hold instead of everything else.
+    """
+
+    variants: Sequence[Mapping[str, Any]] = ()
+    tolerances: Sequence[Mapping[str, Any]] = ()
+    materials: Sequence[Mapping[str, Any]] = ()
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    sheets: Mapping[str, Entries] = field(default_factory=dict)
+
+    def entries(self, sheet: str) -> Entries:
+        """Return what an entry sheet is filled with."""
+        if sheet in self.sheets:
+            return self.sheets[sheet]
+        rows: Sequence[Mapping[str, Any]]
+        if sheet == "Variants":
+            rows = self.variants
+        elif sheet == "Materials":
+            rows = self.materials or _typed("materials", MATERIALS)
+        elif sheet == "Tolerances":
+            standard = [{"tolerance_class": "standard", **row} for row in _typed("standard_class", TOLERANCES)]
+            rows = [*standard, *self.tolerances]
+        else:
+            rows = [
+                {"setting": column.key, "value": self.settings.get(column.key, column.default)} for column in SETTINGS
+            ]
+        return Entries(rows=rows, columns=ENTRY_SHEETS[sheet])
+
+
+def study() -> Filling:
+    """Return the published B3-160 study with its screening tolerances, as `--example` fills it in."""
+    return Filling(variants=_typed("study", VARIANTS), tolerances=_typed("study_class", TOLERANCES))
+
+
+def _typed(table: str, columns: Sequence[Column]) -> list[dict[str, Any]]:
+    """Return the rows of a packaged table with its numbers as numbers and its blanks left out."""
+    numeric = {column.key for column in columns if column.is_number}
+    return [
+        {key: float(text) if key in numeric else text for key, text in row.items() if text}
+        for row in tables.rows(table)
+    ]

@@ -1,0 +1,106 @@
+"""What a workbook holds beside its cells' values: formulas, notes, charts and the like, which no table carries over."""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from flexlash.reading.archive import unpacked
+from flexlash.reading.elements import MAIN, Elements, Listing
+from flexlash.reading.package import Package, SheetPart, open_package
+from flexlash.reading.raw import column_number
+from flexlash.reading.reading_limits import ReadingLimits
+
+__all__ = ["Leftovers", "Place", "leftovers"]
+
+Place = tuple[int, int]
+
+_THINGS = (
+    ("chart", r"charts/chart\d*\.xml"),
+    ("picture", r"media/[^/]+"),
+    ("pivot table", r"pivotTables/[^/]+\.xml"),
+    ("discussion", r"threadedComments/[^/]+\.xml"),
+    ("form control", r"ctrlProps/[^/]+\.xml"),
+    ("link to another workbook", r"externalLinks/[^/]+\.xml"),
+    ("set of macros", r"vbaProject\.bin"),
+)
+"""What parts of a workbook hold, by their names."""
+
+_DRAWING = re.compile(r"(?:.*/)?drawings/drawing\d*\.xml")
+_SHAPES = ("sp", "cxnSp")
+_REFERENCE = re.compile(r"([A-Z]{1,3})([1-9]\d{0,6})", re.ASCII)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Leftovers:
+    """Formulas as (row, column) → text and notes as (row, column), each by sheet; other things counted by name."""
+
+    formulas: Mapping[str, Mapping[Place, str]] = field(default_factory=dict)
+    notes: Mapping[str, Sequence[Place]] = field(default_factory=dict)
+    things: Mapping[str, int] = field(default_factory=dict)
+
+
+def leftovers(data: bytes, limits: ReadingLimits) -> Leftovers:
+    """Return what a workbook holds beside values; raise Refusal when it exceeds a limit."""
+    package = open_package(unpacked(data, limits), limits)
+    things: Counter[str] = Counter()
+    for part, content in package.parts.items():
+        things.update(name for name, pattern in _THINGS if re.fullmatch(rf"(?:.*/)?{pattern}", part))
+        if _DRAWING.fullmatch(part):
+            things["text box or shape"] += sum(len(Listing(content, limits, shape).found) for shape in _SHAPES)
+    return Leftovers(
+        formulas={sheet.title: _Formulas(package.parts[sheet.part], limits).found for sheet in package.sheets},
+        notes={sheet.title: _notes(package, sheet, limits) for sheet in package.sheets},
+        things={name: count for name, count in sorted(things.items()) if count},
+    )
+
+
+class _Formulas(Elements):
+    """Collects the formulas of a worksheet; those that share another's text have an empty one."""
+
+    def __init__(self, data: bytes, limits: ReadingLimits) -> None:
+        self.row = self.column = 0
+        self.open = False
+        self.found: dict[Place, str] = {}
+        super().__init__(data, limits)
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        """Follow rows and cells, whether they name their place or not."""
+        if name == f"{MAIN} row":
+            self.row, self.column = int(attributes.get("r", self.row + 1)), 0
+        elif name == f"{MAIN} c":
+            self.column = _place(attributes["r"])[1] if "r" in attributes else self.column + 1
+        elif name == f"{MAIN} f":
+            self.open = True
+            self.found[self.row, self.column] = ""
+
+    def end(self, name: str) -> None:
+        """Leave a formula."""
+        self.open = self.open and name != f"{MAIN} f"
+
+    def text(self, text: str) -> None:
+        """Collect a formula's text."""
+        if self.open:
+            self.found[self.row, self.column] += text
+
+
+def _notes(package: Package, sheet: SheetPart, limits: ReadingLimits) -> list[Place]:
+    """Return the cells of a sheet that have a note."""
+    folder, name = posixpath.split(sheet.part)
+    relations = package.parts.get(f"{folder}/_rels/{name}.rels", b"")
+    places: list[Place] = []
+    for relation in Listing(relations, limits, "Relationship").found if relations else ():
+        target = relation.get("Target", "")
+        part = target.lstrip("/") if target.startswith("/") else posixpath.normpath(posixpath.join(folder, target))
+        if relation.get("Type", "").endswith("/comments") and part in package.parts:
+            places += [_place(note.get("ref", "")) for note in Listing(package.parts[part], limits, "comment").found]
+    return sorted(places)
+
+
+def _place(reference: str) -> Place:
+    """Return row and column of an address; what is none counts as row and column 0."""
+    match = _REFERENCE.fullmatch(reference)
+    return (int(match[2]), column_number(match[1])) if match else (0, 0)

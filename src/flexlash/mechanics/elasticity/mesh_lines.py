@@ -1,0 +1,63 @@
+"""Mesh lines that grow away from where the twist bends sharply."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexlash.mechanics.elasticity.part import SLACK
+from flexlash.schema.arrays import Array
+
+__all__ = ["Lines", "across", "graded", "nodes_on", "step_at"]
+
+_GROWTH = 2.5
+"""Factor by which mesh steps grow from one to the next, away from a fine end."""
+
+_CORNER = 0.02
+"""Mesh step at a sharp corner over the thickness: there the twist goes as the two-thirds power of the distance."""
+
+_SMOOTH = 0.3
+"""Mesh step where no sharp corner is, over the thickness."""
+
+Lines = tuple[float, ...]
+"""Mesh lines in rising order."""
+
+
+def graded(start: float, end: float, first: float, last: float, least: int = 1) -> Lines:
+    """Return mesh lines from start to end, the steps growing from `first` and from `last` towards the middle."""
+    low, high = [start], [end]
+    below, above = min(first, (end - start) / least), min(last, (end - start) / least)
+    longest = (end - start) / least
+    while high[-1] - low[-1] > below + above:
+        if below <= above:
+            low.append(low[-1] + below)
+            below = min(below * _GROWTH, longest)
+        else:
+            high.append(high[-1] - above)
+            above = min(above * _GROWTH, longest)
+    gap = high[-1] - low[-1]
+    pieces = max(1, math.ceil(gap / max(below, above) - SLACK))
+    return (*low, *(low[-1] + gap * place / pieces for place in range(1, pieces)), *reversed(high))
+
+
+def nodes_on(lines: Sequence[float], refinement: int) -> Array:
+    """Return the nodes on mesh lines: each cell is halved once for its middle node and once per refinement."""
+    found = np.asarray(lines, dtype=float)
+    for _ in range(refinement + 1):
+        halves = np.empty(2 * len(found) - 1)
+        halves[::2] = found
+        halves[1::2] = (found[:-1] + found[1:]) / 2
+        found = halves
+    return found
+
+
+def step_at(*, sharp: bool, thickness: float) -> float:
+    """Return the first mesh step at an end, from the thickness there."""
+    return thickness * (_CORNER if sharp else _SMOOTH)
+
+
+def across(*, low_is_sharp: bool, high_is_sharp: bool) -> Lines:
+    """Return mesh lines across a thickness, from 0 to 1, fine at the faces that have a sharp corner."""
+    return graded(0.0, 1.0, step_at(sharp=low_is_sharp, thickness=1.0), step_at(sharp=high_is_sharp, thickness=1.0), 2)

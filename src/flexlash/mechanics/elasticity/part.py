@@ -1,0 +1,136 @@
+"""The dimensions that a half-section needs, and whether they make one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexlash.mechanics.flexspline import disk_thickness, radius_of
+from flexlash.schema.arrays import Array
+
+__all__ = ["SLACK", "Part", "part_of", "section_problem"]
+
+SLACK = 1e-9
+"""Sums of decimals miss an edge by their last binary digit; relative to the radius."""
+
+_FOIL = 1e-4
+"""Least thickness over the mean radius: thinner ones defy rounding."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """The dimensions of one flexspline [m] as its half-section needs them; what it has not is 0.
+
+    `clamp` is the radius where the disk is held; `lean` the fall of a conical disk per radius [-]; `thickness` the
+    height of the disk along the axis at radii of any shape.
+    """
+
+    kind: str
+    mean: float
+    wall: float
+    length: float
+    clamp: float
+    hub_fillet: float
+    junction_fillet: float
+    rim_length: float
+    rim_thickness: float
+    lean: float
+    thickness: Callable[[Array], Array]
+
+    @property
+    def bore(self) -> float:
+        """Inner radius of the wall."""
+        return self.mean - self.wall / 2
+
+    @property
+    def outside(self) -> float:
+        """Outer radius of the wall."""
+        return self.mean + self.wall / 2
+
+    @property
+    def rim_outside(self) -> float:
+        """Outer radius of the tooth rim."""
+        return self.bore + max(self.rim_thickness, self.wall)
+
+    @property
+    def has_step(self) -> bool:
+        """Whether the rim stands out from the wall."""
+        return self.rim_length > 0 and self.rim_outside > self.outside * (1 + SLACK)
+
+
+def part_of(flexspline_type: str, dimensions: Mapping[str, float]) -> Part:
+    """Return the dimensions of a half-section; blanks are the same dimension elsewhere."""
+    mean = float(radius_of(dimensions))
+    angle = dimensions.get("disk_cone_angle", math.pi / 2)
+
+    def thickness(radius: Array) -> Array:
+        # Under the wall the disk goes on as thick as it is where it ends.
+        end = min(dimensions.get("disk_outer_radius", mean), mean) if flexspline_type == "cup" else math.inf
+        return np.zeros_like(radius) + disk_thickness(dimensions, np.minimum(radius, end)) / math.sin(angle)
+
+    clamp = {"cup": "disk_inner_radius", "hat": "disk_outer_radius"}.get(flexspline_type, "mean_radius")
+    return Part(
+        kind=flexspline_type,
+        mean=mean,
+        wall=dimensions["wall_thickness"],
+        length=dimensions["cylinder_length"],
+        clamp=dimensions.get(clamp, mean),
+        hub_fillet=dimensions.get("hub_fillet_radius", 0.0),
+        junction_fillet=dimensions.get("junction_fillet_radius", 0.0),
+        rim_length=dimensions.get("rim_length", 0.0),
+        rim_thickness=dimensions.get("rim_thickness", 0.0),
+        lean=1 / math.tan(angle) if angle < math.pi / 2 - SLACK else 0.0,
+        thickness=thickness,
+    )
+
+
+def section_problem(flexspline_type: str, dimensions: Mapping[str, float]) -> tuple[str, str] | None:
+    """Return why the dimensions make no closed half-section: the dimension to blame and a clause; None if they do."""
+    part = part_of(flexspline_type, dimensions)
+    edge = SLACK * part.mean
+    meeting = {"cup": "disk_outer_radius", "hat": "disk_inner_radius"}.get(part.kind, "mean_radius")
+    width = part.bore - part.clamp
+    cup, hat = part.kind == "cup", part.kind == "hat"
+    foil = _FOIL * part.mean
+    ends = np.array([part.clamp, dimensions.get("disk_outer_radius", part.mean), part.mean])
+    thinnest = float(part.thickness(ends).min()) if cup or hat else math.inf
+    thin = "disk_hub_thickness" if "disk_hub_thickness" in dimensions else "disk_thickness"
+    problems = (
+        (part.wall < foil, "wall_thickness", "the wall is too thin a foil to solve"),
+        (
+            thinnest < foil,
+            thin if thin in dimensions else "wall_thickness",
+            "the disk thins to a foil that cannot be solved",
+        ),
+        (part.bore <= edge, "wall_thickness", "the wall fills its bore"),
+        (
+            abs(dimensions.get(meeting, part.mean) - part.mean) > part.wall / 2 + edge,
+            meeting,
+            "the disk does not end within the wall",
+        ),
+        (hat and part.clamp <= part.outside + edge, "disk_outer_radius", "the flange ends within the wall"),
+        (cup and width <= edge, "disk_inner_radius", "the hub reaches into the wall"),
+        (cup and part.hub_fillet > width + edge, "hub_fillet_radius", "the hub fillet reaches into the wall"),
+        (
+            cup and part.hub_fillet + part.junction_fillet > width + edge,
+            "junction_fillet_radius",
+            "hub fillet and junction fillet overlap on the disk"
+            if part.hub_fillet
+            else "the junction fillet reaches beyond the disk",
+        ),
+        (
+            part.lean > 0 and part.hub_fillet + part.junction_fillet > 0,
+            "disk_cone_angle",
+            "a conical disk takes no fillet",
+        ),
+        (part.rim_length > part.length * (1 - SLACK), "rim_length", "the rim is as long as the cylinder"),
+        (
+            part.junction_fillet + part.rim_length > part.length * (1 + SLACK),
+            "rim_length" if part.rim_length else "junction_fillet_radius",
+            "rim and junction fillet are longer than the cylinder",
+        ),
+    )
+    return next(((name, clause) for broken, name, clause in problems if broken), None)

@@ -1,0 +1,159 @@
+"""What a report carries → the submission it was made of: one text on a hidden sheet, every part of it checked."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterable
+from typing import Any, get_args
+
+from flexlash.reading.raw import ErrorCell, Manner, Percentage, RawSheet, RawValue, Submission
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.reading.refusal import Refusal
+from flexlash.reading.wire import from_wire
+from flexlash.reading.worksheet import MAXIMUM_COLUMN, MAXIMUM_ROW
+from flexlash.reading.xlsx import Cells, read_workbook
+from flexlash.schema.columns import SETTINGS
+from flexlash.schema.findings import shown
+
+__all__ = ["FORM", "SHEET", "SWITCHES", "carried_submission", "read_report"]
+
+SHEET = "Carried"
+"""The sheet of a report that holds, in pieces below each other, the text that it carries."""
+
+FORM = 1
+"""The form of that text that this program writes, and the latest it reads."""
+
+RESULTS = "Results"
+SWITCHES = ("cross_check", "elasticity", "strict")
+_NONSENSE = (ValueError, TypeError, LookupError, AttributeError, RecursionError, OverflowError)
+"""What arises where a text is not what it should be."""
+
+_DIGEST = re.compile("[0-9a-f]{64}")
+_KINDS = frozenset({"workbook", "csv", "parquet"})
+_DELIMITERS = frozenset(",;\t|")
+_LONGEST_NAME = 255
+_ALTERED = "they were altered or damaged"
+
+
+def read_report(
+    data: bytes, limits: ReadingLimits, limits_of_file: ReadingLimits
+) -> tuple[Submission, RawSheet | None, str]:
+    """Return the submission that a report carries, its Results and its version; nothing else of it is read.
+
+    `limits` hold for the submission, `limits_of_file` for the report.
+
+    Raises Refusal when the workbook is unsafe, is no report, or carries nothing that makes a submission.
+    """
+    cells = read_workbook(data, limits_of_file, only=(SHEET, RESULTS))
+    sheets = {sheet.name: sheet for sheet in cells.sheets}
+    if SHEET not in sheets:
+        raise Refusal("E121" if cells.role == "report" else "E120")
+    found = _parsed(sheets[SHEET])
+    return carried_submission(found, limits), sheets.get(RESULTS), found["version"]
+
+
+def _parsed(sheet: RawSheet) -> Any:
+    """Return what the text on the sheet says."""
+    try:
+        return json.loads("".join(str(cells[1]) for cells in sheet.rows.values() if 1 in cells))
+    except _NONSENSE as fault:
+        raise Refusal("E122", found=_ALTERED) from fault
+
+
+def carried_submission(found: Any, limits: ReadingLimits) -> Submission:
+    """Return the submission that a report carries; raise Refusal when it is none that could have been read."""
+    try:
+        _require(type(found["form"]) is int, found["form"] >= 1, isinstance(found["version"], str))
+        if found["form"] > FORM:
+            raise Refusal("E122", found=f"flexlash {shown(found['version'])} wrote them, which is later than this one")
+        cells, head = from_wire(found["cells"]), found["submission"]
+        _check_head(head, cells)
+        _check_sheets(cells.sheets, limits)
+        return Submission(
+            name=head["name"],
+            sha256=head["sha256"],
+            kind=head["kind"],
+            sheets={sheet.name: sheet for sheet in cells.sheets},
+            modified=cells.modified,
+            role=cells.role,
+            template_version=cells.template_version,
+            run_with=_options(found["options"]),
+        )
+    except _NONSENSE as fault:
+        raise Refusal("E122", found=_ALTERED) from fault
+
+
+def _require(*facts: bool) -> None:
+    if not all(facts):
+        raise ValueError(_ALTERED)
+
+
+def _check_head(head: dict[str, Any], cells: Cells) -> None:
+    """Require the name, digest and kind of a file."""
+    _require(
+        isinstance(head["name"], str) and 0 < len(head["name"]) <= _LONGEST_NAME,
+        bool(_DIGEST.fullmatch(head["sha256"])),
+        head["kind"] in _KINDS,
+        isinstance(cells.role, str),
+        isinstance(cells.template_version, str),
+        cells.modified is None or cells.modified.tzinfo is None,
+    )
+
+
+def _options(found: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of a run, each within the bounds of its setting."""
+    columns = {column.key: column for column in SETTINGS}
+    for name in ("seed", "samples"):
+        value, column = found[name], columns[name]
+        fits = type(value) is int and (column.minimum or 0) <= value <= (column.maximum or math.inf)
+        _require(fits or (name == "samples" and value is None))
+    _require(found["method"] in columns["method"].choices, *(isinstance(found[name], bool) for name in SWITCHES))
+    return {name: found[name] for name in ("seed", "method", "samples", *SWITCHES)}
+
+
+def _check_sheets(sheets: list[RawSheet], limits: ReadingLimits) -> None:
+    """Require cells as reading yields them, no more of them than a file may have."""
+    limits.require("sheets", len(sheets))
+    limits.require("cells", sum(len(cells) for sheet in sheets for cells in sheet.rows.values()))
+    _require(len({sheet.name for sheet in sheets}) == len(sheets))
+    for sheet in sheets:
+        rows = list(sheet.rows)
+        _require(
+            isinstance(sheet.name, str) and 0 < len(sheet.name) <= _LONGEST_NAME,
+            _are_places(rows, MAXIMUM_ROW) and rows == sorted(rows),
+            _are_places(sheet.hidden_rows, MAXIMUM_ROW),
+            all(len(area) == 4 and _are_places(area, MAXIMUM_ROW) for area in sheet.merged),  # noqa: PLR2004
+            isinstance(sheet.hidden, bool),
+            isinstance(sheet.numbers_are_texts, bool),
+            sheet.manner is None or _is_manner(sheet.manner),
+        )
+        for cells in sheet.rows.values():
+            _require(_are_places(cells, MAXIMUM_COLUMN), all(map(_is_value, cells.values())))
+
+
+def _are_places(numbers: Iterable[Any], most: int) -> bool:
+    """Whether these are row or column numbers."""
+    return all(type(number) is int and 1 <= number <= most for number in numbers)
+
+
+def _is_value(value: Any) -> bool:
+    """Whether a cell can hold this."""
+    if isinstance(value, ErrorCell):
+        return isinstance(value.text, str)
+    if isinstance(value, Percentage):
+        return math.isfinite(value)
+    return isinstance(value, get_args(RawValue))
+
+
+def _is_manner(manner: Manner) -> bool:
+    """Whether a delimited text can have been written like this."""
+    places = (manner.comma_number, manner.foreign_text)
+    return (
+        manner.delimiter in _DELIMITERS
+        and isinstance(manner.encoding, str)
+        and isinstance(manner.file, str)
+        and _are_places(manner.longer, MAXIMUM_ROW)
+        and all(place is None or (len(place) == 2 and _are_places(place, MAXIMUM_ROW)) for place in places)  # noqa: PLR2004
+    )

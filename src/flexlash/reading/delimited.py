@@ -1,0 +1,227 @@
+"""Delimited text → a sheet of raw cells: delimiter, encoding and decimal sign are recognised and told."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import islice
+
+from flexlash.reading.decimal_signs import Settled, settle_numbers
+from flexlash.reading.encodings import WINDOWS, decoded
+from flexlash.reading.raw import ERROR_WORDS, ErrorCell, Manner, RawSheet, RawValue
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.reading.refusal import Refusal
+from flexlash.schema.columns import ENTRY_SHEETS, columns_of
+from flexlash.schema.header_names import LAST_HEADER_ROW, known_names, name_and_unit
+from flexlash.schema.spellings import plain
+
+__all__ = ["WINDOWS", "read_table"]
+
+_DELIMITERS = ",;\t|"
+_TOP = 15
+"""Rows by which the delimiter is told."""
+
+_SEPARATOR_LINE = re.compile(r'"?sep=([,;\t|])"?(?:\r\n|\r|\n|$)', re.IGNORECASE)
+"""First line by which a table tells Excel its delimiter; Excel does not show it as a row."""
+
+_WIDEST = 100_000
+"""Delimiters in one record, those inside of quoted texts included, beyond which it is not taken apart."""
+
+_SHARED = 50_000
+"""Different texts that are held once however often they stand in a table."""
+
+_LONGEST_HEADER = 200
+
+_Rows = dict[int, dict[int, RawValue]]
+
+
+def read_table(data: bytes, name: str, file: str = "", limits: ReadingLimits | None = None) -> RawSheet:
+    """Return a delimited text as a sheet that knows how it was written; `file` is the name its findings give it.
+
+    `name` is the entry sheet that the table stands for. Rows, columns and cells are counted while they are read.
+    Raises Refusal when the encoding cannot be told, when it is no table, or when it exceeds a limit.
+    """
+    limits = limits or ReadingLimits()
+    text, encoding = decoded(data)
+    text = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\n")
+    told = _SEPARATOR_LINE.match(text)
+    text = text[told.end() :] if told else text
+    if '"' not in text:
+        limits.require("table_rows", text.count("\n") + 1)
+    delimiter = _delimiter(text, told[1] if told else _DELIMITERS, limits)
+    read = _rows(_records(text, delimiter, limits), limits)
+    if "#" in text:
+        _mark_errors(read.rows)
+    header, columns, others = _header(read.rows, name)
+    longer = read.longer_than(header) if delimiter == "," and header else frozenset()
+    # Without a quote no cell of a table that is separated by commas holds one.
+    is_settled = delimiter == "," and '"' not in text and not longer
+    settled = Settled() if is_settled else settle_numbers(read.rows, columns, others, delimiter=delimiter)
+    manner = Manner(
+        delimiter=delimiter,
+        encoding=encoding,
+        file=file,
+        comma_number=settled.comma_number,
+        foreign_text=_first_foreign(read.rows) if encoding == WINDOWS else None,
+        longer=frozenset() if settled.has_decimal_point else longer,
+    )
+    return RawSheet(name=name, rows=read.rows, numbers_are_texts=True, manner=manner)
+
+
+class _TooLong(csv.Error):
+    """A cell without end."""
+
+
+def _records(text: str, delimiter: str, limits: ReadingLimits) -> Iterator[list[str]]:
+    """Yield the records of a text; raises csv.Error where its quotes do not close.
+
+    A record of too many cells is refused before it is taken apart.
+    """
+    lines = delimiters = 0
+
+    def counted() -> Iterator[str]:
+        nonlocal lines, delimiters
+        for line in io.StringIO(text, newline="\n"):
+            lines += 1
+            delimiters += line.count(delimiter)
+            if delimiters > _WIDEST:
+                raise limits.exceeded("columns", delimiters + 1)
+            yield line
+
+    try:
+        for record in csv.reader(counted(), delimiter=delimiter, strict=True):
+            lines = delimiters = 0
+            yield record
+    except csv.Error as fault:
+        if lines == 1 and "field limit" in str(fault):
+            raise _TooLong from fault
+        raise
+
+
+def _delimiter(text: str, delimiters: str, limits: ReadingLimits) -> str:
+    """Return the delimiter that makes the most even rows of the first ones."""
+    evenness: dict[str, int] = {}
+    is_endless = True
+    for sign in delimiters:
+        try:
+            evenness[sign] = _evenness(list(islice(_records(text, sign, limits), _TOP)))
+        except csv.Error as fault:
+            is_endless = is_endless and isinstance(fault, _TooLong)
+    if not evenness and is_endless:
+        raise limits.exceeded("characters")
+    delimiter = max(evenness, key=lambda sign: evenness[sign], default="")
+    if not delimiter or (len(evenness) < len(delimiters) and not evenness[delimiter]):
+        raise Refusal("E102")
+    return delimiter
+
+
+def _evenness(records: list[list[str]]) -> int:
+    """Return how many cells stand in rows of the commonest width: high for the true delimiter."""
+    widths = Counter(len(values) for values in records if len(values) > 1)
+    return max((width * count for width, count in widths.items()), default=0)
+
+
+@dataclass(kw_only=True)
+class _Read:
+    """The rows with data, and how many cells a row has where that is not `width`, blank ones included."""
+
+    rows: _Rows = field(default_factory=dict)
+    width: int = 0
+    widths: dict[int, int] = field(default_factory=dict)
+
+    def add(self, number: int, cells: dict[int, RawValue], width: int) -> None:
+        """Add a row."""
+        self.rows[number] = cells
+        self.width = self.width or width
+        if width != self.width:
+            self.widths[number] = width
+
+    def longer_than(self, header: int) -> frozenset[int]:
+        """Return the rows below a header row that have more cells than it has."""
+        width = self.widths.get(header, self.width)
+        return frozenset(
+            number for number in self.rows if number > header and self.widths.get(number, self.width) > width
+        )
+
+
+def _rows(records: Iterator[list[str]], limits: ReadingLimits) -> _Read:
+    """Return the rows that hold anything, numbered as Excel shows them; each is counted before the next is read."""
+    read = _Read()
+    shared: dict[str, str] = {}
+    once = shared.setdefault
+    count = 0
+    try:
+        for number, values in enumerate(records, start=1):
+            if number > limits.table_rows:
+                raise limits.exceeded("table_rows")
+            cells: dict[int, RawValue] = {
+                place: once(text, text) for place, text in enumerate(values, start=1) if text and not text.isspace()
+            }
+            if cells:
+                count += len(cells)
+                _count(values, cells, count, limits)
+                read.add(number, cells, len(values))
+            if len(shared) > _SHARED:
+                shared.clear()
+    except _TooLong as fault:
+        raise limits.exceeded("characters") from fault
+    except csv.Error as fault:
+        raise Refusal("E102") from fault
+    return read
+
+
+def _count(values: list[str], cells: dict[int, RawValue], count: int, limits: ReadingLimits) -> None:
+    """Refuse a row that is too wide, a text that is too long, or a table of too many cells."""
+    if len(values) > limits.columns:
+        limits.require("columns", next(reversed(cells)))
+    if (longest := max(map(len, values))) > limits.characters:
+        limits.require("characters", longest)
+    if count > limits.table_cells:
+        raise limits.exceeded("table_cells")
+
+
+def _mark_errors(rows: _Rows) -> None:
+    """Put errors in the place of Excel's words for them."""
+    for cells in rows.values():
+        for place, text in cells.items():
+            if isinstance(text, str) and "#" in text and text.strip() in ERROR_WORDS:
+                cells[place] = ErrorCell(text.strip())
+
+
+def _header(rows: _Rows, schema: str) -> tuple[int, frozenset[int] | None, frozenset[int]]:
+    """Return the row of the headers and the columns that hold numbers and texts by them.
+
+    Where no header is known, the row is 0 and every column may hold numbers, which None stands for.
+    """
+    columns = columns_of(schema) if schema in ENTRY_SHEETS else {}
+    names = known_names(columns)
+    top = {number: rows[number] for number in range(1, LAST_HEADER_ROW + 1) if number in rows}
+    known = {number: _known(cells, names) for number, cells in top.items()}
+    best = max(known, key=lambda number: len(known[number]), default=0)
+    if not best or len(known[best]) < min(2, len(columns)):
+        return 0, None, frozenset()
+    numbers = frozenset(place for place, key in known[best].items() if columns[key].is_number)
+    return best, numbers, frozenset(known[best]) - numbers
+
+
+def _known(cells: Mapping[int, RawValue], names: Mapping[str, str]) -> dict[int, str]:
+    """Return the keys of the columns that the cells of a row are headers of, by place."""
+    found = {}
+    for place, cell in cells.items():
+        if isinstance(cell, str) and len(cell) <= _LONGEST_HEADER:
+            key = names.get(plain(name_and_unit(cell)[0]))
+            if key is not None:
+                found[place] = key
+    return found
+
+
+def _first_foreign(rows: _Rows) -> tuple[int, int] | None:
+    """Return where the first text stands that not every encoding shows alike."""
+    texts = ((number, place, cell) for number, cells in rows.items() for place, cell in cells.items())
+    return next(
+        ((number, place) for number, place, cell in texts if isinstance(cell, str) and not cell.isascii()), None
+    )

@@ -1,0 +1,193 @@
+"""Inside the limited process: so much memory and processor time, no writing, no calling, while a file is handled.
+
+Where the system cannot limit a process (Windows), the clock of the one that asks remains.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import sys
+import time
+import traceback
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from flexlash.reading.libraries import ChangedLibrary, require_known_libraries
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.reading.refusal import Refusal
+
+__all__ = ["Fault", "carried_out", "forbid", "gone_on", "kept", "limited", "prepare"]
+
+_MEBI = 2**20
+_FORBIDDEN = (
+    "socket.", "subprocess.", "os.system", "os.exec", "os.posix_spawn", "os.spawn", "os.fork", "os.remove", "os.rename",
+    "os.mkdir", "os.rmdir", "os.link", "os.symlink", "os.chmod", "os.truncate", "shutil.", "ctypes.dlopen", "urllib.",
+)  # fmt: skip
+_WRITING = frozenset("wax+")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fault:
+    """An exception that is no refusal, in words, since exceptions do not always survive the way between processes."""
+
+    kind: str
+    trace: str
+
+    @classmethod
+    def of(cls, exception: BaseException) -> Fault:
+        """Return an exception in words."""
+        return cls(kind=type(exception).__name__, trace="".join(traceback.format_exception(exception)))
+
+
+class _State:
+    """What this process knows of itself: whether it handles a file, what failed at first, what it keeps."""
+
+    handles_a_file = False
+    fault: Fault | ChangedLibrary | None = None
+    kept: Any = None
+
+
+def prepare() -> None:
+    """Make this process one that can be limited: silent, with its libraries loaded before anything is forbidden."""
+    _silence()
+    try:
+        _warm_up()
+    except BaseException as fault:  # noqa: BLE001
+        # Told by the first answer: a process that ends here could not say why.
+        _State.fault = _why(fault)
+    sys.addaudithook(_judge)
+
+
+def _why(fault: BaseException) -> Fault | ChangedLibrary:
+    """Return what failed while the libraries were loaded: a library that lacks something, or a fault in words."""
+    try:
+        require_known_libraries()
+    except ChangedLibrary as changed:
+        return changed
+    return Fault.of(fault)
+
+
+def _silence() -> None:
+    """Send what libraries print, such as the panics of Rust, nowhere; with FLEXLASH_DEBUG=1 it is shown."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    if os.environ.get("FLEXLASH_DEBUG") != "1":
+        os.dup2(nowhere, 2)
+    os.close(nowhere)
+
+
+def _warm_up() -> None:
+    """Load the libraries, so that neither their memory nor their time counts against a file."""
+    from flexlash.feedback.annotation import marked_copy  # noqa: F401
+    from flexlash.reading import (
+        parquet,  # noqa: F401
+        sheet_cells,  # noqa: F401
+    )
+    from flexlash.validation import validate  # noqa: F401
+
+
+def carried_out(task: Callable[..., Any], limits: ReadingLimits, arguments: tuple[Any, ...]) -> Any:
+    """Return what a task gives within limits, the Refusal or ChangedLibrary it raises, or the Fault that it has."""
+    if _State.fault:
+        return _State.fault
+    try:
+        with limited(limits):
+            return task(*arguments)
+    except (Refusal, ChangedLibrary) as told:
+        return told
+    except MemoryError:
+        return limits.exceeded("memory_mebibytes")
+    except BaseException as fault:  # noqa: BLE001
+        # A library of Rust panics with what is no Exception; nothing may end this process without an answer.
+        return Fault.of(fault)
+
+
+def kept(task: Callable[..., Any], limits: ReadingLimits, arguments: tuple[Any, ...]) -> Any:
+    """Return nothing where a task gives something, which is kept here; else what `carried_out` returns."""
+    answer = carried_out(task, limits, arguments)
+    if isinstance(answer, Refusal | ChangedLibrary | Fault):
+        return answer
+    _State.kept = answer
+    return None
+
+
+def gone_on(then: Callable[[Any], Any]) -> Any:
+    """Return what follows from the answer that was kept, within no limits, or the Fault that this has."""
+    answer, _State.kept = _State.kept, None
+    try:
+        return then(answer)
+    except Exception as fault:  # noqa: BLE001
+        return Fault.of(fault)
+
+
+@contextlib.contextmanager
+def limited(limits: ReadingLimits) -> Iterator[None]:
+    """Limit memory, processor time and reach of this process meanwhile, as far as the system can."""
+    before = _lowered(limits)
+    _State.handles_a_file = True
+    try:
+        yield
+    finally:
+        _State.handles_a_file = False
+        _set(before)
+
+
+def _lowered(limits: ReadingLimits) -> dict[int, int]:
+    """Lower what this process may use to what it has used and the limits; return what it was allowed before."""
+    try:
+        import resource
+    except ImportError:
+        return {}
+    wanted = {
+        resource.RLIMIT_CPU: math.ceil(time.process_time()) + limits.processor_seconds,
+        resource.RLIMIT_FSIZE: 0,
+        resource.RLIMIT_CORE: 0,
+    }
+    if size := _address_space():
+        wanted[resource.RLIMIT_AS] = size + limits.memory_mebibytes * _MEBI
+    before = {kind: resource.getrlimit(kind)[0] for kind in wanted}
+    _set(wanted)
+    return before
+
+
+def _address_space() -> int:
+    """Return how much memory [bytes] this process has addressed; 0 where the system does not say."""
+    try:
+        import resource
+
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+        return pages * resource.getpagesize()
+    except (ImportError, OSError, ValueError):
+        return 0
+
+
+def _set(values: dict[int, int]) -> None:
+    """Set soft limits of this process, none above its hard one."""
+    for kind, value in values.items():
+        import resource
+
+        hard = resource.getrlimit(kind)[1]
+        above = hard != resource.RLIM_INFINITY and (value == resource.RLIM_INFINITY or value > hard)
+        with contextlib.suppress(OSError, ValueError):
+            resource.setrlimit(kind, (hard if above else value, hard))
+
+
+def _judge(event: str, arguments: tuple[Any, ...]) -> None:
+    """Raise for anything that would reach outside of this process while it handles a file."""
+    if _State.handles_a_file:
+        forbid(event, arguments)
+
+
+def forbid(event: str, arguments: tuple[Any, ...]) -> None:
+    """Raise PermissionError for an audit event that writes, starts or calls anything."""
+    if event == "open":
+        mode, flags = arguments[1], arguments[2]
+        writes = _WRITING & set(mode) if isinstance(mode, str) else flags & (os.O_WRONLY | os.O_RDWR | os.O_CREAT)
+        if writes:
+            raise PermissionError("reading may not write")
+    elif event.startswith(_FORBIDDEN):
+        raise PermissionError(f"reading may not use {event}")

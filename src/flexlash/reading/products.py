@@ -1,0 +1,148 @@
+"""What flexlash itself wrote, met again among submissions, and the lock files of other programs: they are skipped.
+
+A workbook says what it is in its document properties, which stay when somebody works in it and saves it. A table cannot
+say so: Results are known by their header row, a mended table by its name beside its original.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import re
+import stat
+from collections.abc import Iterable
+from functools import lru_cache
+from pathlib import Path
+
+from flexlash.reading.raw import Submission
+from flexlash.reading.refusal import Refusal
+from flexlash.schema.result_columns import result_columns
+
+__all__ = [
+    "CHECKED_NAME",
+    "MENDED_NAME",
+    "REPORT_NAME",
+    "is_made_by_name",
+    "is_replaced",
+    "made_of",
+    "mended_role",
+    "require_submission",
+    "results_header",
+]
+
+REPORT_NAME, CHECKED_NAME, MENDED_NAME = "-report", "-checked", "-mended"
+"""What flexlash puts behind the name of a submission."""
+
+_MADE = re.compile(rf"(?P<stem>.+)(?P<what>{REPORT_NAME}|{CHECKED_NAME}|{MENDED_NAME})(?: \(\d+\))?")
+_MENDED = "mended"
+_RESULTS = tuple(column.key for column in result_columns(cross_check=False, elasticity=False))
+_LARGEST = 2**27
+"""Largest file whose digest is taken to find out whether it is the original of a mended one [bytes]."""
+
+
+def mended_role(original: bytes) -> str:
+    """Return what a mended workbook says of itself: that it is one, and of which submission."""
+    return f"{_MENDED} {hashlib.sha256(original).hexdigest()}"
+
+
+def results_header(keys: Iterable[object]) -> bool:
+    """Whether a header row is that of Results as flexlash writes them; further columns may follow."""
+    found = list(keys)
+    return tuple(found[:2]) == _RESULTS[:2] and set(_RESULTS) <= set(found)
+
+
+def is_made_by_name(path: Path) -> bool:
+    """Whether a file has the kind of name that flexlash gives: `<name>-report`, `-checked`, `-mended`, maybe numbered.
+
+    >>> is_made_by_name(Path("a-mended (2).csv")), is_made_by_name(Path("a.csv"))
+    (True, False)
+    """
+    return _MADE.fullmatch(path.stem) is not None
+
+
+def made_of(path: Path, what: str) -> str:
+    """Return the stem of the submission of which a file of this name was made, its own when it is none.
+
+    >>> made_of(Path("a-checked (2).xlsx"), CHECKED_NAME), made_of(Path("b.xlsx"), CHECKED_NAME)
+    ('a', 'b')
+    """
+    match = _MADE.fullmatch(path.stem)
+    return match["stem"] if match and match["what"] == what else path.stem
+
+
+def require_submission(submission: Submission, path: Path, given: Iterable[Path], *, marked_copies: bool) -> None:
+    """Raise Refusal, with the code of an info, for a file that flexlash itself wrote and that is therefore skipped.
+
+    `given` are all files given with it: a mended file is skipped when its original is among them.
+    """
+    if code := _product(submission, path, [Path(one) for one in given], marked_copies=marked_copies):
+        raise Refusal(code)
+
+
+def _product(submission: Submission, path: Path, given: Iterable[Path], *, marked_copies: bool) -> str:
+    if submission.run_with is not None:
+        return ""
+    if submission.kind == "workbook":
+        return _code(submission.role, path, given, marked_copies=marked_copies)
+    rows = [sheet.rows for sheet in submission.sheets.values()]
+    if any(results_header(sheet.get(1, {}).values()) for sheet in rows):
+        return "I527"
+    return "I526" if submission.kind == "csv" and _original_beside(path, given) else ""
+
+
+def is_replaced(role: str, path: Path, given: Iterable[Path], *, marked_copies: bool) -> bool:
+    """Whether a given file with this role in its stamp will be skipped, so that its successor may take its place.
+
+    A table that was mended has no stamp, but a name.
+    """
+    if path.suffix.lower() == ".csv":
+        return _original_beside(path, given)
+    return bool(_code(role, path, given, marked_copies=marked_copies))
+
+
+def _code(role: str, path: Path, given: Iterable[Path], *, marked_copies: bool) -> str:
+    kind, _, original = role.partition(" ")
+    if kind == "report":
+        return "I508"
+    if kind == "results":
+        return "I527"
+    if kind == "checked" and not marked_copies:
+        return "I513"
+    given = list(given)
+    if kind == _MENDED and (_original_beside(path, given) or _is_among(original, path, given)):
+        return "I526"
+    return ""
+
+
+def _original_beside(path: Path, given: Iterable[Path]) -> bool:
+    """Whether the original, by its name, stands beside a mended file and is given as well."""
+    if (stem := made_of(path, MENDED_NAME)) == path.stem:
+        return False
+    original = path.with_name(f"{stem}{path.suffix}")
+    return any(_is_same(original, other) for other in given)
+
+
+def _is_same(path: Path, other: Path) -> bool:
+    with contextlib.suppress(OSError, ValueError):
+        return path.samefile(other)
+    return False
+
+
+def _is_among(digest: str, path: Path, given: Iterable[Path]) -> bool:
+    """Whether one of the other files given has this digest."""
+    return bool(digest) and any(_digest(other) == digest for other in given if not _is_same(path, other))
+
+
+def _digest(path: Path) -> str:
+    """Return a file's digest, an empty text for what is no ordinary file."""
+    with contextlib.suppress(OSError, ValueError):
+        status = path.stat()
+        if stat.S_ISREG(status.st_mode) and status.st_size <= _LARGEST:
+            return _digest_of(path, status.st_size, status.st_mtime_ns)
+    return ""
+
+
+@lru_cache(maxsize=4096)
+def _digest_of(path: Path, size: int, changed: int) -> str:  # noqa: ARG001
+    """Return a file's digest; that of an unchanged file is not taken again."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,0 +1,113 @@
+"""Cells as JSON and back: how the limited process hands over what it read, and a report carries it.
+
+Nothing in it can be executed.
+"""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+from flexlash.reading.raw import (
+    CommaNumber,
+    DoubtfulNumber,
+    ErrorCell,
+    Manner,
+    Percentage,
+    RawSheet,
+    RawValue,
+    Unstored,
+)
+from flexlash.reading.xlsx import Cells
+
+__all__ = ["from_wire", "to_wire"]
+
+_KINDS: dict[str, tuple[type, Callable[[Any], str], Callable[[str], RawValue]]] = {
+    "moment": (datetime.datetime, datetime.datetime.isoformat, datetime.datetime.fromisoformat),
+    "date": (datetime.date, datetime.date.isoformat, datetime.date.fromisoformat),
+    "time": (datetime.time, datetime.time.isoformat, datetime.time.fromisoformat),
+    "duration": (
+        datetime.timedelta,
+        lambda value: repr(value.total_seconds()),
+        lambda text: datetime.timedelta(seconds=float(text)),
+    ),
+    "error": (ErrorCell, lambda value: value.text, ErrorCell),
+    "unstored": (Unstored, lambda _: "", lambda _: Unstored()),
+    "percentage": (Percentage, float.__repr__, lambda text: Percentage(float(text))),
+    "comma": (CommaNumber, str, CommaNumber),
+    "doubtful": (DoubtfulNumber, str, DoubtfulNumber),
+}
+"""How each kind of value that JSON lacks is written and read."""
+
+_PLACES = ("comma_number", "foreign_text")
+_OWN = frozenset({str, int, float, bool})
+"""Kinds of value that JSON has itself."""
+
+
+def to_wire(cells: Cells) -> dict[str, Any]:
+    """Return cells as what JSON can hold."""
+    return {
+        "sheets": [
+            {
+                "name": sheet.name,
+                "rows": [
+                    [number, [[place, _written(value)] for place, value in row.items()]]
+                    for number, row in sheet.rows.items()
+                ],
+                "hidden": sheet.hidden,
+                "hidden_rows": sorted(sheet.hidden_rows),
+                "merged": sheet.merged,
+                "numbers_are_texts": sheet.numbers_are_texts,
+                "manner": asdict(sheet.manner) | {"longer": sorted(sheet.manner.longer)} if sheet.manner else None,
+            }
+            for sheet in cells.sheets
+        ],
+        "modified": cells.modified.isoformat() if cells.modified else "",
+        "role": cells.role,
+        "template_version": cells.template_version,
+    }
+
+
+def _written(value: RawValue) -> Any:
+    """Return a value as JSON holds it; kinds that it lacks become a pair of their name and a text."""
+    if type(value) in _OWN:
+        return value
+    for kind, (type_, write, _) in _KINDS.items():
+        if isinstance(value, type_):
+            return [kind, write(value)]
+    return str(value)
+
+
+def from_wire(wire: dict[str, Any]) -> Cells:
+    """Return the cells that `to_wire` has written."""
+    return Cells(
+        sheets=[
+            RawSheet(
+                name=sheet["name"],
+                rows={number: {place: _read(value) for place, value in row} for number, row in sheet["rows"]},
+                hidden=sheet["hidden"],
+                hidden_rows=frozenset(sheet["hidden_rows"]),
+                merged=tuple(tuple(area) for area in sheet["merged"]),
+                numbers_are_texts=sheet["numbers_are_texts"],
+                manner=_manner(sheet["manner"]),
+            )
+            for sheet in wire["sheets"]
+        ],
+        modified=datetime.datetime.fromisoformat(wire["modified"]) if wire["modified"] else None,
+        role=wire["role"],
+        template_version=wire["template_version"],
+    )
+
+
+def _manner(written: dict[str, Any] | None) -> Manner | None:
+    """Return how a delimited text was written."""
+    if written is None:
+        return None
+    places = {name: place and tuple(place) for name, place in written.items() if name in _PLACES}
+    return Manner(**(written | places | {"longer": frozenset(written.get("longer", ()))}))
+
+
+def _read(value: Any) -> RawValue:
+    return _KINDS[value[0]][2](value[1]) if isinstance(value, list) else value

@@ -1,0 +1,187 @@
+"""One walk through a worksheet's XML: what the workbook reader cannot tell, and what it would read wrongly.
+
+Formulas without a stored result, error cells, texts in an unusual place, hidden rows and merged areas are noted.
+Refused is what a reader would take for something else without a word: rows or cells out of order, indices without a
+target, texts as numbers.
+"""
+
+from __future__ import annotations
+
+import re
+
+from flexlash.reading.elements import MAIN, Elements
+from flexlash.reading.raw import column_number
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.reading.refusal import Refusal
+
+__all__ = ["MAXIMUM_COLUMN", "MAXIMUM_ROW", "Worksheet"]
+
+MAXIMUM_ROW = 1_048_576
+MAXIMUM_COLUMN = 16_384
+"""The corner of every sheet, XFD1048576."""
+
+_NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
+_INDEX = re.compile(r"\s*\d{1,9}\s*", re.ASCII)
+_REFERENCE = re.compile(r"([A-Za-z]{1,3})([1-9]\d{0,6})", re.ASCII)
+_AREA = re.compile(r"([A-Za-z]{1,3}[1-9]\d{0,6})(?::([A-Za-z]{1,3}[1-9]\d{0,6}))?", re.ASCII)
+_KINDS = frozenset(("n", "s", "str", "b", "e", "inlineStr", "d"))
+_TRUE = frozenset(("1", "true", "on"))
+
+
+def _place(reference: str) -> tuple[int, int]:
+    """Return row and column of a cell's address; raise Refusal when it is none, or beyond the sheet's corner."""
+    match = _REFERENCE.fullmatch(reference)
+    if match is None:
+        raise Refusal("E102")
+    row, column = int(match[2]), column_number(match[1].upper())
+    if row > MAXIMUM_ROW or column > MAXIMUM_COLUMN:
+        raise Refusal("E102")
+    return row, column
+
+
+class Worksheet(Elements):
+    """What a worksheet holds beside its values; `styles` and `strings` are how many of them its cells may refer to.
+
+    `unstored` are formula cells without a stored result, `errors` error cells, both as (row, column); `texts` are the
+    texts by (row, column) of cells that say to hold their text inside and have it as their value; `hidden_rows` rows
+    with cells that are hidden; `merged` areas as (first row, first column, last row, last column).
+    """
+
+    def __init__(self, data: bytes, limits: ReadingLimits, styles: int, strings: int) -> None:
+        self.unstored: list[tuple[int, int]] = []
+        self.errors: list[tuple[int, int]] = []
+        self.texts: dict[tuple[int, int], str] = {}
+        self.hidden_rows: list[int] = []
+        self.merged: list[tuple[int, int, int, int]] = []
+        self.styles = styles
+        self.strings = strings
+        self.cells = self.row = self.column = 0
+        self.kind = self.value = ""
+        self.length = 0
+        self.in_row = self.in_cell = self.in_value = self.is_formula = self.is_hidden = False
+        self.has_value = self.has_inline = self.in_rows = self.has_rows = False
+        self._starts = {
+            f"{MAIN} c": self._open_cell,
+            f"{MAIN} sheetData": self._open_rows,
+            f"{MAIN} row": self._open_row,
+            f"{MAIN} v": self._open_value,
+            f"{MAIN} is": self._open_inline,
+            f"{MAIN} f": self._open_formula,
+            f"{MAIN} mergeCell": self._merge,
+        }
+        self._ends = {
+            f"{MAIN} c": self._close_cell,
+            f"{MAIN} row": self._close_row,
+            f"{MAIN} sheetData": self._close_rows,
+            f"{MAIN} v": self._close_value,
+        }
+        super().__init__(data, limits)
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        """React to rows, cells and what stands in them."""
+        if self.in_value:
+            raise Refusal("E102")
+        if react := self._starts.get(name):
+            react(attributes)
+
+    def end(self, name: str) -> None:
+        """React to the end of rows, cells and values."""
+        if react := self._ends.get(name):
+            react()
+
+    def text(self, text: str) -> None:
+        """Collect a value, and measure any text of a cell."""
+        if self.in_value:
+            self.value += text
+        if self.in_cell:
+            self.length += len(text)
+            self.limits.require("characters", self.length)
+
+    def _open_rows(self, _: dict[str, str]) -> None:
+        if self.has_rows:
+            raise Refusal("E102")
+        self.in_rows = self.has_rows = True
+
+    def _close_rows(self) -> None:
+        self.in_rows = False
+
+    def _open_row(self, attributes: dict[str, str]) -> None:
+        text = attributes.get("r")
+        number = self.row + 1 if text is None else _index(text)
+        if not self.in_rows or self.in_row or not self.row < number <= MAXIMUM_ROW:
+            raise Refusal("E102")
+        self.row, self.column, self.in_row = number, 0, True
+        self.is_hidden = attributes.get("hidden", "0") in _TRUE
+
+    def _close_row(self) -> None:
+        self.in_row = False
+        if self.is_hidden and self.column:
+            self.hidden_rows.append(self.row)
+
+    def _open_cell(self, attributes: dict[str, str]) -> None:
+        if not self.in_row or self.in_cell:
+            raise Refusal("E102")
+        self.cells += 1
+        reference = attributes.get("r")
+        if reference is None:
+            self.column += 1
+        else:
+            row, column = _place(reference)
+            if row != self.row or column <= self.column:
+                raise Refusal("E102")
+            self.column = column
+        self.kind = attributes.get("t", "n")
+        if self.kind not in _KINDS or _index(attributes.get("s", "0")) >= self.styles:
+            raise Refusal("E102")
+        self.in_cell = True
+        self.is_formula = self.has_value = self.has_inline = False
+        self.value = ""
+        self.length = 0
+
+    def _open_value(self, _: dict[str, str]) -> None:
+        if self.has_value:
+            raise Refusal("E102")
+        self.in_value = self.has_value = self.in_cell
+
+    def _open_inline(self, _: dict[str, str]) -> None:
+        if self.in_cell and (self.has_inline or self.kind != "inlineStr"):
+            raise Refusal("E102")
+        self.has_inline = self.in_cell
+
+    def _close_value(self) -> None:
+        self.in_value = False
+
+    def _open_formula(self, _: dict[str, str]) -> None:
+        self.is_formula = self.in_cell
+
+    def _close_cell(self) -> None:
+        """Judge a cell's stored value by its kind."""
+        self.in_cell = False
+        place = (self.row, self.column)
+        if self.is_formula and not self.value and not self.has_inline and self.kind != "str":
+            self.unstored.append(place)
+        elif self.kind == "e":
+            self.errors.append(place)
+        elif self.kind == "inlineStr":
+            if self.value and not self.has_inline:
+                self.texts[place] = self.value
+        elif self.value and (
+            (self.kind == "n" and not _NUMBER.fullmatch(self.value))
+            or (self.kind == "s" and _index(self.value) >= self.strings)
+            or (self.kind == "b" and self.value.strip() not in {"0", "1", "true", "false"})
+        ):
+            raise Refusal("E102")
+
+    def _merge(self, attributes: dict[str, str]) -> None:
+        self.limits.require("merged_areas", len(self.merged) + 1)
+        match = _AREA.fullmatch(attributes.get("ref", ""))
+        if match is None:
+            raise Refusal("E102")
+        self.merged.append((*_place(match[1]), *_place(match[2] or match[1])))
+
+
+def _index(text: str) -> int:
+    """Return a whole number of at least 0, written as one."""
+    if not _INDEX.fullmatch(text):
+        raise Refusal("E102")
+    return int(text)

@@ -1,0 +1,1 @@
+"""Formulas that carry their own value, and the data sheets behind them."""

@@ -1,0 +1,1 @@
+"""How the report looks: styles, links, formats, paper."""

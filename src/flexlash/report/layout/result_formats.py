@@ -1,0 +1,150 @@
+"""How the numbers of Results are shown: by their unit, and by what their standard error or their size asks for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from flexlash.report.layout.styles import Book, decimals_of, percent_of
+from flexlash.schema.columns import Column
+from flexlash.schema.number_words import places, share_error
+
+if TYPE_CHECKING:
+    import polars as pl
+
+__all__ = ["ESTIMATED_SHARES", "SHARE_OF_VARIANCE_ERROR", "number_formats", "usual_format"]
+
+_UNITS = {
+    "rad": "rad",
+    "arcmin": "arcmin",
+    "arcsec": "arcsec",
+    "MPa": "stress",
+    "ppm": "count",
+    "rpm": "count",
+    "Hz": "stress",
+    "N·m": "stiffness",
+}
+_USUAL = {
+    "catalogue_size": "0",
+    "catalogue_stiffness_Nm_per_rad": "count",
+    "spread_points": "count",
+    "random_points": "count",
+}
+"""Number formats of columns whose unit does not say how they are shown: whole numbers."""
+
+ESTIMATED_SHARES = frozenset({"main_contributor_share", "interaction_share"})
+"""Shares of the variance, which are estimates without a standard error of their own."""
+
+SHARE_OF_VARIANCE_ERROR = 0.002
+"""How well a share of the variance is known."""
+
+_NEAR = 1e-6
+"""Shares nearer than this to none or all are shown with few decimals."""
+
+_ERRORS = {"elasticity_difference_percent": ("elasticity_error_percent",)}
+"""Columns with the error of another one, where it does not follow from the key."""
+
+_PPK = "0.000"
+"""Number format of a Ppk, where it is known so well."""
+
+_LEAST_DECIMAL = 1e-4
+"""Standard errors below it are shown as powers of ten."""
+
+
+def usual_format(column: Column) -> str:
+    """Return the number format of a column where nothing else asks for another."""
+    key = column.key
+    if key.startswith("stiffness"):
+        return "stiffness"
+    if key in ESTIMATED_SHARES:
+        return percent_of(SHARE_OF_VARIANCE_ERROR)
+    if "share" in key or "probability" in key:
+        return "share"
+    return _USUAL.get(key) or _UNITS.get(column.unit, "plain")
+
+
+def number_formats(book: Book, results: pl.DataFrame, column: Column) -> list[Any]:
+    """Return a format for each number of a column."""
+    values, usual = results[column.key].to_list(), usual_format(column)
+    stem, _, unit = column.key.rpartition("_")
+    if "standard_error" in column.key:
+        return [book.format("text", _of_error(value)) for value in values]
+    if column.key.startswith(("probability", "ppm")):
+        return _of_shares(book, results, column.key, values)
+    if column.key in _WORKED_OUT:
+        errors = [_WORKED_OUT[column.key](row) for row in results.iter_rows(named=True)]
+        if usual == "share":
+            return [book.format("text", percent_of(one)) for one in errors]
+        return [book.format("text", min(decimals_of(one, usual), _PPK, key=len)) for one in errors]
+    error = next(
+        (
+            key
+            for key in (*_ERRORS.get(column.key, ()), f"{stem}_standard_error_{unit}", f"{column.key}_standard_error")
+            if key in results
+        ),
+        "",
+    )
+    if not error:
+        return [book.format("text", usual)] * results.height
+    return [book.format("text", decimals_of(one, "arcmin" if unit else "plain")) for one in results[error].to_list()]
+
+
+def _ppk_error(row: dict[str, Any]) -> float | None:
+    """Return the standard error of the percentile-based Ppk, from those of its percentiles; None without a limit."""
+    ppk, reach = row["ppk"], (row["p99_865_arcmin"] or 0.0) - (row["p50_arcmin"] or 0.0)
+    if ppk is None or not reach > 0:
+        return None
+    median, tail = row["p50_standard_error_arcmin"], row["p99_865_standard_error_arcmin"]
+    return float(math.hypot((ppk - 1) * median, ppk * tail) / reach)
+
+
+def _ppk_normal_error(row: dict[str, Any]) -> float | None:
+    """Return the standard error of Ppk by normal theory, from those of mean and sd; None without a limit."""
+    ppk, sd = row["ppk_normal"], row["sd_arcmin"]
+    if ppk is None or not sd:
+        return None
+    return float(math.hypot(row["mean_standard_error_arcmin"], 3 * ppk * row["sd_standard_error_arcmin"]) / (3 * sd))
+
+
+def _counted_error(row: dict[str, Any]) -> float | None:
+    """Return the standard error of a share that plain draws were counted for; None without a limit."""
+    share = row["random_probability_over_limit"]
+    return None if share is None else math.sqrt(float(share * (1 - share) / row["random_points"]))
+
+
+_WORKED_OUT: dict[str, Callable[[dict[str, Any]], float | None]] = {
+    "ppk": _ppk_error,
+    "ppk_normal": _ppk_normal_error,
+    "random_probability_over_limit": _counted_error,
+}
+"""Numbers whose standard error follows from those of others."""
+
+
+def _of_error(error: float | None) -> str:
+    """Return the number format that shows two digits of a standard error.
+
+    >>> _of_error(0.0213), _of_error(12.0), _of_error(7.1e-6)
+    ('0.000', '0', '0.0E+00')
+    """
+    if not error:
+        return "0"
+    if error < _LEAST_DECIMAL:
+        return "0.0E+00"
+    digits = max(0, 1 + places(error))
+    return f"0.{'0' * digits}" if digits else "0"
+
+
+def _of_shares(book: Book, results: pl.DataFrame, key: str, values: list[float | None]) -> list[Any]:
+    """Return a format for each share over the limit, or its bounds, down to the share's standard error."""
+    stem = key.removesuffix("_low").removesuffix("_high")
+    ends = zip(results[f"{stem}_low"].to_list(), results[f"{stem}_high"].to_list(), strict=True)
+    errors = [None if low is None else share_error(low, high) for low, high in ends]
+    whole, near_end = (1e6, "#,##0.0##") if key.startswith("ppm") else (1.0, "0.0000%")
+    formats = []
+    for value, error in zip(values, errors, strict=True):
+        if value is not None and not _NEAR * whole <= value <= (1 - _NEAR) * whole:
+            formats.append(book.format("text", near_end))
+        else:
+            formats.append(book.format("text", percent_of(error) if whole == 1.0 else decimals_of(error, "count")))
+    return formats

@@ -1,0 +1,186 @@
+"""The look of the report: one palette that colour-blind readers can tell apart, one set of cell formats."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import xlsxwriter
+
+from flexlash.schema.number_words import places
+
+__all__ = ["GRID", "PALETTE", "Book", "decimals_of", "percent_of"]
+
+PALETTE = {
+    "ink": "#1F3A5F",
+    "blue": "#0072B2",
+    "sky": "#8CBFE0",
+    "orange": "#E69F00",
+    "red": "#D55E00",
+    "green": "#009E73",
+    "grey": "#7F7F7F",
+    "pale": "#D9E2EC",
+}
+
+GRID = {"visible": True, "line": {"color": PALETTE["pale"]}}
+
+_TABS = {"entry": PALETTE["orange"], "stored": PALETTE["grey"]}
+"""Colours of the tabs of sheets with cells to change, and of sheets that only hold what others look up."""
+
+_BASE = {"font_name": "Calibri", "font_size": 11, "valign": "vcenter"}
+_NUMBERS = {
+    "rad": "0.0000E+00",
+    "arcmin": "0.0000",
+    "arcsec": "0.00",
+    "share": "0.00%",
+    "plain": "0.000",
+    "stiffness": "#,##0.0",
+    "stress": "0.0",
+    "count": "#,##0",
+    "general": "General",
+}
+_FORMATS: dict[str, dict[str, Any]] = {
+    "title": {"bold": True, "font_size": 18, "font_color": PALETTE["ink"]},
+    "section": {
+        "bold": True,
+        "font_size": 13,
+        "font_color": PALETTE["ink"],
+        "bottom": 2,
+        "bottom_color": PALETTE["ink"],
+    },
+    "text": {},
+    "indented": {"indent": 1},
+    "indented wrap": {"indent": 1, "text_wrap": True},
+    "wrap": {"text_wrap": True},
+    "topic": {"bold": True, "valign": "top", "font_color": PALETTE["ink"]},
+    "said": {"text_wrap": True, "valign": "top"},
+    "topic link": {"bold": True, "valign": "top", "font_color": PALETTE["blue"], "underline": 1},
+    "quiet": {"font_color": "#595959", "italic": True},
+    "hint": {"font_color": "#595959", "italic": True, "align": "left"},
+    "label": {"bold": True, "font_color": "#404040"},
+    "big": {
+        "bold": True,
+        "font_size": 16,
+        "align": "center",
+        "font_color": PALETTE["ink"],
+        "top": 1,
+        "left": 1,
+        "right": 1,
+        "border_color": PALETTE["pale"],
+    },
+    "caption": {
+        "align": "center",
+        "valign": "top",
+        "text_wrap": True,
+        "font_color": "#595959",
+        "bottom": 1,
+        "left": 1,
+        "right": 1,
+        "border_color": PALETTE["pale"],
+    },
+    "header": {
+        "bold": True,
+        "text_wrap": True,
+        "align": "center",
+        "border": 1,
+        "border_color": "#8EA9C1",
+        "bg_color": PALETTE["pale"],
+    },
+    "key": {
+        "font_size": 8,
+        "text_wrap": True,
+        "font_color": "#7F7F7F",
+        "italic": True,
+        "bottom": 1,
+        "border_color": "#8EA9C1",
+    },
+    "link": {"font_color": PALETTE["blue"], "underline": 1},
+    "figure": {"align": "right"},
+    "input": {"num_format": "@", "bg_color": "#FFF5D6", "border": 1, "border_color": PALETTE["orange"], "bold": True},
+    "base": {"bg_color": "#FFF5D6", "bottom": 1, "bottom_color": PALETTE["orange"]},
+    "more": {"bg_color": "#FBE3B8"},
+    "less": {"bg_color": "#D3E7F5"},
+    "turned": {
+        "font_size": 10,
+        "rotation": 90,
+        "align": "center",
+        "valign": "bottom",
+        "border": 1,
+        "border_color": "#8EA9C1",
+        "bg_color": PALETTE["pale"],
+    },
+    "small figure": {"font_size": 9, "align": "center"},
+    "error": {"bg_color": "#F8CBAD"},
+    "warning": {"bg_color": "#FFE699"},
+    "ok": {"bg_color": "#C6E5D8"},
+}
+_FORMATS |= {f"big {level}": _FORMATS["big"] | _FORMATS[level] for level in ("error", "warning", "ok")}
+
+
+_MOST_DECIMALS = 8
+
+
+def decimals_of(error: float | None, otherwise: str) -> str:
+    """Return the number format that shows a number down to the first digit of its standard error.
+
+    >>> decimals_of(0.0021, "plain"), decimals_of(None, "plain")
+    ('0.000', 'plain')
+    """
+    if error is None or not error > 0:
+        return otherwise
+    decimals = max(0, min(_MOST_DECIMALS, places(error)))
+    return "0." + "0" * decimals if decimals else "0"
+
+
+def percent_of(error: float | None) -> str:
+    """Return the number format of a share in per cent down to the first digit of its error.
+
+    >>> percent_of(0.0021), percent_of(None)
+    ('0.0%', 'share')
+    """
+    decimals = decimals_of(None if error is None else 100 * error, "share")
+    return decimals if decimals == "share" else f"{decimals}%"
+
+
+class Book:
+    """An XlsxWriter workbook with the report's formats and sheets."""
+
+    def __init__(self, workbook: xlsxwriter.Workbook) -> None:
+        self.workbook = workbook
+        self._formats: dict[str, Any] = {}
+
+    def format(self, name: str, number: str = "") -> Any:
+        """Return a format by name, optionally with a number format by name or in Excel's letters."""
+        key = f"{name} {number}"
+        if key not in self._formats:
+            properties = {**_BASE, **_FORMATS[name]}
+            if number:
+                properties["num_format"] = _NUMBERS.get(number, number)
+            self._formats[key] = self.workbook.add_format(properties)
+        return self._formats[key]
+
+    def sheet(self, name: str, *, landscape: bool = True, pages_tall: int = 0, tab: str = "") -> Any:
+        """Return a new sheet set up to print one page wide; `tab` says what is special: `entry` or `stored`."""
+        sheet = self.workbook.add_worksheet(name)
+        if tab:
+            sheet.set_tab_color(_TABS[tab])
+        if landscape:
+            sheet.set_landscape()
+        sheet.set_paper(9)
+        sheet.set_margins(left=0.4, right=0.4, top=0.5, bottom=0.6)
+        sheet.fit_to_pages(1, pages_tall)
+        sheet.set_footer("&L&A&C&P / &N&Rflexlash report")
+        sheet.hide_gridlines(2)
+        return sheet
+
+    def chart(self, kind: str, title: str, **options: Any) -> Any:
+        """Return a chart with the report's fonts."""
+        chart = self.workbook.add_chart({"type": kind, **options})
+        chart.set_title({"name": title, "name_font": {"size": 12, "color": PALETTE["ink"]}, "overlay": False})
+        chart.set_legend({"position": "bottom"})
+        return chart
+
+    @staticmethod
+    def insert(sheet: Any, row: int, column: int, chart: Any, *, size: tuple[int, int], text: str) -> None:
+        """Put a chart of this size [px] on a sheet, with its alternative text."""
+        chart.set_size({"width": size[0], "height": size[1]})
+        sheet.insert_chart(row, column, chart, {"description": text, "object_position": 2})

@@ -1,0 +1,56 @@
+"""How far a percentile is from its limit [arcmin], told alike in sentence and table."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from flexlash.report.layout.styles import decimals_of
+from flexlash.schema.number_words import glance, rounded
+
+__all__ = ["distance", "distance_format", "distance_words"]
+
+_DIGITS = 2
+"""Digits in which a distance is told, where the percentile's own digits leave fewer."""
+
+_FINEST = 1e-6
+"""Part of a percentile below which no distance from its limit is told."""
+
+
+def distance(row: dict[str, Any], key: str) -> float:
+    """Return how far a percentile of a Results row is over its limit [arcmin], negative when under."""
+    return float(row[f"{key}_arcmin"] - row["backlash_limit_arcmin"])
+
+
+def distance_words(row: dict[str, Any], key: str) -> str:
+    """Return how far a percentile is from its limit, in words.
+
+    >>> distance_words({"p97_5_arcmin": 6.262, "p97_5_standard_error_arcmin": 1e-6, "backlash_limit_arcmin": 3.8},
+    ...                "p97_5")
+    '2.462′ over'
+    """
+    off = distance(row, key)
+    if off == 0:
+        return "right at"
+    least = _decade(_step(row, key))
+    told = rounded(abs(off), least)
+    side = "over" if off > 0 else "under"
+    return f"{told}′ {side}" if float(told) else f"less than {rounded(least, least)}′ {side}"
+
+
+def distance_format(row: dict[str, Any], key: str) -> str:
+    """Return the number format that shows a distance with its sign and in the digits of the words."""
+    places = decimals_of(_step(row, key), "plain")
+    return f"+{places};-{places};{places}"
+
+
+def _step(row: dict[str, Any], key: str) -> float:
+    """Return the least difference that is told: two digits or as fine as the percentile, no finer than is known."""
+    value, off = row[f"{key}_arcmin"], abs(distance(row, key))
+    fine = min(glance(value), _decade(off) * 10.0 ** (1 - _DIGITS) if off else math.inf)
+    return float(max(row[f"{key}_standard_error_arcmin"] or 0.0, fine, value * _FINEST))
+
+
+def _decade(value: float) -> float:
+    """Return the power of ten of a number's first digit."""
+    return float(10.0 ** math.floor(math.log10(value)))

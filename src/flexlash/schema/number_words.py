@@ -1,0 +1,128 @@
+"""Numbers in words: shares with their interval, angles, and no more digits than are known."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from flexlash.schema.findings import spelled_out
+
+__all__ = ["ALL_UNITS", "INTERVAL", "angle_words", "glance", "places", "rounded", "share_error", "share_words"]
+
+INTERVAL = 1.96
+"""Standard errors to either side of a number that make its 95 % interval."""
+
+
+def places(error: float) -> int:
+    """Return to how many decimals a number is told: down to the first digit of its standard error.
+
+    This is the one rule of digits, in sentences, number formats and formulas alike. The ends of an interval have the
+    place of their number, from which they differ by 1.96 errors, so visibly. Negative: to tens, hundreds, ….
+
+    >>> places(0.0021), places(0.3), places(1.0), places(40.0)
+    (3, 1, 0, -1)
+    """
+    return -math.floor(math.log10(error))
+
+
+def share_error(low: float, high: float) -> float:
+    """Return the standard error of a share, from the ends of its 95 % interval."""
+    return (high - low) / (2 * INTERVAL)
+
+
+def share_words(row: dict[str, Any]) -> str:
+    """Return the probability over limit of a Results row with its interval, never as a bare 0 or 100 %.
+
+    >>> share_words({"probability_over_limit": 0.0, "probability_over_limit_low": 0.0,
+    ...              "probability_over_limit_high": 1.1e-4})
+    'at most 110 ppm'
+    >>> share_words({"probability_over_limit": 0.412, "probability_over_limit_low": 0.407,
+    ...              "probability_over_limit_high": 0.417})
+    '41.2 % (40.7 to 41.7 %)'
+    """
+    value, low, high = (row[f"probability_over_limit{end}"] for end in ("", "_low", "_high"))
+    if low == high and value in (0, 1):
+        return "all" if value else "none"
+    if 1 - value < _RARE:
+        rest = _interval(1 - value, 1 - high, 1 - low)
+        return _ALL if rest == _NONE else f"all but {rest}"
+    return _interval(value, low, high)
+
+
+_UNITS = ((1.0, 100.0, " %"), (1e-3, 1e6, " ppm"), (1e-6, 1e9, " ppb"))
+"""Shares below the first number are told in the unit, which is the factor times the share."""
+
+_RARE = 1e-3
+_FINEST = 1e-4
+"""Part of a share that is not told in words, however well it is known."""
+
+_BRIEF = 1e-6
+"""Shares below it are told in two digits at most, without interval."""
+
+_LEAST = 1e-9
+"""Shares below it are told as none: tolerances do not bear more."""
+
+_NONE, _ALL = "practically none", "practically all"
+
+ALL_UNITS = frozenset({"all", _ALL})
+"""What share_words says where no unit, or hardly one, is left out."""
+
+
+def _unit(share: float) -> tuple[float, str]:
+    """Return factor and name of the unit in which a share is told."""
+    return [(factor, name) for most, factor, name in _UNITS if share < most or most == 1][-1]
+
+
+def _interval(value: float, low: float, high: float) -> str:
+    """Return a share with its interval, in the unit of its upper end."""
+    if high < _LEAST:
+        return _NONE
+    if value < _LEAST:
+        return f"at most {_share(high, 3)}"
+    if value < _BRIEF:
+        return _share(value, 2 if high - low < value / 5 else 1)
+    if low == high:
+        return _share(value, 3)
+    factor, unit = _unit(high)
+    finest, error = value * _FINEST, min(share_error(low, high), value, 1 - value)
+    if places(error) > places(finest):
+        return f"{rounded(value * factor, finest * factor)}{unit}"
+    told, *ends = (rounded(end * factor, error * factor) for end in (value, low, high))
+    if told in ends:  # an interval that reaches much further to one side
+        told, *ends = (rounded(end * factor, error * factor / 10) for end in (value, low, high))
+    return f"{told}{unit} ({ends[0]} to {ends[1]}{unit})"
+
+
+def _share(share: float, digits: int) -> str:
+    """Return one share in per cent, ppm or ppb."""
+    factor, unit = _unit(share)
+    return f"{spelled_out(share * factor, digits)}{unit}"
+
+
+def rounded(value: float, error: float) -> str:
+    """Return a number down to the first digit of its standard error, in five digits where it has none.
+
+    >>> rounded(3.684217, 0.0021), rounded(3.684217, 0.0), rounded(41.23, 0.3)
+    ('3.684', '3.6842', '41.2')
+    """
+    if not error > 0:
+        return f"{value:.5g}"
+    return f"{value:.{max(0, min(8, places(error)))}f}"
+
+
+def angle_words(value: float, error: float | None = None) -> str:
+    """Return an angle [arcmin] in four digits, or fewer where its standard error is greater.
+
+    >>> angle_words(6.261963, 1e-6), angle_words(6.261963, 0.02), angle_words(0.0123456)
+    ('6.262′', '6.26′', '0.01235′')
+    """
+    return f"{rounded(value, max(error or 0.0, glance(value)))}′"
+
+
+def glance(value: float) -> float:
+    """Return the last of the four digits in which a number is told at a glance.
+
+    >>> glance(6.261963), glance(0.0)
+    (0.001, 0.0)
+    """
+    return float(10.0 ** (math.floor(math.log10(value)) - 3)) if value > 0 else 0.0

@@ -1,0 +1,78 @@
+"""Scrambled Sobol' points: the base net of Joe and Kuo, scrambled anew for every replicate.
+
+Nested uniform scrambling (Owen 1995) leaves the evenness of the net alone and makes every point uniform, so
+replicates are independent and unbiased; their means are close to normal (Loh 2003), which the cheaper linear
+scrambling does not give.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+from flexlash.schema.arrays import Array
+from flexlash.schema.tables import rows
+
+__all__ = ["COORDINATES", "scrambled_net"]
+
+COORDINATES = 64
+"""Coordinates with direction numbers; beyond them points are independent."""
+
+_BITS = 32
+
+Words = npt.NDArray[np.uint32]
+
+
+@cache
+def _directions() -> Words:
+    """Return the direction numbers (coordinates, bits) of Joe and Kuo 2008, the first bit uppermost."""
+    table = np.zeros((COORDINATES, _BITS), dtype=np.uint32)
+    for place, row in enumerate(rows("sobol_directions")):
+        polynomial = int(row["polynomial"])
+        degree = max(polynomial.bit_length() - 1, 1)
+        numbers = [int(number) << (_BITS - 1 - bit) for bit, number in enumerate(row["initial_numbers"].split())]
+        for bit in range(degree, _BITS):
+            number = numbers[bit - degree] ^ numbers[bit - degree] >> degree if place else 1 << (_BITS - 1 - bit)
+            for back in range(1, degree):
+                if polynomial >> (degree - back) & 1:
+                    number ^= numbers[bit - back]
+            numbers.append(number)
+        table[place] = numbers
+    return table
+
+
+@cache
+def _strata(count: int) -> npt.NDArray[np.intp]:
+    """Return in which of `count` equal strata the first points of the net lie, (coordinates, count)."""
+    bits = count.bit_length() - 1
+    words = np.zeros((COORDINATES, count), dtype=np.uint32)
+    for bit, direction in enumerate(_directions().T[:bits]):
+        filled = 1 << bit
+        words[:, filled : 2 * filled] = words[:, :filled] ^ direction[:, None]
+    return (words >> np.uint32(_BITS - bits) if bits else words).astype(np.intp)
+
+
+def scrambled_net(width: int, replicates: int, count: int, generator: np.random.Generator) -> Array:
+    """Return points inside the unit cube, (width, replicates, count); count is a power of two.
+
+    >>> points = scrambled_net(1, 2, 4, np.random.default_rng(0))
+    >>> np.sort(points * 4, axis=2).astype(int).tolist()
+    [[[0, 1, 2, 3], [0, 1, 2, 3]]]
+    """
+    known = min(width, COORDINATES)
+    flips = generator.integers(2, size=(known, replicates, count), dtype=np.int32)
+    points = generator.random((width, replicates, count))
+    places = np.zeros((known, replicates, 1), dtype=np.int32)
+    while (filled := places.shape[2]) < count:
+        # Each stratum is halved, and its halves are exchanged or not by a coin of its own.
+        split = np.empty((known, replicates, 2 * filled), dtype=np.int32)
+        split[:, :, 0::2] = 2 * places + flips[:, :, filled : 2 * filled]
+        split[:, :, 1::2] = 2 * places + 1 - flips[:, :, filled : 2 * filled]
+        places = split
+    strata = _strata(count)
+    for coordinate in range(known):
+        points[coordinate] += places[coordinate].take(strata[coordinate], axis=1)
+    points[:known] /= count
+    return np.clip(points, 2.0**-53, 1 - 2.0**-53)

@@ -1,0 +1,81 @@
+"""Where lines pass: a few replicates of scrambled points across the direction, as standard normal scores."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from flexlash.schema.arrays import Array
+from flexlash.tolerance.digital_nets import scrambled_net
+
+__all__ = ["LINE_REPLICATES", "Net", "line_net", "mirrored_net"]
+
+LINE_REPLICATES = 8
+"""Independent replicates behind every standard error: 7 degrees of freedom."""
+
+_SHARE_POINTS = 64, 2048
+"""Fewest and most points over the other inputs behind each share of variance."""
+
+_ROW = {8: 4.0, 16: 5.0}
+"""Points in an even row of scores, and how far it reaches to both sides."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Net:
+    """Scores (coordinates, lines) and the weights (lines,) of the lines, which sum to 1 in each replicate.
+
+    `row` counts the places of an evenly spaced first coordinate, or is 0; `beyond` is the probability that it leaves
+    out at both ends.
+    """
+
+    scores: Array
+    weights: Array
+    row: int = 0
+    beyond: float = 0.0
+
+    @property
+    def lines(self) -> int:
+        """Lines in all replicates."""
+        return len(self.weights)
+
+
+@lru_cache(maxsize=64)
+def line_net(seed: int, width: int, lines: int, *, one_bent: bool) -> Net:
+    """Return a net of so many coordinates, another one for each number of lines.
+
+    Where but one input is bent, the first coordinate, which serves it, is an evenly spaced row of scores, shifted at
+    random and weighted by the normal density: the trapezoidal rule, which converges faster than any net. A coordinate
+    that is alone is such a row too.
+    """
+    generator = np.random.default_rng([seed, lines])
+    count = lines // LINE_REPLICATES
+    row = max((points for points in _ROW if points <= count), default=0)
+    if not (row and (width == 1 or (one_bent and width))):
+        points = scrambled_net(width, LINE_REPLICATES, count, generator).reshape(width, lines)
+        return Net(scores=np.asarray(ndtri(points)), weights=np.full(lines, 1 / count))
+    points = scrambled_net(width - 1, LINE_REPLICATES, count, generator).reshape(width - 1, lines)
+    shifted = (np.arange(row) + generator.random((LINE_REPLICATES, 1))) / row
+    first = np.repeat((2 * shifted - 1) * _ROW[row], count // row, axis=1)
+    weights = np.exp(-first * first / 2)
+    weights = weights / weights.sum(axis=1, keepdims=True)
+    return Net(
+        scores=np.concatenate([first.reshape(1, lines), ndtri(points)]),
+        weights=weights.reshape(lines),
+        row=row,
+        beyond=2 * float(ndtr(-_ROW[row])),
+    )
+
+
+@lru_cache(maxsize=64)
+def mirrored_net(seed: int, width: int, lines: int) -> Array:
+    """Return scores (width, points), half of them mirrored so that linear effects cancel; about as many as lines.
+
+    A row that takes many lines has inputs that act together, so its shares take many points too.
+    """
+    points = min(max(lines, _SHARE_POINTS[0]), _SHARE_POINTS[1])
+    generator = np.random.default_rng([seed, points, width])
+    half = ndtri(scrambled_net(width, LINE_REPLICATES, points // (2 * LINE_REPLICATES), generator))
+    return np.concatenate([half, -half], axis=2).reshape(width, points)

@@ -1,0 +1,238 @@
+"""Lines through the space of the inputs along which the output only rises.
+
+Every input is a function of a standard normal score. Lines run parallel to the direction in which the output
+rises fastest at the median; a scrambled net places them in the directions across. Where a line passes an
+output y at the place t, the share Φ(−t) of the line lies above y: the mean over lines is P(Y > y).
+
+Koutsourelakis, Pradlwarter and Schuëller 2004 (line sampling); L'Ecuyer and others (conditional Monte Carlo
+with randomized quasi-Monte Carlo).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from flexlash.schema.arrays import Array
+from flexlash.tolerance.distributions import Normal
+from flexlash.tolerance.engine.line_direction import Course, Inputs, RowModel, Rows, across
+from flexlash.tolerance.engine.line_points import LINE_REPLICATES, Net
+
+__all__ = ["FAR", "FAULTS", "NODES", "REACH", "STEP", "STEPS", "Lines"]
+
+REACH = 8.3
+"""Scores beyond ±8.3 have no weight in double precision and are not visited."""
+
+STEP = 0.5
+NODES = np.arange(-8.0, 8.0 + STEP / 2, STEP)
+"""Places on each line at which the model is tabulated."""
+
+FAR = 8.5
+"""The place of a crossing that a line does not have: Φ(−FAR) is nothing beside 1."""
+
+FAULTS = (
+    "",
+    "the output has no gradient at the median",
+    "the model is not finite within 8 standard deviations",
+    "the output does not rise everywhere along its gradient at the median",
+    "the output has steps or dips between the points looked at",
+)
+"""Why lines do not serve a row."""
+
+STEPS = len(FAULTS) - 1
+
+
+_PROBED = np.array([-2.0, -1.0, 1.0])
+"""Nodes after which the model is looked at once more."""
+
+_ASIDE = 0.4
+"""How far after them, in steps; not halfway, where a wave of the nodes' own length would hide."""
+
+_CUBIC = np.array([
+    -_ASIDE * (_ASIDE - 1) * (_ASIDE - 2) / 6,
+    (_ASIDE + 1) * (_ASIDE - 1) * (_ASIDE - 2) / 2,
+    -(_ASIDE + 1) * _ASIDE * (_ASIDE - 2) / 2,
+    (_ASIDE + 1) * _ASIDE * (_ASIDE - 1) / 6,
+])  # fmt: skip
+"""Weights of the four nodes around of the cubic through them."""
+
+_LAST = 2
+"""The last of the three intervals between four nodes."""
+
+_DIP = 1e-9
+"""A fall along a line smaller than this part of its range is rounding."""
+
+_ROUGH = 0.05
+"""A model that lies this part of a step off the cubic through its neighbours may have steps of its own."""
+
+_LONE = 4.0
+"""A step along a line is a jump if it is this much greater than both its neighbours."""
+
+_FLAT, _HIGH = 1e-12, 0.05
+"""A line is flat where it rises less than the one part of its range, and has an edge where two places on it rises more
+than the other: limits that are approached smoothly take longer."""
+
+_BEYOND = 2.0
+"""How much further from the mean lines beyond an evenly spaced row may be than its last."""
+
+_BLOCK = 1 << 15
+
+
+class Lines:
+    """Lines through rows alike, tabulated at nodes: `table` (nodes, rows × lines) of outputs that only rise.
+
+    `lines` is the number per row, LINE_REPLICATES times a power of two. `faults` (rows,) holds 0, or the place in
+    `FAULTS` of what keeps line sampling from a row; what else is read of the lines holds for the other rows.
+    """
+
+    def __init__(self, model: RowModel, inputs: Inputs, course: Course, net: Net) -> None:
+        self._model = model
+        self.inputs = inputs
+        self.rows = inputs.count
+        self.lines = net.lines
+        self._net = net
+        self._row_of = np.repeat(np.arange(self.rows), self.lines)
+        self._origin = across(course, net.scores).reshape(len(inputs.names), -1)
+        self._direction = course.direction[:, self._row_of]
+        self._location = inputs.location[:, self._row_of]
+        self._scale = inputs.scale[:, self._row_of]
+        self._far = np.abs(self._origin).max(axis=1) + FAR * np.abs(self._direction).max(axis=1) > REACH
+        for place, shape in enumerate(inputs.shapes):
+            if shape.shape == Normal.shape:
+                self._origin[place] = self._location[place] + self._scale[place] * self._origin[place]
+                self._direction[place] *= self._scale[place]
+        found = self.outputs(np.concatenate([NODES, _PROBED + _ASIDE * STEP])[:, None])
+        table, probes = found[: len(NODES)], found[len(NODES) :]
+        self.faults = self._faults(course.direction, table, probes)
+        self.table = table if (np.diff(table, axis=0) >= 0).all() else np.maximum.accumulate(table, axis=0)
+        down, up = np.searchsorted(NODES, [-2.0, 2.0])
+        self.scale = self.mean_over_lines(self.table[up : up + 1] - self.table[down : down + 1])[0] / 4
+
+    def _faults(self, direction: Array, table: Array, probes: Array) -> Rows:
+        """Return what keeps line sampling from each row, by its place in `FAULTS`."""
+        step = np.diff(table, axis=0)
+        faults = np.where((direction != 0).any(axis=0), 0, 1)
+        if not (step.min() >= 0 and np.isfinite(probes).all()):
+            # The usual table rises outright; only others are looked at more closely.
+            finite = np.isfinite(table).all(axis=0) & np.isfinite(probes).all(axis=0)
+            faults = np.where(self._all_lines(finite) | (faults > 0), faults, 2)
+            size = np.abs(table).max(axis=0)
+            slack = _DIP * (table.max(axis=0) - table.min(axis=0)) + 64 * np.finfo(float).eps * size
+            faults = np.where(self._all_lines((step >= -slack).all(axis=0)) | (faults > 0), faults, 3)
+        before = table[np.add.outer(np.arange(-1, 3), np.searchsorted(NODES, _PROBED))]
+        between = sum(weight * values for weight, values in zip(_CUBIC, before, strict=True))
+        off = self.mean_over_lines(np.abs(probes - between)).sum(axis=0)
+        around = self.mean_over_lines(before[2] - before[1]).sum(axis=0)
+        self.roughness = off / np.where(around > 0, around, 1.0)
+        rough = (self.roughness > _ROUGH) | ~self._all_lines(self._even(step))
+        return np.where(rough & (faults == 0), STEPS, faults)
+
+    def _even(self, step: Array) -> npt.NDArray[np.bool_]:
+        """Return which lines have neither a lone step, far above both its neighbours, nor an edge to a flat part."""
+        inner = step[1:-1]
+        lone = (inner > _LONE * np.maximum(step[:-2], step[2:])) & (inner >= _HIGH * step.sum(axis=0))
+        apart = round(2 / STEP)
+        flat = step <= _FLAT * step.sum(axis=0)
+        high = step >= _HIGH * step.sum(axis=0)
+        edge = (flat[:-apart] & high[apart:]) | (high[:-apart] & flat[apart:])
+        return np.asarray(~(lone.any(axis=0) | edge.any(axis=0)))
+
+    def _all_lines(self, sound: npt.NDArray[np.bool_] | np.bool_) -> npt.NDArray[np.bool_]:
+        """Return whether every line (rows × lines,) of a row is sound."""
+        return np.asarray(sound.reshape(self.rows, -1).all(axis=1))
+
+    def outputs(self, places: Array) -> Array:
+        """Return the outputs (k, rows × lines) at places (k, 1) or (k, rows × lines) along the lines."""
+        width = self._origin.shape[1]
+        output = np.empty((len(places), width))
+        step = max(_BLOCK // len(places), 1)
+        for start in range(0, width, step):
+            block = slice(start, min(start + step, width))
+            here = places if places.shape[1] == 1 else places[:, block]
+            arguments = {}
+            for place, name in enumerate(self.inputs.names):
+                arguments[name] = self._values(place, here, block)
+            output[:, block] = self._model(arguments, self._row_of[block])
+        return output
+
+    def _values(self, place: int, here: Array, block: slice) -> Array:
+        """Return an input at places along some lines; that of a normal is a straight line itself."""
+        found = self._direction[place, block] * here
+        found += self._origin[place, block]
+        location, scale = self._location[place, block], self._scale[place, block]
+        if self.inputs.shapes[place].shape == Normal.shape:
+            if self._far[place]:
+                np.minimum(np.maximum(found, location - REACH * scale, out=found), location + REACH * scale, out=found)
+            return found
+        found = self.inputs.shapes[place].standard_at(found) * scale
+        found += location
+        return found
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """Least and greatest output in the table of each row, (rows,) each."""
+        low = np.minimum.reduce(self.table[0].reshape(self.rows, -1), axis=1)
+        return low, np.maximum.reduce(self.table[-1].reshape(self.rows, -1), axis=1)
+
+    def each(self, values: Array) -> Array:
+        """Return values (k, rows) once for every line, (k, rows × lines)."""
+        return np.repeat(values, self.lines, axis=1)
+
+    def mean_over_lines(self, values: Array) -> Array:
+        """Return the means (k, rows) of values (k, rows × lines)."""
+        weighted = values.reshape(-1, self.rows, self.lines) * self._net.weights
+        return np.asarray(np.add.reduce(weighted, axis=2) / LINE_REPLICATES)
+
+    def replicate_means(self, values: Array) -> Array:
+        """Return the means (k, rows, replicates) of values (k, rows × lines)."""
+        weighted = values.reshape(-1, self.rows, self.lines) * self._net.weights
+        return np.asarray(np.add.reduce(weighted.reshape(len(weighted), self.rows, LINE_REPLICATES, -1), axis=3))
+
+    def left_out(self, values: Array) -> Array:
+        """Return how far means (k, rows) of values may be off for want of lines beyond an evenly spaced row."""
+        if not self._net.row:
+            return np.zeros((len(values), self.rows))
+        mean = self.mean_over_lines(values)
+        by_place = values.reshape(
+            -1,
+            self.rows,
+            LINE_REPLICATES,
+            self._net.row,
+            values.shape[1] // (self.rows * LINE_REPLICATES * self._net.row),
+        )
+        first, last = (by_place[:, :, :, end].mean(axis=(2, 3)) for end in (0, -1))
+        return np.asarray(_BEYOND * self._net.beyond * (np.abs(first - mean) + np.abs(last - mean)))
+
+    def places(self, outputs: Array) -> tuple[Array, Array]:
+        """Return where lines pass outputs (k, rows × lines), and their slopes there, by cubics through the table."""
+        table, width = self.table, self.table.shape[1]
+        passed = np.zeros(outputs.shape, dtype=np.int8)
+        for node in table:
+            passed += (node <= outputs).view(np.int8)
+        base = np.minimum(np.maximum(passed - np.int8(2), np.int8(0)), np.int8(len(NODES) - 4))
+        index = base * np.int64(width) + np.arange(width)
+        first, second, third, fourth = (table.reshape(-1).take(index + shift * width) for shift in range(4))
+        interval = np.minimum(np.maximum(passed - np.int8(1) - base, 0), _LAST)
+        low, starts, ends = interval.astype(float), interval == 0, interval == _LAST
+        below = np.where(starts, first, np.where(ends, third, second))
+        above = np.where(starts, second, np.where(ends, fourth, third))
+        secant = above - below
+        inside = (passed > 0) & (passed < len(NODES))
+        secant = np.where(secant > 0, secant, 1.0)
+        bend, twist = third - 2 * second + first, (fourth - 3 * third + 3 * second - first) / 3
+        rise = second - first
+        place = low + (outputs - below) / secant
+        for _ in range(2):
+            value = first + place * (rise + (place - 1) / 2 * (bend + (place - 2) * twist))
+            place = place + (outputs - value) / _slope(place, rise, bend, twist, secant)
+            place = np.minimum(np.maximum(place, low), low + 1)
+        slope = _slope(place, rise, bend, twist, secant) / STEP
+        found = NODES[0] + STEP * (base + place)
+        outside = np.where(passed == 0, -FAR, FAR)
+        return np.where(inside, found, outside), slope
+
+
+def _slope(place: Array, rise: Array, bend: Array, twist: Array, secant: Array) -> Array:
+    """Return the slopes of cubics through four values a unit apart, no less than a tenth of the secant's."""
+    slope = rise + (place - 0.5) * bend + (1.5 * place * place - 3 * place + 1) * twist
+    return np.maximum(slope, 0.1 * secant)

@@ -1,0 +1,205 @@
+"""The spread of an output from its values at points of the inputs: plain Monte Carlo, or scrambled Sobol' points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import ndtri
+
+from flexlash.schema.arrays import Array
+from flexlash.tolerance.capability import clopper_pearson
+from flexlash.tolerance.distributions import Distribution
+from flexlash.tolerance.sampling import UnitPoints, standard_error
+from flexlash.tolerance.spread import Spread
+
+__all__ = ["Model", "SampledSpread"]
+
+Model = Callable[..., npt.ArrayLike]
+
+_BLOCK = 8192
+
+
+class SampledSpread(Spread):
+    """The spread of a model's output at points.
+
+    `values` has the shape (replicates, points); quantiles are of type 7 (Excel's PERCENTILE.INC, numpy's default).
+    Standard errors of Sobol' points come from the replicates, which are independent of one another; those of
+    plain Monte Carlo from the theory of independent draws.
+    """
+
+    def __init__(
+        self,
+        *,
+        model: Model,
+        inputs: Mapping[str, Distribution],
+        points: UnitPoints,
+        notes: tuple[str, ...] = (),
+    ) -> None:
+        self._model = model
+        self._inputs = inputs
+        self._points = points
+        self.method = points.method
+        self.notes = notes
+        self.values = _evaluate(model, {name: points.standard(name, inputs[name]) for name in inputs}, inputs)
+        self.size = self.values.size
+
+    @cached_property
+    def _selected(self) -> Array:
+        """The values in one row, put in order only as far as quantiles were asked for."""
+        return self.values.flatten()
+
+    @property
+    def _independent(self) -> bool:
+        return self.method == "random"
+
+    @property
+    def _origin(self) -> float:
+        return float(self.values[0, 0])
+
+    @cached_property
+    def _deviations(self) -> Array:
+        """Values less the first one: a model that does not vary has a spread of exactly 0."""
+        return self.values - self._origin
+
+    @cached_property
+    def mean(self) -> float:
+        """Mean of the output."""
+        return self._origin + float(self._deviations.mean())
+
+    @cached_property
+    def sd(self) -> float:
+        """Standard deviation of the output."""
+        return float(self._deviations.std())
+
+    @cached_property
+    def mean_standard_error(self) -> float:
+        """Standard error of the mean."""
+        if self._independent:
+            return self.sd / math.sqrt(self.size)
+        return float(standard_error(self._deviations.mean(axis=1)))
+
+    @cached_property
+    def sd_standard_error(self) -> float:
+        """Standard error of the standard deviation."""
+        if self._independent:
+            return self.sd * math.sqrt(max(self._moment(4) - 1, 0.0) / (4 * self.size))
+        if self.values.shape[1] == 1:
+            return self.sd
+        return float(standard_error(self._deviations.std(axis=1)))
+
+    @cached_property
+    def skewness(self) -> float:
+        """Third central moment over the cube of the standard deviation."""
+        return self._moment(3)
+
+    @cached_property
+    def skewness_standard_error(self) -> float:
+        """Standard error of the skewness."""
+        if self.sd == 0:
+            return 0.0
+        deviation = (self.values - self.mean) / self.sd
+        # The skewness moves with mean and sd as well as with the third moment.
+        squares = deviation * deviation
+        moves = squares * deviation - 3 * deviation - 1.5 * self.skewness * squares
+        if self._independent:
+            return float(moves.std()) / math.sqrt(self.size)
+        return float(standard_error(moves.mean(axis=1)))
+
+    def _moment(self, power: int) -> float:
+        """Return a central moment in standard deviations; 0 where nothing varies."""
+        if self.sd == 0:
+            return 0.0
+        deviation = (self.values - self.mean) / self.sd
+        product = deviation * deviation
+        for _ in range(power - 2):
+            product *= deviation
+        return float(product.mean())
+
+    def _quantiles(self, probability: Array) -> Array:
+        place = probability * (self.size - 1)
+        below = np.floor(place).astype(int)
+        above = np.minimum(below + 1, self.size - 1)
+        self._selected.partition(np.unique(np.concatenate([below, above])))
+        low, high = self._selected[below], self._selected[above]
+        return np.asarray(low + (high - low) * (place - below))
+
+    def _quantile_errors(self, probability: Array) -> Array:
+        """Return the standard errors of quantiles: the error of the share below, over the slope (Woodruff)."""
+        if self._independent:
+            of_share = np.sqrt(probability * (1 - probability) / self.size)
+        else:
+            quantiles = self._quantiles(probability)
+            below = [(self.values <= quantile).mean(axis=1) for quantile in quantiles]
+            of_share = standard_error(np.reshape(below, (len(quantiles), len(self.values))))
+        of_share = np.maximum(of_share, 0.5 / self.size)
+        reach = np.maximum(0.5 * np.minimum(probability, 1 - probability), of_share)
+        low, high = np.maximum(probability - reach, 0.0), np.minimum(probability + reach, 1.0)
+        ends = self._quantiles(np.concatenate([low, high]))
+        inside = of_share * (ends[len(low) :] - ends[: len(low)]) / (high - low)
+        # A quantile rarer than one point in all lies beyond the points, by a normal tail as far as this.
+        rarer = np.clip(np.minimum(probability, 1 - probability), np.finfo(float).tiny, 0.5)
+        beyond = np.maximum(ndtri(min(1 / self.size, 0.5)) - ndtri(rarer), 0.0)
+        return np.asarray(inside + beyond * self.sd)
+
+    def _shares_above(self, value: Array) -> Array:
+        return np.array([self._count_above(one) for one in value]) / self.size
+
+    def _count_above(self, value: float) -> int:
+        return int(np.count_nonzero(self._selected > value))
+
+    def _interval(self, value: float, confidence: float) -> tuple[float, float]:
+        """Return the Clopper–Pearson interval of the share above a value; wide for Sobol' points."""
+        return clopper_pearson(self._count_above(value), self.size, confidence)
+
+    @cached_property
+    def _both_shares(self) -> tuple[dict[str, float], dict[str, float]]:
+        """First-order and total indices: both point sets crossed one input at a time (Saltelli et al. 2010)."""
+        if len(self._inputs) == 1 or self.sd == 0:
+            alone = dict.fromkeys(self._inputs, float(self.sd > 0))
+            return alone, alone
+        count = self._points.share_count
+        first = {name: self._points.standard(name, self._inputs[name], "leading") for name in self._inputs}
+        second = {name: self._points.standard(name, self._inputs[name], "second") for name in self._inputs}
+        base = self.values[:, :count]
+        other = _evaluate(self._model, second, self._inputs)
+        middle = (base.mean() + other.mean()) / 2
+        variance = float(((base - middle) ** 2).mean() + ((other - middle) ** 2).mean()) / 2
+        shares, totals = {}, {}
+        for name in self._inputs:
+            crossed = _evaluate(self._model, first | {name: second[name]}, self._inputs)
+            caused = float(((other - middle) * (crossed - base)).mean())
+            touched = float(((base - crossed) ** 2).mean()) / 2
+            shares[name] = min(max(caused / variance, 0.0), 1.0) if variance > 0 else 0.0
+            totals[name] = touched / variance if variance > 0 else 0.0
+        return shares, totals
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """First-order Sobol' index of each input: the share of variance it causes by itself."""
+        return self._both_shares[0]
+
+    @property
+    def total_shares(self) -> dict[str, float]:
+        """Total Sobol' index of each input: the share of variance it has any part in."""
+        return self._both_shares[1]
+
+
+def _evaluate(model: Model, standard: Mapping[str, Array], inputs: Mapping[str, Distribution]) -> Array:
+    """Return the model at standard values of shape (replicates, points), in blocks that fit the cache."""
+    shape = next(iter(standard.values())).shape
+    flat = {name: values.ravel() for name, values in standard.items()}
+    output = np.empty(shape[0] * shape[1])
+    for start in range(0, output.size, _BLOCK):
+        block = slice(start, start + _BLOCK)
+        arguments = {name: inputs[name].location + inputs[name].scale * values[block] for name, values in flat.items()}
+        found = np.asarray(model(**arguments), dtype=float)
+        if found.shape != output[block].shape:
+            raise ValueError(f"the model returned shape {found.shape}, not that of its inputs")
+        output[block] = found
+    if not np.isfinite(output).all():
+        raise ValueError("the model returned a number that is not finite within the range of its inputs")
+    return output.reshape(shape)

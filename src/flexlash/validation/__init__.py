@@ -1,0 +1,1 @@
+"""From cells with addresses to variants and findings."""

@@ -1,0 +1,114 @@
+"""Which errors elsewhere stop a row that has none itself: those of its material, its class, its headers, or of all.
+
+And the other way round: which rows wait for an error.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
+
+from flexlash.schema.findings import Finding, shown
+from flexlash.schema.spellings import plain
+from flexlash.validation.validate import Validated
+
+__all__ = ["Waiting", "name_waiting", "stopped_by", "waiting_rows"]
+
+Kind: TypeAlias = Literal["material", "class"]
+
+_ROW = re.compile(r"\d+$")
+
+
+def _row(found: Finding) -> int:
+    """Return the row of a finding's cell, 0 where it has none."""
+    match = _ROW.search(found.cell)
+    return int(match[0]) if match else 0
+
+
+def stopped_by(validated: Validated) -> dict[int, list[Finding]]:
+    """Return the errors at other places that stop each row of Variants, by its row number."""
+    table, ledger = validated.table, validated.ledger
+    if table is None:
+        return {}
+    by_place: dict[tuple[str, int], list[Finding]] = defaultdict(list)
+    for found in ledger.findings:
+        if found.level == "error":
+            by_place[found.sheet, _row(found)].append(found)
+    headers = by_place[table.sheet, table.heading.row]
+    named = {place for places in ledger.sources.values() for place in places}
+    own = {(table.sheet, row) for row in table.frame["row"]}
+    of_rows = named | own
+    general = [found for place, group in by_place.items() if place not in of_rows for found in group]
+    stops: dict[int, list[Finding]] = {}
+    for row, material, tolerance_class in table.frame.select("row", "material", "tolerance_class").iter_rows():
+        owners = (("material", plain(material or "")), ("class", plain(tolerance_class or "standard")))
+        errors = [one for owner in owners for place in ledger.sources.get(owner, ()) for one in by_place[place]]
+        errors += general if ledger.everything else [one for one in headers if (row, one.column) in table.faulty]
+        stops[row] = list(dict.fromkeys(errors))
+    return stops
+
+
+@dataclass(frozen=True, kw_only=True)
+class Waiting:
+    """Rows of Variants that wait for a faulty material or class; `places` are the sheets and rows of its faults."""
+
+    kind: str
+    name: str
+    rows: Sequence[int]
+    places: Sequence[tuple[str, int]]
+
+
+def waiting_rows(validated: Validated) -> list[Waiting]:
+    """Return which rows of Variants wait for which faulty material or class, in the order of the rows."""
+    table, sources = validated.table, validated.ledger.sources
+    if table is None or not sources:
+        return []
+    rows: dict[tuple[Kind, str], list[int]] = defaultdict(list)
+    names: dict[tuple[Kind, str], str] = {}
+    for row, material, tolerance_class in table.frame.select("row", "material", "tolerance_class").iter_rows():
+        owned: tuple[tuple[Kind, str], ...] = (("material", material or ""), ("class", tolerance_class or "standard"))
+        for kind, name in owned:
+            owner = (kind, plain(name))
+            if owner in sources:
+                rows[owner].append(row)
+                names.setdefault(owner, name)
+    return [Waiting(kind=one[0], name=names[one], rows=rows[one], places=sources[one]) for one in rows]
+
+
+def name_waiting(validated: Validated) -> None:
+    """Add to each error in a material or class, and to one that stops everything, which rows of Variants wait."""
+    ledger, table = validated.ledger, validated.table
+    if table is None:
+        return
+    sheet = shown(table.sheet)
+    sentences: dict[tuple[str, int], str] = {}
+    for one in waiting_rows(validated):
+        wait = f"{_rows_words(one.rows)} of {sheet} wait{'s' if len(one.rows) == 1 else ''}"
+        sentences |= dict.fromkeys(one.places, f" {wait} for {one.kind} {shown(one.name)}.")
+    every = f" All rows of {sheet} wait for it." if ledger.everything and not table.frame.is_empty() else ""
+    ledger.findings = [
+        replace(found, message=found.message + sentences.get((found.sheet, _row(found)), every))
+        if found.level == "error" and found.cell and found.sheet != table.sheet
+        else found
+        for found in ledger.findings
+    ]
+
+
+def _rows_words(rows: Sequence[int], most: int = 5) -> str:
+    """Return rows with runs drawn together.
+
+    >>> _rows_words([2, 3, 4, 7]), _rows_words([2])
+    ('Rows 2 to 4, 7', 'Row 2')
+    """
+    spans: list[list[int]] = []
+    for row in rows:
+        if spans and row == spans[-1][1] + 1:
+            spans[-1][1] = row
+        else:
+            spans.append([row, row])
+    words = [f"{first}" if first == last else f"{first} to {last}" for first, last in spans[:most]]
+    more = f" and {len(spans) - most} more" if len(spans) > most else ""
+    return f"Row{'' if len(rows) == 1 else 's'} {', '.join(words)}{more}"

@@ -1,0 +1,110 @@
+"""Which sheets of a submission are its entry sheets: by their names, else by their headers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flexlash.reading.raw import RawSheet, Submission
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.reading.refusal import Refusal
+from flexlash.schema.columns import ENTRY_SHEETS, columns_of
+from flexlash.schema.spellings import closest, plain
+from flexlash.validation.headers import count_headings
+from flexlash.validation.ledger import Ledger
+
+__all__ = ["entry_sheets", "sheet_names", "tell_other_names", "tell_second_tables"]
+
+_RESEMBLING = 0.75
+"""Likeness of names from which on a sheet with headers of a missing one is taken for it."""
+
+_TELLING = 4
+"""Headers by which a sheet is recognised whatever its name."""
+
+_LISTED = 5
+
+
+def entry_sheets(submission: Submission, limits: ReadingLimits) -> dict[str, RawSheet]:
+    """Return the entry sheets by schema: by name, letter case and spaces apart, else the only one with its headers.
+
+    Raises Refusal when there is no Variants sheet, two of one name, or more in one than a submission can mean.
+    """
+    names: dict[str, str] = {}
+    for name in submission.sheets:
+        if plain(name) in names and plain(name) in map(plain, ENTRY_SHEETS):
+            raise Refusal("E117", found=name, other=names[plain(name)])
+        names[plain(name)] = name
+    found = {schema: submission.sheets[name] for schema, name in sheet_names(submission).items()}
+    if "Variants" not in found:
+        raise _without_variants(submission)
+    if submission.kind == "workbook":
+        for sheet in found.values():
+            limits.require("rows", len(sheet.rows))
+            limits.require("columns", max((max(cells) for cells in sheet.rows.values()), default=0))
+    return found
+
+
+def sheet_names(submission: Submission) -> dict[str, str]:
+    """Return the name of each entry sheet that a submission has, by schema, in the order of the template."""
+    names = {plain(name): name for name in submission.sheets}
+    found = {schema: names[plain(schema)] for schema in ENTRY_SHEETS if plain(schema) in names}
+    for schema in ENTRY_SHEETS.keys() - found.keys():
+        meant = [name for name in _meant(submission, schema) if name not in found.values()]
+        if len(meant) == 1:
+            found[schema] = meant[0]
+    return {schema: found[schema] for schema in ENTRY_SHEETS if schema in found}
+
+
+def _without_variants(submission: Submission) -> Refusal:
+    """Return the refusal of a file without Variants; it names the sheets that were probably meant."""
+    names = list(submission.sheets)
+    listed = f"the sheets {', '.join(names[:_LISTED])}" if names else "no sheet"
+    if meant := _meant(submission, "Variants"):
+        return Refusal("E127", sheet=meant[0], **_several(meant, "Variants"))
+    return Refusal("E108", found=listed, suggestion=closest("Variants", names))
+
+
+def _several(names: list[str], schema: str) -> dict[str, Any]:
+    """Return what the message says of sheets that may all be meant."""
+    return {"found": ", ".join(names[:_LISTED]), "other": schema}
+
+
+def _meant(submission: Submission, schema: str) -> list[str]:
+    """Return the sheets of other names that hold nearly all of a schema's headers, or some and a like name."""
+    if submission.kind != "workbook":
+        return []
+    others = [name for name in submission.sheets if plain(name) not in map(plain, ENTRY_SHEETS)]
+    counts = {name: count_headings(submission.sheets[name], schema) for name in others}
+    telling = min(_TELLING, len(columns_of(schema)))
+    sure = [name for name in others if counts[name] >= telling]
+    like = closest(schema, [name for name in others if counts[name] > 1], _RESEMBLING)
+    return sure or [like] * bool(like)
+
+
+def tell_other_names(submission: Submission, present: dict[str, RawSheet], ledger: Ledger) -> set[str]:
+    """Tell sheets that were read under another name, and several that may be meant; return the schemas of the latter.
+
+    No built-in table may take the place of a sheet that is there twice.
+    """
+    for schema, sheet in present.items():
+        if submission.kind == "workbook" and plain(sheet.name) != plain(schema):
+            ledger.add("I520", sheet=sheet.name, value=sheet.name, other=schema)
+    found = set()
+    for schema in ENTRY_SHEETS.keys() - present.keys():
+        read = {sheet.name for sheet in present.values()}
+        if meant := [name for name in _meant(submission, schema) if name not in read]:
+            ledger.add("E127", sheet=meant[0], **_several(meant, schema))
+            ledger.everything = True
+            found.add(schema)
+    return found
+
+
+def tell_second_tables(submission: Submission, present: dict[str, RawSheet], ledger: Ledger) -> None:
+    """Warn of sheets that hold the table of an entry sheet once more, such as the copy `Variants (2)`."""
+    read = {sheet.name for sheet in present.values()}
+    for name, sheet in submission.sheets.items():
+        if name in read or submission.kind != "workbook":
+            continue
+        for schema in present:
+            if count_headings(sheet, schema) >= min(_TELLING, len(columns_of(schema))):
+                ledger.add("W428", sheet=name, cell=f"A{min(sheet.rows)}", other=schema)
+                break

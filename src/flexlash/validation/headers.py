@@ -1,0 +1,241 @@
+"""Header cells → columns of the schema: by label or key, in any order, with the unit in brackets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from flexlash.reading.read import ErrorCell, RawSheet, RawValue, Unstored, column_letters
+from flexlash.schema.columns import Column, columns_of
+from flexlash.schema.findings import shown
+from flexlash.schema.header_names import BLANK, LAST_HEADER_ROW, known_names, name_and_unit
+from flexlash.schema.spellings import closest, misspelt, plain
+from flexlash.schema.units import Unit, find_unit
+from flexlash.validation.ledger import Ledger
+from flexlash.validation.likely_headers import likely_headers
+from flexlash.validation.other_headers import radius_of_diameter, tolerance_columns
+
+__all__ = ["STATUS_HEADER", "Heading", "closest", "count_headings", "find_headings", "plain"]
+
+STATUS_HEADER = "Row status"
+"""Header of the template's own formula column, which is never data."""
+
+_OF_TOLERANCES = frozenset({"tolerance_class", "lower_deviation", "upper_deviation", "deviation_unit", "limits_sigma"})
+"""Columns of the template whose names speak of tolerances themselves."""
+
+
+@dataclass(kw_only=True)
+class Heading:
+    """The columns found in a sheet: place and factor to the printed unit by key, extra headers by place.
+
+    `doubtful` are the places of headers that cannot be taken and the key that was probably meant, `diameters` those of
+    them that hold twice what is meant; `ignored` those of the template's own formulas.
+    """
+
+    row: int
+    places: dict[str, int] = field(default_factory=dict)
+    factors: dict[str, float] = field(default_factory=dict)
+    extra: dict[int, str] = field(default_factory=dict)
+    doubtful: dict[int, str] = field(default_factory=dict)
+    diameters: set[int] = field(default_factory=set)
+    ignored: set[int] = field(default_factory=set)
+
+
+def _as_header(cell: RawValue) -> str:
+    """Return a header cell as a text, whatever it holds."""
+    if isinstance(cell, ErrorCell):
+        return cell.text
+    if isinstance(cell, Unstored):
+        return "(formula without a result)"
+    return cell if isinstance(cell, str) else shown(cell)
+
+
+def _filled(sheet: RawSheet, header: int) -> set[int]:
+    """Return the places that hold anything below the header row."""
+    return {
+        place
+        for row, cells in sheet.rows.items()
+        if row > header
+        for place, value in cells.items()
+        if not (isinstance(value, str) and not value.strip(BLANK))
+    }
+
+
+class _Unknown(NamedTuple):
+    """The columns that an unknown header may mean, or else what of the scatter it seems to tell."""
+
+    keys: Sequence[str]
+    scatter: str = ""
+
+
+def find_headings(sheet: RawSheet, schema: str, ledger: Ledger) -> Heading | None:
+    """Return the columns of a sheet, or None (with a finding) when it has no header row."""
+    return _Recogniser(sheet, schema, ledger).recognise()
+
+
+def count_headings(sheet: RawSheet, schema: str) -> int:
+    """Return how many headers of a schema stand in one of a sheet's first rows."""
+    return max(_Recogniser(sheet, schema, Ledger("")).known_by_row().values(), default=0)
+
+
+class _Recogniser:
+    """Recognises the header row of one sheet."""
+
+    def __init__(self, sheet: RawSheet, schema: str, ledger: Ledger) -> None:
+        self.sheet = sheet
+        self.ledger = ledger
+        self.columns = columns_of(schema)
+        self.spellings = known_names(self.columns)
+        self._filled: set[int] = set()
+
+    def recognise(self) -> Heading | None:
+        """Return the headings of the row, within the first fifteen, that has most of them."""
+        known = self.known_by_row()
+        best = max(known, key=lambda number: known[number], default=0)
+        if not known or known[best] < min(2, len(self.columns)):
+            self.ledger.add("E109", sheet=self.sheet.name, cell="A1")
+            self.ledger.everything = True
+            return None
+        heading = Heading(row=best)
+        headers = {place: _as_header(cell) for place, cell in self.sheet.rows[best].items()}
+        heading.ignored |= {place for place, header in headers.items() if plain(header) == plain(STATUS_HEADER)}
+        headers = {place: text for place, text in headers.items() if text.strip() and place not in heading.ignored}
+        self._filled = _filled(self.sheet, best)
+        unknown = self._unknown(heading, headers)
+        for place, header in headers.items():
+            self._place(heading, place, header, unknown.get(place))
+        self._require(heading, max(self.sheet.rows[best]) + 1)
+        return heading
+
+    def known_by_row(self) -> dict[int, int]:
+        """Return how many columns each of the first rows names; a header that stands there twice counts once."""
+        rows = {number: cells for number, cells in self.sheet.rows.items() if number <= LAST_HEADER_ROW}
+        return {number: len(set(map(self._known, cells.values())) - {None}) for number, cells in rows.items()}
+
+    def _known(self, cell: RawValue) -> str | None:
+        """Return the column that a cell names as its header, None for another."""
+        return self.spellings.get(plain(name_and_unit(cell)[0])) if isinstance(cell, str) else None
+
+    def _require(self, heading: Heading, next_place: int) -> None:
+        """Tell which required columns are missing, at the cell where they could be added."""
+        for key, column in self.columns.items():
+            if not column.required or key in heading.places:
+                continue
+            self.ledger.everything = True
+            if key not in heading.doubtful.values():
+                address = f"{column_letters(next_place)}{heading.row}"
+                facts: dict[str, Any] = {"column": key, "name": column.name, "label": column.label}
+                self.ledger.add("E111", sheet=self.sheet.name, cell=address, **facts)
+
+    def _unknown(self, heading: Heading, headers: Mapping[int, str]) -> dict[int, _Unknown]:
+        """Return what each unknown header may mean."""
+        split = {place: name_and_unit(header) for place, header in headers.items()}
+        present = {self.spellings[plain(name)] for name, _ in split.values() if plain(name) in self.spellings}
+        unknown = {place: one for place, one in split.items() if plain(one[0]) not in self.spellings}
+        is_variants = "mean_radius_mm" in self.columns
+        diameters = {place: radius_of_diameter(name, present) for place, (name, _) in unknown.items() if is_variants}
+        scatter = {} if "setting" in self.columns or "source" in self.columns else tolerance_columns(unknown)
+        names = {place: name for place, (name, _) in split.items() if not diameters.get(place)}
+        likely = likely_headers(names, self.columns, self.spellings)
+        found = {}
+        for place in unknown:
+            diameter, keys = diameters.get(place), likely.get(place, [])
+            is_needed = any(self.columns[key].required and key not in present for key in keys)
+            if diameter:
+                heading.diameters |= {place} if "radius" in diameter else set()
+                found[place] = _Unknown([diameter])
+            elif place in scatter and place in self._filled and not is_needed and not _OF_TOLERANCES.intersection(keys):
+                found[place] = _Unknown([], scatter[place])
+            else:
+                found[place] = _Unknown(keys)
+        return found
+
+    def _place(self, heading: Heading, place: int, header: str, unknown: _Unknown | None) -> None:
+        """Recognise one header cell, or say what is wrong with it; `unknown` is what it may mean else."""
+        name, unit_text = name_and_unit(header)
+        meant = unknown.keys if unknown else [self.spellings[plain(name)]]
+        address = f"{column_letters(place)}{heading.row}"
+        facts: dict[str, Any] = {"sheet": self.sheet.name, "cell": address, "value": header.strip()}
+        if not meant:
+            heading.extra[place] = header.strip()
+            scatter = unknown.scatter if unknown else ""
+            self.ledger.add("W434" if scatter else "I502", detail=scatter, **facts)
+            return
+        column = self.columns[meant[0]]
+        facts |= {
+            "column": column.key,
+            "name": column.name,
+            "label": column.label,
+            "unit": column.unit or "the unit that Deviation unit names",
+        }
+        if unknown:
+            heading.doubtful[place] = column.key
+            self._tell_unknown(heading, place, meant, facts)
+            return
+        unit = _unit(column, unit_text, by_key=plain(name) == plain(column.key))
+        if column.key in heading.places:
+            self._tell_twice(heading, place, facts)
+        elif unit is None and unit_text is not None and column.is_number:
+            heading.doubtful[place] = column.key
+            self.ledger.add(self._error_if_filled("E113", place, column), suggestion=column.label, **facts)
+        else:
+            heading.places[column.key] = place
+            heading.factors[column.key] = unit.si / column.si_unit.si if unit else 1.0
+            self._tell_unit(column, unit, facts, unit_text)
+
+    def _tell_unknown(self, heading: Heading, place: int, keys: Sequence[str], facts: Mapping[str, Any]) -> None:
+        """Tell which columns a header probably means: by half its values, or under another header."""
+        name, unit_text = name_and_unit(facts["value"])
+        columns = [self.columns[key] for key in keys]
+        labels = [_label(column, unit_text) for column in columns]
+        if place in heading.diameters:
+            bore = (
+                f", or the bore under {self.columns['bore_diameter_mm'].label}" if keys[0] == "mean_radius_mm" else ""
+            )
+            self.ledger.add("E128", **{**facts, "label": labels[0], "detail": bore})
+            return
+        unit = _unit(columns[0], unit_text, by_key=False)
+        is_known = unit is not None or columns[0].unit in {"", "-"}
+        sure = misspelt(name, self.spellings) == keys[0] and is_known and len(labels) == 1
+        meant = {"label": " or ".join(labels), "name": " or ".join(column.name for column in columns)}
+        code = self._error_if_filled("E112", place, columns[0])
+        self.ledger.add(code, suggestion=meant["label"], repair=labels[0] if sure else None, **{**facts, **meant})
+
+    def _tell_twice(self, heading: Heading, place: int, facts: Mapping[str, Any]) -> None:
+        """Tell that a column stands twice; an empty second one does no harm."""
+        key = facts["column"]
+        other = column_letters(heading.places[key])
+        if place not in self._filled:
+            heading.ignored.add(place)
+            self.ledger.add("W436", other=other, **facts)
+            return
+        heading.doubtful[place] = key
+        self.ledger.add("E114", other=other, **facts)
+        self.ledger.everything = True
+
+    def _error_if_filled(self, code: str, place: int, column: Column) -> str:
+        """Return the code of an error, or of a warning where nothing is lost: no value, and no column that must be."""
+        return code if place in self._filled or column.required else "W435"
+
+    def _tell_unit(self, column: Column, unit: Unit | None, facts: dict[str, Any], text: str | None) -> None:
+        """Tell a unit that was assumed or converted."""
+        if unit is None and column.unit not in {"", "-"}:
+            self.ledger.add("I503", **facts)
+        elif unit and unit != column.si_unit:
+            self.ledger.add("I501", **facts | {"value": text})
+
+
+def _label(column: Column, unit_text: str | None) -> str:
+    """Return a column's header, in the unit of another header where that fits."""
+    unit = _unit(column, unit_text, by_key=False)
+    return f"{column.name} [{unit_text}]" if unit and unit != column.si_unit else column.label
+
+
+def _unit(column: Column, text: str | None, *, by_key: bool) -> Unit | None:
+    """Return the unit that a header names: in brackets, or at the end of its key."""
+    if not column.unit:
+        return None
+    if text is None:
+        return column.si_unit if by_key else None
+    return find_unit(text, column.quantity)

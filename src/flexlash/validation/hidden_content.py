@@ -1,0 +1,102 @@
+"""What is easily overlooked in a filled sheet: merged cells, hidden rows or sheets, a row far away, split numbers."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator
+from itertools import pairwise
+
+from flexlash.reading.raw import RawSheet, column_letters
+from flexlash.schema.columns import columns_of
+from flexlash.validation.ledger import Ledger
+from flexlash.validation.typed_columns import Table
+
+__all__ = ["tell_overlooked"]
+
+_EMPTY_ROWS = 60
+"""So many empty rows between two rows fill more than a screen: who scrolls does not see both."""
+
+_DIGITS = re.compile(r"\d{1,3}", re.ASCII)
+_REMARKS = frozenset(("notes", "source"))
+"""Columns whose text may well be merged over the rows that it is about."""
+
+
+def tell_overlooked(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
+    """Tell what an engineer may not see in the rows of an entry sheet; cells under a merged area are errors."""
+    rows = sorted(table.cells)
+    if sheet.hidden and rows:
+        ledger.add("W426", sheet=sheet.name, cell="A1", value=len(rows))
+    for row, place, area in _covered(sheet, table, rows):
+        _blame_covered(table, ledger, row, place, area)
+    for first, last in _runs(rows, sheet.hidden_rows):
+        words = f"row {first} is" if first == last else f"rows {first} to {last} are"
+        ledger.add("W425", sheet=sheet.name, cell=f"{_first_letter(table)}{first}", detail=words)
+    for above, row in pairwise(rows):
+        if row - above > _EMPTY_ROWS:
+            cell = f"{_first_letter(table)}{row}"
+            ledger.add("W427", sheet=sheet.name, cell=cell, detail=row - above - 1, other=above)
+    _tell_digits(sheet, table, ledger)
+
+
+def _tell_digits(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
+    """Warn of remarks that are nothing but short digits, as where decimal commas have split numbers."""
+    for key in sorted(_REMARKS & table.heading.places.keys()) if sheet.manner and sheet.manner.delimiter == "," else ():
+        filled = table.frame.select("row", key).drop_nulls().rows()
+        if filled and all(_DIGITS.fullmatch(text) for _, text in filled):
+            row, text = filled[0]
+            name = columns_of(table.schema)[key].name
+            ledger.add("W430", sheet=sheet.name, cell=table.address(row, key), column=key, name=name, value=text)
+
+
+def _first_letter(table: Table) -> str:
+    """Return the letters of the column that names a row."""
+    first = next(iter(columns_of(table.schema)))
+    return column_letters(table.heading.places.get(first, 1))
+
+
+def _covered(sheet: RawSheet, table: Table, rows: list[int]) -> Iterator[tuple[int, int, str]]:
+    """Yield row, place and area of every cell of a column that is read but lies under another cell."""
+    judged = dict.fromkeys(table.heading.places.values(), 0)
+    for top, left, bottom, right in sorted(sheet.merged):
+        last = bisect_right(rows, bottom)
+        shown = sheet.rows.get(top, {}).get(left) is not None
+        for place in judged if bisect_left(rows, top) < last else ():
+            # Areas that overlap, which only a faulty program writes, would cost their number times the rows.
+            first = bisect_left(rows, max(top, judged[place] + 1)) if left <= place <= right else last
+            for row in rows[first:last]:
+                hides = place in table.cells[row]
+                if (row, place) != (top, left) and (shown or hides):
+                    yield row, place, f"{column_letters(left)}{top}:{column_letters(right)}{bottom}"
+                judged[place] = row
+
+
+def _blame_covered(table: Table, ledger: Ledger, row: int, place: int, area: str) -> None:
+    """Record that a cell lies under a merged area, unless it holds a remark or has a finding already."""
+    (key,) = (key for key, own in table.heading.places.items() if own == place)
+    if key in _REMARKS or (row, key) in table.faulty:
+        return
+    column = columns_of(table.schema)[key]
+    table.faulty.add((row, key))
+    ledger.add(
+        "E214",
+        sheet=table.sheet,
+        cell=table.address(row, key),
+        column=key,
+        name=column.name,
+        value=table.entered(row, key),
+        requirement=column.requirement,
+        other=area,
+        rows=[row] if table.schema == "Variants" else [],
+    )
+
+
+def _runs(rows: list[int], hidden: frozenset[int]) -> Iterator[tuple[int, int]]:
+    """Yield first and last of each run of hidden rows with data."""
+    run: list[int] = []
+    for row in [*rows, 0]:
+        if row in hidden:
+            run.append(row)
+        elif run:
+            yield run[0], run[-1]
+            run = []

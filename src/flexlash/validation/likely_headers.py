@@ -1,0 +1,133 @@
+"""Which columns the unknown headers of a sheet may mean: required ones that are missing first."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Mapping
+
+from flexlash.schema.column import Column
+from flexlash.schema.spellings import likeness, plain, words
+
+__all__ = ["likely_headers"]
+
+_RESEMBLING = 0.85
+"""Likeness from which on an unknown header is taken for a misspelt one."""
+
+_MISSING = 0.7
+"""The same where a required column is missing, so that some header must mean it."""
+
+_EQUALLY = 0.05
+"""Difference of likeness within which two columns are meant alike."""
+
+_RADII = ("mean_radius_mm", "bore_diameter_mm")
+"""Columns of which one is required."""
+
+_CALLED = {
+    "variant": "variante name bezeichnung nom nome part partname version design",
+    "flexspline_type": "flexsplineshape bauform",
+    "material": "werkstoff matériau materiau matière materiale steel steelgrade stahl",
+    "torque_Nm": "drehmoment moment couple coppia load loadtorque outputtorque peaktorque torsionalmoment",
+    "cylinder_length_mm": "länge laenge zylinderlänge zylinderlaenge longueur lunghezza cuplength cupdepth depth l "
+    "flexsplinelength walllength barrellength insidedepth height cupheight höhe tiefe bechertiefe",
+    "mean_radius_mm": "mittlererradius rayon rayonmoyen raggio raggiomedio midradius middleradius middlesurfaceradius "
+    "neutralradius neutrallineradius nominalradius cylinderradius flexsplineradius cupradius meanr r",
+    "bore_diameter_mm": "innendurchmesser bohrungsdurchmesser bohrung innerdiameter insidediameter bore borediam "
+    "boredia alésage flexsplinebore",
+    "wall_thickness_mm": "wanddicke wandstärke wandstaerke wallthk s épaisseur epaisseur spessore cupthickness "
+    "shellthickness cylinderthickness cupwall cylinderwall",
+    "disk_thickness_mm": "bottomthickness diaphragmthickness basethickness bodendicke membrandicke scheibendicke "
+    "flangethickness",
+    "disk_inner_radius_mm": "innenradius nabenradius innerradius rayonintérieur raggiointerno hubradius hubr hubrad "
+    "rhub innerr radiusathub radiusofhub hubouterradius innerradiusofdisk innerdiskradius discinnerradius bossradius "
+    "clampingradius clampradius diskinnerr diaphragminnerradius",
+    "disk_outer_radius_mm": "boltcircleradius flangeradius flangeouterradius lochkreisradius outerradiusofdisk "
+    "outerdiskradius",
+    "disk_hub_thickness_mm": "hubthickness thicknessathub nabendicke",
+    "hub_fillet_radius_mm": "hubfillet filletathub",
+    "junction_fillet_radius_mm": "junctionfillet cornerradius cornerfillet innercornerradius",
+    "rim_length_mm": "toothrimwidth rimwidth",
+    "rated_torque_Nm": "nenndrehmoment nominaltorque ratedload",
+    "backlash_limit_arcmin": "maxbacklash backlashmax allowablebacklash permissiblebacklash backlashspec spielgrenze "
+    "zulässigesspiel",
+    "tolerance_class": "toleranzklasse classedetolérance tolclass",
+    "lower_deviation": "lower unteresabmaß unteresabmass untereabweichung lowertolerance minus",
+    "upper_deviation": "upper oberesabmaß oberesabmass obereabweichung uppertolerance plus",
+    "youngs_modulus_GPa": "emodul elastizitätsmodul elasticmodulus youngmodulus modulusofelasticity e",
+    "poisson_ratio": "querkontraktionszahl poissonzahl poisson nu ν",
+    "shear_modulus_GPa": "schubmodul gmodul modulusofrigidity g",
+    "yield_MPa": "streckgrenze yieldstress yield rp02 re",
+}
+"""What engineers call the columns, in English, German, French and Italian; whole names in plain spelling."""
+
+
+def likely_headers(
+    names: Mapping[int, str], columns: Mapping[str, Column], spellings: Mapping[str, str]
+) -> dict[int, list[str]]:
+    """Return the keys that each unknown header may mean, by its place; more than one where they are as near.
+
+    `names` are the headers of a row without their units, `spellings` the keys by every spelling that is known.
+    """
+    present = {spellings[plain(name)] for name in names.values() if plain(name) in spellings}
+    unknown = {place: name for place, name in names.items() if plain(name) not in spellings}
+    alike = {place: _likenesses(name, spellings) for place, name in unknown.items()}
+    absent = columns.keys() - present - (set() if present.isdisjoint(_RADII) else set(_RADII))
+    called = _called(unknown, absent)
+    missing = _missing(columns, present | {*called.values()})
+    pairs = sorted(
+        (-_nearness(name, key, columns[key], spellings), place, key)
+        for place, name in unknown.items()
+        for key in missing
+        if place not in called
+    )
+    rivals = Counter((opposite, place) for opposite, place, _ in pairs)
+    found = {place: [key] for place, key in called.items()}
+    for opposite, place, key in pairs:
+        if -opposite < max(_MISSING, *alike[place].values()) or place in found or rivals[opposite, place] > 1:
+            continue
+        if [key] not in found.values():
+            found[place] = [key]
+    return {place: _resembling(alike[place], present) for place in unknown} | found
+
+
+def _called(unknown: Mapping[int, str], absent: Collection[str]) -> dict[int, str]:
+    """Return the absent column that each header names in other words, by its place; the first header of two."""
+    spelt = {name: key for key, names in _CALLED.items() if key in absent for name in map(plain, names.split())}
+    found: dict[int, str] = {}
+    for place, name in unknown.items():
+        key = spelt.get(plain(name)) or spelt.get(plain(" ".join(words(name))))
+        if key and key not in found.values():
+            found[place] = key
+    return found
+
+
+def _missing(columns: Mapping[str, Column], present: set[str]) -> list[str]:
+    """Return the columns that a sheet needs and lacks."""
+    needed = [key for key, column in columns.items() if column.required]
+    if _RADII[0] in columns:
+        needed += [_RADII[0]] if present.isdisjoint(_RADII) else []
+        needed.append("disk_inner_radius_mm")
+    return [key for key in needed if key not in present]
+
+
+def _nearness(name: str, key: str, column: Column, spellings: Mapping[str, str]) -> float:
+    """Return how near a header is to a column that is missing: 1 for a word of it."""
+    wanted = plain(" ".join(words(name)))
+    known = [spelling for spelling, meant in spellings.items() if meant == key]
+    if key != "disk_inner_radius_mm":
+        known += [word for word in words(column.plain_name) if len(word) > 3]  # noqa: PLR2004
+    return max(likeness(wanted, spelling) for spelling in known)
+
+
+def _likenesses(name: str, spellings: Mapping[str, str]) -> dict[str, float]:
+    """Return how like a header is to each column by its letters."""
+    found: dict[str, float] = {}
+    for spelling, key in spellings.items():
+        found[key] = max(found.get(key, 0.0), likeness(plain(name), spelling))
+    return found
+
+
+def _resembling(alike: Mapping[str, float], present: set[str]) -> list[str]:
+    """Return the one or two columns that a header resembles about equally; those that the sheet has come last."""
+    best = max(alike.values(), default=0.0)
+    keys = [key for key, likeness in alike.items() if best >= _RESEMBLING and likeness > best - _EQUALLY]
+    return sorted([key for key in keys if key not in present] or keys, key=lambda key: -alike[key])[:2]

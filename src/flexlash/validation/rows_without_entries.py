@@ -1,0 +1,103 @@
+"""Rows in a table that are no entries of it: totals and means, notes, legends; and entries that nothing but name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from flexlash.reading.raw import RawValue
+from flexlash.schema.columns import columns_of
+from flexlash.schema.header_names import BLANK
+from flexlash.schema.spellings import plain
+from flexlash.validation.headers import Heading
+
+__all__ = ["NoEntries", "NoEntry"]
+
+_SUMMARIES = (
+    "total totals sum sums subtotal grandtotal mean means average avg median min max minimum maximum range count std "
+    "stdev stddev sd sigma standarddeviation deviation variance summe gesamt gesamtsumme mittelwert mittel "
+    "durchschnitt anzahl standardabweichung somme moyenne totale media somma ø σ ∑"
+)
+_TOTALS = frozenset(_SUMMARIES.split())
+_NOTES = (
+    "notes? remarks? comments? legend key source prepared created checked approved author date revision rev see "
+    "hinweise? bemerkung(?:en)? anmerkung(?:en)? legende quelle erstellt geprüft bearbeiter datum stand end"
+)
+_REMARK = re.compile(rf"(?:{_NOTES.replace(' ', '|')})\b", re.IGNORECASE)
+_MARKS = ("*", "†", "‡", "#", "//", "©", "→", "—", "–")
+_LONGEST = 40
+"""Characters of a text within which a total is named."""
+
+_SENTENCE = 4
+"""Words from which on a text in the column of names reads like a sentence."""
+
+
+class NoEntry(NamedTuple):
+    """Why a row is no entry: its code, what it looks like, and the place and value of the cell that says so."""
+
+    code: str
+    detail: str
+    place: int
+    value: RawValue
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What a finding says of the row."""
+        return {"value": self.value, "detail": self.detail}
+
+
+class NoEntries:
+    """Tells the rows of a table that are no entries of it."""
+
+    def __init__(self, schema: str, heading: Heading) -> None:
+        columns = columns_of(schema)
+        first, *others = columns
+        places = heading.places
+        self.schema = schema
+        self.first = places.get(first)
+        self.texts = {
+            places[key] for key in others if key in places and columns[key].required and not columns[key].is_number
+        }
+        self.numbers = {places[key] for key in others if key in places and columns[key].is_number}
+        self.others = {places[key] for key in others if key in places}
+
+    def of(self, cells: Mapping[int, RawValue], *, apart: bool) -> NoEntry | None:
+        """Return why a row is no entry, or None; `cells` are those under a header.
+
+        A total lacks the texts that every entry needs, a remark has no number. `apart` says that an empty row stands
+        between it and the entries. A variant without anything in a column of numbers is an error, told once.
+        """
+        place, value = next(iter(cells.items()))
+        if not isinstance(value, str):
+            return None
+        others = self.texts - {place}
+        if self.texts and others.isdisjoint(cells) and self._is_total(place, value):
+            return NoEntry("W433", "a total or a mean", place, value)
+        if not others.isdisjoint(cells) and not self.numbers.isdisjoint(cells):
+            return None
+        if place != self.first or any(_has_digits(cells[number]) for number in self.numbers & cells.keys()):
+            return None
+        is_alone = self.others.isdisjoint(cells)
+        is_note = _begins_like_a_note(value) and self.texts.isdisjoint(cells)
+        # A material may have a name of many words; without constants it is told as one that lacks them.
+        reads_like_one = self.schema != "Materials" and len(value.split()) >= _SENTENCE
+        if is_note or (is_alone and (apart or reads_like_one)):
+            return NoEntry("W433", "a remark", place, value)
+        is_bare = self.schema == "Variants" and self.numbers.isdisjoint(cells)
+        return NoEntry("E217", "", place, value) if is_bare else None
+
+    def _is_total(self, place: int, value: str) -> bool:
+        """Whether the first text of a row, as its name or instead of one, is that of a total."""
+        return place in self.texts | {self.first} and plain(value[:_LONGEST]).replace(".", "").strip(":=()") in _TOTALS
+
+
+def _has_digits(value: RawValue) -> bool:
+    """Whether a cell holds a number, or a text with one."""
+    return any(map(str.isdigit, str(value)))
+
+
+def _begins_like_a_note(text: str) -> bool:
+    """Whether a text in the column of names is a note rather than a name."""
+    bare = text.strip(BLANK)
+    return bool(_REMARK.match(bare.lstrip("(["))) or bare.startswith(_MARKS) or bare.endswith(":")

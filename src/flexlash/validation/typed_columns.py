@@ -1,0 +1,280 @@
+"""A raw sheet → a table: typed columns in a frame, each row with the row number that its user sees."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import polars as pl
+
+from flexlash.reading.raw import Percentage, RawSheet, RawValue, Unstored, column_letters
+from flexlash.schema.columns import DIMENSIONS, Column, columns_of
+from flexlash.schema.findings import cell_ranges
+from flexlash.schema.header_names import BLANK
+from flexlash.schema.units import find_unit
+from flexlash.validation.cell_values import Fault, as_number, as_text
+from flexlash.validation.headers import Heading, find_headings, plain
+from flexlash.validation.ledger import Ledger
+from flexlash.validation.number_texts import Measure
+from flexlash.validation.rows_without_entries import NoEntries, NoEntry
+from flexlash.validation.units_row import take_units_row
+
+__all__ = ["Table", "tabulate"]
+
+_MEANT_BESIDE = "setting"
+"""First column of Settings, where the template explains each setting in a column without a header."""
+
+_JUDGED_LATER = ("Settings", "value")
+"""The cell whose meaning depends on the cell beside it."""
+
+_DEVIATIONS = frozenset({"lower_deviation", "upper_deviation"})
+_MANY = 100
+"""Rows of one name from which on each is told the range of all instead of its partners."""
+
+
+@dataclass(kw_only=True)
+class Table:
+    """Typed cells of an entry sheet in the template's units.
+
+    `frame` has the column `row` and one column per key of the schema, null where blank or unreadable;
+    `cells` are the raw cells by row and place; `faulty` holds (row, key) of cells that already have a finding.
+    """
+
+    sheet: str
+    schema: str
+    heading: Heading
+    frame: pl.DataFrame
+    cells: dict[int, dict[int, RawValue]] = field(default_factory=dict)
+    faulty: set[tuple[int, str]] = field(default_factory=set)
+    numbers_are_texts: bool = False
+
+    def entered(self, row: int, key: str) -> Any:
+        """Return a cell as the user entered it, an empty text where it is blank."""
+        return self.cells[row].get(self.heading.places.get(key, 0), "")
+
+    def address(self, row: int, key: str) -> str:
+        """Return a cell's address; a column that the sheet lacks stands at the row's first cell."""
+        return f"{column_letters(self.heading.places.get(key, 1))}{row}"
+
+    def partners(self, rows: Sequence[int], key: str) -> Iterator[tuple[int, str]]:
+        """Yield rows that hold the same entry, each with the addresses of the others; of many rows, those of all."""
+        every = cell_ranges([self.address(row, key) for row in rows])
+        for row in rows if len(rows) > 1 else ():
+            few = len(rows) <= _MANY
+            yield row, cell_ranges([self.address(other, key) for other in rows if other != row]) if few else every
+
+
+def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
+    """Return the typed table of an entry sheet, or None (with a finding) when it has no header row."""
+    heading = find_headings(sheet, schema, ledger)
+    if heading is None:
+        return None
+    columns = columns_of(schema)
+    units = take_units_row(sheet, heading, schema, ledger)
+    table = Table(
+        sheet=sheet.name,
+        schema=schema,
+        heading=heading,
+        frame=pl.DataFrame(),
+        numbers_are_texts=sheet.numbers_are_texts,
+    )
+    read = {place: columns[key] for key, place in heading.places.items()}
+    records: list[dict[str, Any]] = []
+    first_key = next(iter(columns))
+    for number, cells, bare in _entries(table, sheet, units, ledger):
+        record: dict[str, Any] = {"row": number}
+        if surplus := _surplus(sheet, heading, number):
+            _blame_surplus(table, number, surplus, sheet, ledger)
+        if bare:
+            table.faulty |= {(number, key) for key in columns}
+            where = {"sheet": sheet.name, "cell": table.address(number, first_key), "column": first_key}
+            ledger.add(bare.code, rows=[number], **where, **bare.facts)
+        for place, value in cells.items():
+            if surplus and place != heading.places.get(first_key):
+                continue
+            if place in read:
+                cell = _Cell(table=table, column=read[place], row=number, value=value, beside=cells)
+                record[read[place].key] = _typed(cell, ledger)
+            elif place in heading.doubtful:
+                _spoil(ledger, schema, number)
+                table.faulty.add((number, heading.doubtful[place]))
+        records.append(record)
+        table.cells[number] = cells
+    types = {key: pl.Float64 if column.is_number else pl.String for key, column in columns.items()}
+    table.frame = pl.DataFrame(records, schema={"row": pl.Int64, **types}, orient="row")
+    return table
+
+
+def _entries(
+    table: Table, sheet: RawSheet, units: int | None, ledger: Ledger
+) -> Iterator[tuple[int, dict[int, RawValue], NoEntry | None]]:
+    """Yield the rows of a table but that of units, each with why it is no entry after all; tell what is none at all."""
+    no_entries, last = NoEntries(table.schema, table.heading), table.heading.row
+    for number, cells in _data_rows(sheet, table.heading, next(iter(columns_of(table.schema))), ledger):
+        none = no_entries.of(cells, apart=number > last + 1) if number != units else None
+        if none and none.code[0] == "W":
+            ledger.add(none.code, sheet=sheet.name, cell=f"{column_letters(none.place)}{number}", **none.facts)
+            continue
+        last = number
+        if number != units:
+            yield number, cells, none
+
+
+def _surplus(sheet: RawSheet, heading: Heading, row: int) -> list[int]:
+    """Return the places of a delimited text's row that lie beyond the last header, blank ones where they may count."""
+    if sheet.manner is None:
+        return []
+    last = max(sheet.rows[heading.row])
+    found = [place for place, value in sheet.rows[row].items() if place > last and _as_shown(value)]
+    return found or ([last + 1] if row in sheet.manner.longer else [])
+
+
+def _blame_surplus(table: Table, row: int, surplus: list[int], sheet: RawSheet, ledger: Ledger) -> None:
+    """Record that a row has more cells than headers, so that nothing tells which value belongs to which."""
+    table.faulty |= {(row, key) for key in columns_of(table.schema)}
+    comma = sheet.manner is not None and sheet.manner.delimiter == ","
+    ledger.add(
+        "E215",
+        sheet=table.sheet,
+        cell=f"{column_letters(surplus[0])}{row}",
+        value=_as_shown(sheet.rows[row].get(surplus[0], "")),
+        detail="an unquoted decimal comma makes two cells of one" if comma else "a separator stands once too often",
+        rows=[row] if table.schema == "Variants" else [],
+    )
+
+
+def _spoil(ledger: Ledger, schema: str, row: int) -> None:
+    """Mark what a value under an unreadable header spoils."""
+    if schema == "Variants":
+        ledger.rows.add(row)
+    else:
+        ledger.everything = True
+
+
+def _data_rows(
+    sheet: RawSheet, heading: Heading, first_key: str, ledger: Ledger
+) -> Iterator[tuple[int, dict[int, RawValue]]]:
+    """Yield the rows below the header that hold data; a lone cell elsewhere than in the first column is none."""
+    named = {*heading.places.values(), *heading.extra, *heading.doubtful}
+    ours = {*heading.places.values(), *heading.doubtful}
+    first = heading.places.get(first_key)
+    nameless: dict[int, int] = {}
+    for number, every in sheet.rows.items():
+        if number <= heading.row:
+            continue
+        cells = {
+            place: value
+            for place, value in every.items()
+            if place not in heading.ignored
+            and not (isinstance(value, str) and not value.strip(BLANK))
+            and not (isinstance(value, Unstored) and place not in ours)
+        }
+        entered = {place: value for place, value in cells.items() if place in named}
+        if len(entered) > 1 or first in entered:
+            for place in cells.keys() - named - {*_surplus(sheet, heading, number)}:
+                nameless.setdefault(place, number)
+            yield number, entered
+        elif cells:
+            place, value = next(iter((entered or cells).items()))
+            address = f"{column_letters(place)}{number}"
+            ledger.add("W408", sheet=sheet.name, cell=address, value=_as_shown(value))
+    for place, number in sorted(nameless.items()) if first_key != _MEANT_BESIDE else ():
+        letters = column_letters(place)
+        ledger.add("I509", sheet=sheet.name, cell=f"{letters}{number}", value=letters)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Cell:
+    """A raw cell with its row and column; `beside` are the raw cells of its row."""
+
+    table: Table
+    column: Column
+    row: int
+    value: RawValue
+    beside: Mapping[int, RawValue]
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What a finding says of its place."""
+        column, table = self.column, self.table
+        address = table.address(self.row, column.key)
+        return {"sheet": table.sheet, "cell": address, "column": column.key, "name": column.name}
+
+    @property
+    def measure(self) -> Measure:
+        """What numbers of the cell stand for, by its header or, for a deviation, by the cells beside it."""
+        if self.column.key not in _DEVIATIONS:
+            return Measure.of(self.column, self.table.heading.factors[self.column.key])
+        places = self.table.heading.places
+        unit, dimension = (
+            str(self.beside.get(places.get(key, 0), "")).strip() for key in ("deviation_unit", "dimension")
+        )
+        if unit == "%":
+            return Measure(quantity="ratio", si=0.01)
+        column = DIMENSIONS.get(dimension.casefold())
+        if column is None or column.quantity == "ratio":
+            return Measure(quantity="", si=1.0, unit_is_open=not unit)
+        found = find_unit(unit, column.quantity) if unit else column.si_unit
+        if found is None:
+            return Measure(quantity="", si=1.0)
+        return Measure(quantity=column.quantity, si=found.si, unit_is_open=not unit)
+
+
+def _typed(cell: _Cell, ledger: Ledger) -> str | float | None:
+    """Return a cell's typed value; None, with a finding, when it has none."""
+    column, value = cell.column, cell.value
+    if (column.sheet, column.key) == _JUDGED_LATER:
+        return _as_shown(value)
+    found = (
+        as_number(value, column, from_text=cell.table.numbers_are_texts, measure=cell.measure)
+        if column.is_number
+        else as_text(value, _longest(column))
+    )
+    if isinstance(found, float):
+        factor = cell.table.heading.factors[column.key]
+        found = found if factor == 1 else _on_bound(column, found * factor)
+        found = found if math.isfinite(found) else Fault(code="E212", value=value)
+    if isinstance(found, Fault):
+        cell.table.faulty.add((cell.row, column.key))
+        rows = [cell.row] if cell.table.schema == "Variants" else []
+        meant = {"suggestion": found.suggestion, "repair": found.repair}
+        facts = {**meant, "requirement": column.requirement, **found.facts, **cell.facts}
+        ledger.add(found.code, value=found.value, rows=rows, **facts)
+        return None
+    if isinstance(found, float):
+        if isinstance(value, Percentage) and found != value:
+            ledger.add("I514", value=value.shown, detail=f"{found:.10g}", **cell.facts)
+        return found
+    entry = _choice(column, found)
+    if entry != found or (isinstance(value, str) and found != value):
+        ledger.add("I504", value=value, suggestion=entry, repair=entry, **cell.facts)
+    return entry or None
+
+
+def _on_bound(column: Column, value: float) -> float:
+    """Return the bound of a column that a converted value misses by its last digits only, else the value."""
+    for bound in (column.minimum, column.maximum):
+        if bound is not None and math.isclose(value, bound, rel_tol=1e-12):
+            return float(bound)
+    return value
+
+
+def _longest(column: Column) -> int:
+    """Return how many characters a text may have: names are short, remarks are not."""
+    return 1000 if column.key in {"notes", "source"} else 200
+
+
+def _choice(column: Column, text: str) -> str:
+    """Return the list entry that a text names in other case or spacing, or the text itself."""
+    for choice in column.choices:
+        if plain(choice) == plain(text):
+            return choice
+    return text
+
+
+def _as_shown(value: RawValue) -> str:
+    """Return a cell as a message shows it."""
+    found = as_text(value, longest=1000)
+    return str(found.value) if isinstance(found, Fault) else found

@@ -1,0 +1,222 @@
+"""Units slipped by 1000: numbers that may stand in a cell, but not beside the rest of their row or in any material."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from flexlash.schema.columns import columns_of
+from flexlash.schema.findings import spelled_out
+from flexlash.validation.headers import plain
+from flexlash.validation.ledger import Ledger, Slip
+from flexlash.validation.typed_columns import Table
+
+__all__ = ["SHARES", "find_slips", "settle", "tell_contradiction"]
+
+_THOUSAND = 1000.0
+_RADII = {"mean_radius_mm": 1.0, "bore_diameter_mm": 0.5}
+_REACH = (0.5, 4000.0)
+"""Mean radius [mm] that can be meant; a thousandth or a thousandfold of 5 to 300 mm lies outside."""
+
+SHARES = {
+    "cylinder_length_mm": (0.1, 20.0),
+    "wall_thickness_mm": (0.005, 0.2),
+    "disk_thickness_mm": (0.005, 0.5),
+    "disk_inner_radius_mm": (0.05, 1.5),
+    "disk_outer_radius_mm": (0.5, 5.0),
+    "disk_hub_thickness_mm": (0.01, 1.0),
+    "hub_fillet_radius_mm": (0.002, 0.2),
+    "junction_fillet_radius_mm": (0.002, 0.2),
+    "rim_length_mm": (0.03, 5.0),
+    "rim_thickness_mm": (0.01, 1.0),
+}
+"""What a length can be in mean radii. A length has slipped when it lies outside, and inside if shifted by 1000; each
+span is at most 250-fold, so that between the two there is room where nothing is said."""
+
+_DOUBTS = frozenset({"W405", "W418", "W419", "W440"})
+"""Warnings about unusual values and far tails, which come before the errors that limits and numbers show."""
+
+_TORQUES = ("torque_Nm", "rated_torque_Nm")
+_UNBEARABLE_SHEAR = 1500.0
+"""Wall shear [MPa] beyond the yield of the strongest steels."""
+
+_UNUSUAL_TORQUE = 0.15
+"""Torque [N·m] per cubed mean radius [mm³]: a hundred times where a catalogue drive's second slope ends."""
+
+
+_FIRST_SLOPE = 4e-4
+"""Torque [N·m] per cubed mean radius [mm³] where a catalogue drive's first slope ends; sizes 14 to 100 agree."""
+
+_FEEBLE = (_FIRST_SLOPE / 30_000, _FIRST_SLOPE / 100)
+"""Torque per cubed mean radius that says nothing of a drive, though a thousand times as much does."""
+
+_GREATEST_RADIUS = 130.0
+"""Mean radius [mm] of the largest catalogue drives; lengths that give less when tenfold may be in centimetres."""
+
+_TENFOLD = 10.0
+
+
+class _Span(NamedTuple):
+    """What a material's value can be, beyond which entries one has slipped, and by which factors."""
+
+    least: float
+    most: float
+    below: float
+    above: float
+    factors: tuple[float, ...]
+
+
+_MATERIAL = {
+    "youngs_modulus_GPa": _Span(1.0, 1300.0, 0.0, 1500.0, (1e-3, 1e-9)),
+    "shear_modulus_GPa": _Span(0.3, 550.0, 0.0, 600.0, (1e-3, 1e-9)),
+    "yield_MPa": _Span(20.0, 5000.0, 3.0, 1e6, (1e3, 1e-6)),
+}
+
+
+def find_slips(table: Table, ledger: Ledger) -> None:
+    """Put the cells of Variants or Materials whose unit has slipped into the ledger; `settle` tells them."""
+    find = {"Variants": _variant_factors, "Materials": _material_factors}.get(table.schema)
+    if find is None:
+        return
+    faulty: dict[int, dict[str, None]] = defaultdict(dict)
+    for row, key in table.faulty:
+        faulty[row][key] = None
+    for record in table.frame.iter_rows(named=True):
+        sound = {**record, **faulty.get(record["row"], {})}
+        for found in find(sound):
+            ledger.slips[table.sheet, record["row"], found[0]] = _slip(table, sound, found)
+
+
+def _facts(slip: Slip) -> dict[str, Any]:
+    """Return what a finding says of a slipped cell."""
+    return {
+        "sheet": slip.sheet,
+        "cell": slip.cell,
+        "column": slip.column,
+        "name": columns_of(slip.schema)[slip.column].name,
+        "variant": slip.variant,
+        "value": slip.shown,
+        "entered": slip.entered,
+        "other": slip.times,
+        "detail": slip.beside,
+    }
+
+
+def settle(ledger: Ledger) -> None:
+    """Leave each cell its error alone: drop the doubts about its value, and record only the other slips."""
+    wrong = {(found.sheet, found.cell) for found in ledger.findings if found.level == "error"}
+    ledger.findings = [
+        found for found in ledger.findings if found.code not in _DOUBTS or (found.sheet, found.cell) not in wrong
+    ]
+    for slip in ledger.slips.values():
+        if (slip.sheet, slip.cell) not in wrong:
+            ledger.add("W420", suggestion=slip.suggestion, **_facts(slip))
+
+
+def tell_contradiction(slip: Slip, contradicted: str, ledger: Ledger) -> None:
+    """Record, once, that a slipped cell of Variants makes its row contradictory; the other cell is not blamed."""
+    if any((found.sheet, found.cell) == (slip.sheet, slip.cell) for found in ledger.findings):
+        ledger.rows.add(slip.row)
+        return
+    ledger.add("E329", contradicted=contradicted, rows=[slip.row], **_facts(slip))
+
+
+def _slip(table: Table, record: Mapping[str, Any], found: tuple[str, float, str]) -> Slip:
+    """Return a slip with what to say of it; the suggestion is in the unit of the cell's own header."""
+    key, factor, beside = found
+    row, conversion, unit = record["row"], table.heading.factors[key], columns_of(table.schema)[key].unit
+    entered = record[key] / conversion
+    given = spelled_out(entered, 10)
+    shown = f"{given} {unit}" if conversion == 1 else f"{given} ({spelled_out(record[key])} {unit})"
+    times = f"{max(factor, 1 / factor):.10g} times too {'small' if factor > 1 else 'large'}"
+    return Slip(
+        sheet=table.sheet,
+        schema=table.schema,
+        cell=table.address(row, key),
+        column=key,
+        variant=record["variant"] or "" if table.schema == "Variants" else "",
+        material=plain(record["material"] or "") if table.schema == "Materials" else "",
+        row=row,
+        shown=shown,
+        entered=table.entered(row, key),
+        times=times,
+        beside=beside,
+        suggestion="" if factor == _TENFOLD else f"{entered * factor:.10g}",
+    )
+
+
+def _variant_factors(record: Mapping[str, Any]) -> Iterator[tuple[str, float, str]]:
+    """Yield the slipped cells of a Variants row, each with the factor that mends it."""
+    slipped = _length_factors(record)
+    for key, factor in slipped.items():
+        yield key, factor, "beside the other lengths of the row"
+    (key, radius), wall = _radius(record), record["wall_thickness_mm"]
+    if slipped or radius is None or wall is None or not _REACH[0] <= radius <= _REACH[1]:
+        return
+    slips = {name: _torque_factor(record[name], radius, wall) for name in _TORQUES}
+    in_doubt = 1 / _THOUSAND in slips.values() and radius * _TENFOLD <= _GREATEST_RADIUS
+    if in_doubt:
+        yield key, _TENFOLD, "for this torque: check the unit of all lengths, or of the torque"
+    for name, mend in slips.items():
+        if mend is not None and not in_doubt:
+            yield name, mend, "for this wall" if mend < 1 else "for this radius"
+
+
+def _torque_factor(torque: float | None, radius: float, wall: float) -> float | None:
+    """Return by what a torque [N·m] must be multiplied to suit radius and wall [mm]; None where it may be meant."""
+    if torque is None:
+        return None
+    if _FEEBLE[0] <= torque / radius**3 <= _FEEBLE[1]:
+        return _THOUSAND
+    shear = torque * _THOUSAND / (2 * math.pi * radius**2 * wall)
+    slipped = torque >= _UNUSUAL_TORQUE * radius**3 and shear > _UNBEARABLE_SHEAR >= shear / _THOUSAND
+    return 1 / _THOUSAND if slipped else None
+
+
+def _radius(record: Mapping[str, Any]) -> tuple[str, float | None]:
+    """Return the cell that gives the radius [mm] and its value; the wall's half does not matter here."""
+    for key, share in _RADII.items():
+        if record[key] is not None:
+            return key, record[key] * share
+    return "", None
+
+
+def _length_factors(record: Mapping[str, Any]) -> dict[str, float]:
+    """Return the factors that mend the lengths of a row, none where it cannot be told which are wrong.
+
+    The radius is what most of the lengths agree with: as entered, else a thousandfold or a thousandth of it.
+    """
+    key, radius = _radius(record)
+    if radius is None:
+        return {}
+    lengths = {name: record[name] for name in SHARES if record[name]}
+    readings: list[dict[str, float | None]] = []
+    for factor in (1.0, _THOUSAND, 1 / _THOUSAND):
+        if _REACH[0] <= radius * factor <= _REACH[1]:
+            factors = {name: _factor(name, value / (radius * factor)) for name, value in lengths.items()}
+            readings.append({key: factor, **factors})
+    if not readings:
+        return {}
+    best = min(readings, key=lambda reading: sum(factor != 1 for factor in reading.values()))
+    slipped = {name: factor for name, factor in best.items() if factor not in {None, 1.0}}
+    kept, odd = list(best.values()).count(1.0), list(best.values()).count(None)
+    return {} if odd and kept <= len(slipped) else {name: factor for name, factor in slipped.items() if factor}
+
+
+def _factor(key: str, share: float) -> float | None:
+    """Return by what a length, as a share of the mean radius, must be multiplied; None where nothing helps."""
+    least, most = SHARES[key]
+    factor = 1.0 if least <= share <= most else _THOUSAND if share < least else 1 / _THOUSAND
+    return factor if least <= share * factor <= most else None
+
+
+def _material_factors(record: Mapping[str, Any]) -> Iterator[tuple[str, float, str]]:
+    """Yield the slipped cells of a Materials row, each with the factor that mends it."""
+    for key, span in _MATERIAL.items():
+        value = record[key]
+        if value is not None and not span.below <= value <= span.above:
+            meant = (factor for factor in span.factors if span.least <= value * factor <= span.most)
+            if factor := next(meant, None):
+                yield key, factor, "for any material"

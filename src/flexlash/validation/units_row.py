@@ -1,0 +1,87 @@
+"""A row of units below the headers, as many programs write one: it is no data, and must not contradict the headers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from flexlash.reading.raw import RawSheet, RawValue, column_letters
+from flexlash.schema.column import Column
+from flexlash.schema.columns import columns_of
+from flexlash.schema.header_names import name_and_unit
+from flexlash.schema.spellings import plain
+from flexlash.schema.units import Unit, find_unit
+from flexlash.validation.headers import Heading
+from flexlash.validation.ledger import Ledger
+
+__all__ = ["take_units_row"]
+
+_NONE = frozenset({"", "-", "–", "—", "1", "none", "text"})
+"""What a row of units says of a column without one, brackets aside."""
+
+_TITLES = frozenset(map(plain, ("unit", "units", "Einheit", "Einheiten", "unité", "unités", "unità", "unidad")))
+_FEWEST = 2
+
+
+def take_units_row(sheet: RawSheet, heading: Heading, schema: str, ledger: Ledger) -> int:
+    """Return the number of the row of units below the headers, 0 when there is none; a difference is an error.
+
+    A column whose unit there is another than its header's is taken out of the heading, so that nothing of it is used.
+    """
+    row = next((number for number in sorted(sheet.rows) if number > heading.row), 0)
+    columns = columns_of(schema)
+    cells = {place: cell for place, cell in sheet.rows.get(row, {}).items() if place not in heading.ignored}
+    units = _units({key: cells.get(place, "") for key, place in heading.places.items()}, columns)
+    if len(units) < _FEWEST:
+        return 0
+    for key, unit in units.items():
+        read_in = columns[key].si_unit.si * heading.factors[key]
+        if not math.isclose(unit.si, read_in, rel_tol=1e-9):
+            _blame(sheet, heading, row, columns[key], ledger)
+    place = min(cells)
+    ledger.add(
+        "I515",
+        sheet=sheet.name,
+        cell=f"{column_letters(place)}{row}",
+        value=" ".join(str(cell).strip() for cell in cells.values()),
+    )
+    return row
+
+
+def _units(entries: Mapping[str, RawValue], columns: Mapping[str, Column]) -> dict[str, Unit]:
+    """Return the units of a row by column, none where a cell of it holds anything else."""
+    first = next(iter(columns))
+    found: dict[str, Unit] = {}
+    for key, entry in entries.items():
+        text = _bare(entry)
+        if text is None:
+            return {}
+        if text.casefold() in _NONE or (key == first and plain(text) in _TITLES):
+            continue
+        unit = find_unit(text, columns[key].quantity) if columns[key].is_number and columns[key].quantity else None
+        if unit is None:
+            return {}
+        found[key] = unit
+    return found
+
+
+def _bare(entry: RawValue) -> str | None:
+    """Return a cell's text without brackets, None where it is no text."""
+    return entry.strip().strip("[]()").strip() if isinstance(entry, str) else None
+
+
+def _blame(sheet: RawSheet, heading: Heading, row: int, column: Column, ledger: Ledger) -> None:
+    """Record a unit that is another than the one a column is read in, and take the column out of the heading."""
+    place = heading.places.pop(column.key)
+    header = str(sheet.rows[heading.row][place])
+    named = name_and_unit(header)[1] if heading.factors[column.key] != 1 else None
+    heading.doubtful[place] = column.key
+    ledger.add(
+        "E219",
+        sheet=sheet.name,
+        cell=f"{column_letters(place)}{row}",
+        column=column.key,
+        name=column.name,
+        value=str(sheet.rows[row][place]).strip(),
+        other=named or column.unit,
+    )

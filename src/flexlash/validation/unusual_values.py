@@ -1,0 +1,82 @@
+"""Values that may stand in a cell, but lie far from what is usual and are no slip of a unit: a warning each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import polars as pl
+
+from flexlash.schema.columns import Column, columns_of
+from flexlash.schema.findings import spelled_out
+from flexlash.validation.ledger import Ledger
+from flexlash.validation.typed_columns import Table
+from flexlash.validation.unit_mistakes import SHARES
+
+__all__ = ["report_unusual", "unusual_words"]
+
+_USUAL = {
+    "load_inertia_kg_m2": (1e-7, 1e6),
+    "backlash_limit_arcmin": (1e-3, 600.0),
+    "youngs_modulus_GPa": (1e-3, 1500.0),
+    "shear_modulus_GPa": (3e-4, 600.0),
+    "poisson_ratio": (0.1, 0.5),
+    "density_kg_m3": (10.0, 25_000.0),
+    "yield_MPa": (1.0, 10_000.0),
+    "limits_sigma": (1.0, 12.0),
+    "lost_motion_percent": (1.0, 10.0),
+    "cylinder_calibration": (0.5, 2.5),
+    "disk_calibration": (0.5, 2.5),
+}
+"""What is usual, in the printed unit: foam rubber to osmium, limits at one to twelve standard deviations, makers' lost
+motion at 3 to 4 % of the rated torque. Fillets, rims and other refinements lower a wind-up by less than a half; play
+under the teeth raises it to at most 2.3 times, which bounds a calibration."""
+
+_BEYOND = 10.0
+"""How far beyond the proportions of known flexsplines a length must lie to be told."""
+
+_TORQUES = (1e-3, 1e3)
+"""Rated torque over the torque of the row."""
+
+
+def report_unusual(table: Table, ledger: Ledger) -> None:
+    """Warn of each cell of a table that is far from usual, but of none in a row where a unit slipped."""
+    slipped = {row for sheet, row, _ in ledger.slips if sheet == table.sheet}
+    for key, low, high in _ranges(table.schema):
+        strange = table.frame.filter(~pl.col(key).is_between(low, high)).select("row", key, low=low, high=high)
+        for row, value, least, most in strange.iter_rows():
+            if (row, key) in table.faulty or row in slipped:
+                continue
+            column = columns_of(table.schema)[key]
+            told = {"value": f"{value:.10g}", "detail": _words(column, least, most), "name": column.name}
+            ledger.add("W440", sheet=table.sheet, cell=table.address(row, key), column=key, rows=(), **told)
+
+
+def unusual_words(column: Column, value: float) -> str:
+    """Return what is usual for a column, in words, where a value is not; else an empty text.
+
+    >>> from flexlash.schema.columns import SETTINGS
+    >>> unusual_words(SETTINGS[-1], 0.2), unusual_words(SETTINGS[-1], 0.9)
+    ('0.5 to 2.5', '')
+    """
+    low, high = _USUAL.get(column.key, (value, value))
+    return "" if low <= value <= high else _words(column, low, high)
+
+
+def _words(column: Column, low: float, high: float) -> str:
+    unit = "" if column.unit in {"", "-"} else f" {column.unit}"
+    return f"{spelled_out(low)} to {spelled_out(high)}{unit}"
+
+
+def _ranges(schema: str) -> Iterator[tuple[str, pl.Expr, pl.Expr]]:
+    """Yield the columns of a sheet that have a usual range, with its ends."""
+    for key in columns_of(schema):
+        if key in _USUAL:
+            low, high = _USUAL[key]
+            yield key, pl.lit(low), pl.lit(high)
+    if schema == "Variants":
+        radius = pl.coalesce("mean_radius_mm", pl.col("bore_diameter_mm") / 2)
+        for key, (least, most) in SHARES.items():
+            # A fillet of 0 is none.
+            least_length = pl.when(pl.col(key) == 0).then(0.0).otherwise(least / _BEYOND * radius)
+            yield key, least_length, most * _BEYOND * radius
+        yield "rated_torque_Nm", pl.col("torque_Nm") * _TORQUES[0], pl.col("torque_Nm") * _TORQUES[1]

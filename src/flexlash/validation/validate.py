@@ -1,0 +1,245 @@
+"""Cells → variants in SI and findings: every cell, every relation, all at once."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import polars as pl
+
+from flexlash.reading.read import Submission
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.schema.columns import columns_of
+from flexlash.schema.spellings import affordable, misspelt, plain, spelt_alike, suggested
+from flexlash.schema.variant import Material, Settings, ToleranceRow, Variant
+from flexlash.validation.cell_values import is_no_value, no_value_facts
+from flexlash.validation.csv_findings import tell_manner
+from flexlash.validation.entry_sheets import entry_sheets, tell_other_names, tell_second_tables
+from flexlash.validation.hidden_content import tell_overlooked
+from flexlash.validation.ledger import Ledger
+from flexlash.validation.materials_and_classes import (
+    built_in_materials,
+    materials_of,
+    settings_of,
+    standard_class,
+    tolerance_classes_of,
+)
+from flexlash.validation.row_checks import check_cells, check_relations
+from flexlash.validation.template_versions import TEMPLATE_VERSION, check_version, tell_additions
+from flexlash.validation.typed_columns import Table, tabulate
+from flexlash.validation.unused_classes import tell_unused_classes
+
+__all__ = ["TEMPLATE_VERSION", "Validated", "validate"]
+
+_OTHER_SOURCES = "Other sources"
+
+_NEAR = 0.7
+"""Likeness from which on a material or class is suggested; short names of steels share letters by chance."""
+
+
+@dataclass(kw_only=True)
+class Validated:
+    """A submission after validation.
+
+    `table` is Variants as read, one row per submitted variant; `tolerances` is Tolerances, None where the built-in
+    class is used; `variants` are the rows of Variants without an error;
+    `ledger` holds the findings and what they spoil, for the stages that add engineering findings;
+    `header_rows` the row of each entry sheet's headers.
+    """
+
+    ledger: Ledger
+    table: Table | None = None
+    tolerances: Table | None = None
+    variants: list[Variant] = field(default_factory=list)
+    classes: dict[str, list[ToleranceRow]] = field(default_factory=dict)
+    materials: dict[str, Material] = field(default_factory=dict)
+    settings: Settings = field(default_factory=Settings)
+    header_rows: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def submitted(self) -> list[tuple[int, str, str]]:
+        """Row number, name and notes of every submitted variant, in submitted order."""
+        if self.table is None:
+            return []
+        return list(self.table.frame.select("row", "variant", "notes").fill_null("").iter_rows())
+
+
+def validate(submission: Submission, limits: ReadingLimits | None = None) -> Validated:
+    """Return the variants of a submission and all that is wrong with it.
+
+    Raises Refusal when there is no Variants sheet or the template is newer than this program.
+    """
+    ledger = Ledger(submission.name)
+    result = Validated(ledger=ledger)
+    check_version(submission)
+    sheets = entry_sheets(submission, limits or ReadingLimits())
+    unclear = tell_other_names(submission, sheets, ledger)
+    tell_second_tables(submission, sheets, ledger)
+    tables: dict[str, Table] = {}
+    for schema, sheet in sheets.items():
+        table = tabulate(sheet, schema, ledger)
+        if table is not None:
+            tell_overlooked(sheet, table, ledger)
+            check_cells(table, ledger)
+            result.header_rows[schema] = table.heading.row
+            tables[schema] = table
+    for sheet in sheets.values():
+        tell_manner(sheet, ledger)
+    tell_additions(submission, {schema: table.heading for schema, table in tables.items()}, ledger)
+    _fill_tables(result, submission, sheets.keys() | unclear, tables)
+    result.table, result.tolerances = tables.get("Variants"), tables.get("Tolerances")
+    if result.table is not None:
+        _check_rows(result, result.table)
+        tell_unused_classes(tables.get("Tolerances"), result.table, result.classes, ledger)
+    _tell_other_sources(submission, ledger)
+    if result.table is not None and not ledger.everything:
+        result.variants = [
+            _variant(record, result)
+            for record in result.table.frame.iter_rows(named=True)
+            if record["row"] not in ledger.rows
+        ]
+    ledger.settle()
+    ledger.name_variants(result.table.sheet if result.table else "", {row: name for row, name, _ in result.submitted})
+    return result
+
+
+def _fill_tables(result: Validated, submission: Submission, present: Collection[str], tables: dict[str, Table]) -> None:
+    """Take materials, tolerance classes and settings from the submission, else the built-in ones."""
+    ledger = result.ledger
+    if "Materials" in tables:
+        result.materials = materials_of(tables["Materials"], ledger)
+    elif "Materials" not in present:
+        result.materials = built_in_materials()
+        if submission.kind == "workbook":
+            ledger.add("I505", value="sheet Materials", other="materials")
+    if "Tolerances" in tables:
+        result.classes = tolerance_classes_of(tables["Tolerances"], ledger)
+    # Where the classes have no column, which of them there are cannot be told.
+    are_named = "Tolerances" in tables and "tolerance_class" in tables["Tolerances"].heading.places
+    if "standard" not in result.classes and (are_named or "Tolerances" not in present):
+        result.classes["standard"] = standard_class()
+        if submission.kind == "workbook":
+            ledger.add("I505", value="rows for tolerance class standard", other="class")
+    if "Settings" in tables:
+        result.settings = settings_of(tables["Settings"], ledger)
+
+
+def _check_rows(result: Validated, table: Table) -> None:
+    """Check relations, duplicates and references of the Variants rows."""
+    ledger = result.ledger
+    if table.frame.is_empty():
+        cell = table.address(table.heading.row + 1, "variant")
+        ledger.add("E115", sheet=table.sheet, cell=cell)
+        ledger.everything = True
+        return
+    check_relations(table, ledger)
+    _check_duplicates(table, ledger)
+    materials = [material.name for material in result.materials.values()]
+    classes = [rows[0].tolerance_class if rows else key for key, rows in result.classes.items()]
+    _check_references(table, ledger, "material", "E307", materials)
+    _check_references(table, ledger, "tolerance_class", "E309", classes)
+    if "standard" in ledger.classes:
+        ledger.rows.update(table.frame.filter(pl.col("tolerance_class").is_null())["row"])
+
+
+def _check_references(table: Table, ledger: Ledger, key: str, code: str, names: Sequence[str]) -> None:
+    """Check that every row names a material or a class that there is; rows of a faulty one are not computed."""
+    if ledger.everything and not names:
+        return
+    known, faulty = spelt_alike(names), ledger.materials if key == "material" else ledger.classes
+    meant = _Meant(names, known)
+    for row, value in table.frame.select("row", key).iter_rows():
+        if value is None or (row, key) in table.faulty:
+            continue
+        spelling = plain(value)
+        if spelling not in known:
+            _blame(table, ledger, row=row, key=key, value=value, **_unknown(key, code, value, meant))
+        elif spelling in faulty:
+            ledger.rows.add(row)
+        elif value != known[spelling]:
+            name = known[spelling]
+            _blame(table, ledger, "I504", row, key, value=value, suggestion=name, repair=name)
+
+
+def _unknown(key: str, code: str, value: str, meant: Mapping[str, Mapping[str, str | None]]) -> dict[str, Any]:
+    """Return code and facts of a name that no row of Materials or Tolerances has."""
+    if is_no_value(value):
+        return {"code": "E221", **no_value_facts(columns_of("Variants")[key])}
+    return {"code": code, **meant[value]}
+
+
+class _Meant(dict[str, dict[str, str | None]]):
+    """What unknown names probably mean, looked up once each, for as many as can be compared with all known names."""
+
+    def __init__(self, names: Sequence[str], known: Mapping[str, str]) -> None:
+        super().__init__()
+        self.names = names
+        self.known = known
+        self.most = affordable(names)
+
+    def __missing__(self, value: str) -> dict[str, str | None]:
+        """Look a name up."""
+        self[value] = (
+            {"suggestion": suggested(value, self.names, _NEAR), "repair": misspelt(value, self.known)}
+            if len(self) < self.most
+            else {}
+        )
+        return self[value]
+
+
+def _check_duplicates(table: Table, ledger: Ledger) -> None:
+    """Mark every row of a name that is used more than once, each with its partners."""
+    partners: dict[str, list[int]] = defaultdict(list)
+    for row, name in table.frame.select("row", "variant").iter_rows():
+        if name is not None:
+            partners[name.casefold()].append(row)
+    for rows in partners.values():
+        for row, others in table.partners(rows, "variant"):
+            _blame(table, ledger, "E308", row, "variant", value=table.entered(row, "variant"), other=others)
+
+
+def _blame(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts: Any) -> None:
+    """Record a finding at a cell of Variants."""
+    name = columns_of("Variants")[key].name
+    cell = table.address(row, key)
+    ledger.add(code, sheet=table.sheet, cell=cell, column=key, name=name, rows=[row], **facts)
+
+
+def _tell_other_sources(submission: Submission, ledger: Ledger) -> None:
+    """Warn when the sheet of a later version is filled."""
+    for name, sheet in submission.sheets.items():
+        if plain(name) == plain(_OTHER_SOURCES) and len(sheet.rows) > 1:
+            ledger.add("W406", sheet=name, cell=f"A{min(sheet.rows)}")
+
+
+def _variant(record: dict[str, Any], result: Validated) -> Variant:
+    """Return a sound row as a variant in SI; dimensions that equal another are left out."""
+    columns = columns_of("Variants")
+    dimensions = {
+        column.dimension: record[key] * column.si_unit.si
+        for key, column in columns.items()
+        if column.is_number and record[key] is not None and not (key.endswith("fillet_radius_mm") and record[key] == 0)
+    }
+    rated_torque = dimensions.pop("rated_torque", None)
+    load_inertia = dimensions.pop("load_inertia_kg_m2", None)
+    backlash_limit = dimensions.pop("backlash_limit", None)
+    material = result.materials[plain(record["material"])]
+    constants = dict(material.constants)
+    if "shear_modulus" in constants:
+        constants = {"shear_modulus": constants["shear_modulus"]}
+    return Variant(
+        row=record["row"],
+        name=record["variant"],
+        flexspline_type=record["flexspline_type"] or "cup",
+        material=material.name,
+        tolerance_class=record["tolerance_class"] or "standard",
+        dimensions=dimensions | constants | result.settings.calibrations,
+        rated_torque=rated_torque,
+        load_inertia=load_inertia,
+        backlash_limit=backlash_limit,
+        yield_strength=material.yield_strength,
+        youngs_modulus=material.constants.get("youngs_modulus"),
+        poisson_ratio=material.constants.get("poisson_ratio"),
+    )

@@ -1,0 +1,216 @@
+"""The template cannot easily be filled wrongly, and survives other programs."""
+
+from __future__ import annotations
+
+import io
+
+import openpyxl
+import pytest
+import regenerate
+from libreoffice import convert, needs_libreoffice, needs_pages
+
+from flexlash.feedback.template.entry_rules import FIRST_ROW, HEADER_ROW
+from flexlash.feedback.template.template_workbook import Filling, study, template_bytes
+from flexlash.schema.columns import ENTRY_SHEETS, VARIANTS
+
+STATUS_ROWS = [
+    ({}, "complete"),
+    ({"material": None}, "material missing"),
+    ({"torque_Nm": None}, "torque missing"),
+    ({"material": "cheese"}, "material not in Materials"),
+    ({"torque_Nm": "800 Nm"}, "a number is text"),
+    ({"torque_Nm": -1.0}, "a number is negative"),
+    ({"mean_radius_mm": None}, "mean radius or bore missing"),
+    ({"bore_diameter_mm": 160.0}, "mean radius and bore both given"),
+    ({"disk_inner_radius_mm": None}, "disk inner radius missing"),
+    ({"flexspline_type": "hat", "disk_inner_radius_mm": None}, "disk outer radius missing"),
+    ({"flexspline_type": "cylinder"}, "a cylinder has no disk"),
+    (
+        {"flexspline_type": "cylinder", "disk_inner_radius_mm": None, "disk_cone_angle_deg": 60.0},
+        "a cylinder has no disk",
+    ),
+    (
+        {"flexspline_type": "cylinder", "disk_inner_radius_mm": None, "disk_thickness_exponent": 2.0},
+        "a cylinder has no disk",
+    ),
+    ({"flexspline_type": "cylinder", "disk_inner_radius_mm": None, "load_inertia_kg_m2": 1.0}, "complete"),
+    ({"disk_thickness_exponent": 2.0}, "exponent needs the thickness at hub"),
+    ({"disk_thickness_exponent": 0}, "exponent needs the thickness at hub"),
+    (
+        {"disk_thickness_exponent": 2.0, "disk_hub_thickness_mm": 4.0, "disk_thickness_mm": 1.6},
+        "exponent and disk thickness both given",
+    ),
+    ({"disk_thickness_exponent": 2.0, "disk_hub_thickness_mm": 4.0}, "complete"),
+    ({"disk_hub_thickness_mm": 4.0, "disk_thickness_mm": 1.6}, "complete"),
+    ({"disk_cone_angle_deg": 60.0, "load_inertia_kg_m2": 0.5}, "complete"),
+    ({"load_inertia_kg_m2": "0,5"}, "a number is text"),
+    ({"load_inertia_kg_m2": -0.5}, "a number is negative"),
+    ({"disk_inner_radius_mm": 81.0}, "hub larger than the disk"),
+    ({"disk_inner_radius_mm": 60.0, "disk_outer_radius_mm": 50.0}, "hub larger than the disk"),
+    ({"mean_radius_mm": None, "bore_diameter_mm": 78.0}, "hub larger than the disk"),
+    ({"disk_inner_radius_mm": 79.5}, "complete"),
+    ({"mean_radius_mm": None, "bore_diameter_mm": 81.0}, "complete"),
+    ({"wall_thickness_mm": 160.0}, "wall fills the bore"),
+    ({"wall_thickness_mm": 450.0, "mean_radius_mm": None, "bore_diameter_mm": 81.0}, "complete"),
+    ({"flexspline_type": "hat", "disk_outer_radius_mm": 81.6}, "complete"),
+    ({"rim_length_mm": 20.0}, "rim length and thickness belong together"),
+    ({"tolerance_class": "mine"}, "tolerance class not in Tolerances"),
+    ({"tolerance_class": "standard"}, "complete"),
+]
+
+
+@pytest.fixture(scope="module")
+def empty():
+    """Return the empty template as openpyxl sees it."""
+    return openpyxl.load_workbook(io.BytesIO(template_bytes()))
+
+
+@pytest.fixture(scope="module")
+def filled(tmp_path_factory):
+    """Return a template filled with one row per status, two of them of the same name."""
+    base = {
+        "flexspline_type": "cup",
+        "material": "20Cr2Ni4",
+        "torque_Nm": 800.0,
+        "cylinder_length_mm": 160.0,
+        "mean_radius_mm": 80.0,
+        "wall_thickness_mm": 1.6,
+        "disk_inner_radius_mm": 40.0,
+    }
+    rows = [{"variant": f"row {number}", **base, **change} for number, (change, _) in enumerate(STATUS_ROWS)]
+    rows += [{"variant": "twin", **base}, {"variant": "twin", **base}]
+    path = tmp_path_factory.mktemp("filled") / "filled.xlsx"
+    path.write_bytes(template_bytes(Filling(variants=rows)))
+    return path
+
+
+def _statuses(path):
+    sheet = openpyxl.load_workbook(path, data_only=True)["Variants"]
+    return [sheet.cell(FIRST_ROW + 1 + place, len(VARIANTS) + 1).value for place in range(len(STATUS_ROWS) + 2)]
+
+
+@pytest.mark.parametrize("name", ENTRY_SHEETS)
+def test_headers_are_the_labels(empty, name):
+    """Each entry sheet has one header row whose cells are exactly the labels, and no data key or unit rows."""
+    cells = [cell.value for cell in empty[name][HEADER_ROW + 1]]
+    labels = [column.label for column in ENTRY_SHEETS[name]]
+    assert cells[: len(labels)] == labels
+    assert cells[len(labels) :] in ([], ["Row status"], [None])
+
+
+@pytest.mark.parametrize("name", ENTRY_SHEETS)
+def test_every_entry_cell_has_a_hint(empty, name):
+    """Every column of every entry sheet carries an input message and a note on its header."""
+    sheet = empty[name]
+    hinted = {
+        column
+        for rule in sheet.data_validations.dataValidation
+        if rule.prompt
+        for area in rule.sqref.ranges
+        for column in range(area.min_col, area.max_col + 1)
+        if area.min_row == FIRST_ROW + 1
+    }
+    wanted = {2} if name == "Settings" else set(range(1, len(ENTRY_SHEETS[name]) + 1))
+    assert wanted <= hinted
+    for place, column in enumerate(ENTRY_SHEETS[name], start=1):
+        note = sheet.cell(HEADER_ROW + 1, place).comment
+        assert note is not None
+        assert column.help in note.text
+
+
+def test_every_rule_has_an_error_text_of_our_own(empty):
+    """No cell rule leaves the user with Excel's own error text."""
+    rules = [rule for sheet in ENTRY_SHEETS for rule in empty[sheet].data_validations.dataValidation]
+    assert all(rule.error for rule in rules if rule.type)
+    assert len(rules) > 30
+
+
+def test_lists_come_from_defined_names(empty):
+    """Every drop-down refers to a defined name beginning with fl_, which exists."""
+    used = {
+        rule.formula1
+        for sheet in ENTRY_SHEETS
+        for rule in empty[sheet].data_validations.dataValidation
+        if rule.type == "list"
+    }
+    assert used == {
+        "fl_flexspline_types", "fl_materials", "fl_tolerance_classes", "fl_dimensions", "fl_grades",
+        "fl_deviation_units", "fl_distributions", "fl_methods",
+    }  # fmt: skip
+    assert used <= set(empty.defined_names)
+    assert empty["Lists"].sheet_state == "hidden"
+
+
+def test_variants_is_not_protected_and_the_header_is_guarded(empty):
+    """Sorting and deleting rows stay possible, while typing over a header is refused with our text."""
+    sheet = empty["Variants"]
+    assert not sheet.protection.sheet
+    guards = [rule for rule in sheet.data_validations.dataValidation if rule.formula1 == "FALSE"]
+    assert [str(rule.sqref) for rule in guards] == [f"A{HEADER_ROW + 1}:X{HEADER_ROW + 1}"]
+    assert sheet.freeze_panes == f"B{FIRST_ROW + 1}"
+
+
+def test_nothing_is_merged_in_entry_tables(empty):
+    """Entry tables have no merged cells, which would break sorting and reading."""
+    assert all(not empty[name].merged_cells.ranges for name in ENTRY_SHEETS)
+
+
+def test_the_version_is_stamped_twice(empty):
+    """The template's version stands in a visible cell and in a document property."""
+    texts = [cell.value for row in empty["Variants"]["A1:W2"] for cell in row]
+    assert "Template version 2" in texts
+    properties = {one.name: one.value for one in empty.custom_doc_props.props}
+    assert properties == {"flexlash": "template", "flexlash_template_version": "2"}
+
+
+def test_two_thousand_rows_do_not_bloat_the_file():
+    """The empty template with its 2,000 prepared rows stays under 330 kB."""
+    assert len(template_bytes()) < 330_000
+
+
+def test_the_same_bytes_every_time():
+    """The template is byte for byte the same whenever it is written."""
+    assert template_bytes(study()) == template_bytes(study())
+
+
+def test_stored_status_tells_what_a_row_lacks(filled):
+    """The stored row status names the first thing that a row lacks."""
+    assert _statuses(filled) == [text for _, text in STATUS_ROWS] + ["variant used twice"] * 2
+
+
+@needs_libreoffice
+def test_the_status_formula_calculates_what_is_stored(filled, tmp_path):
+    """Recalculated by a spreadsheet program, every status formula gives its stored text."""
+    assert _statuses(convert(filled, "xlsx", tmp_path)) == _statuses(filled)
+
+
+@needs_libreoffice
+def test_the_live_sentence_counts_complete_rows(filled, tmp_path):
+    """The sentence above the table counts the complete rows, stored and recalculated."""
+    complete = [text for _, text in STATUS_ROWS].count("complete")
+    for path in (filled, convert(filled, "xlsx", tmp_path)):
+        sheet = openpyxl.load_workbook(path, data_only=True)["Variants"]
+        assert sheet.cell(2, 10).value == f"{complete} of {len(STATUS_ROWS) + 2} rows complete"
+
+
+@needs_pages
+def test_the_template_prints_on_whole_pages(tmp_path):
+    """Every sheet of the filled template prints one page wide: no page holds a cut-off column."""
+    import subprocess
+
+    document = convert(regenerate.ROOT / "data" / "b3-160-study.xlsx", "pdf", tmp_path)
+    pages = subprocess.run(["pdfinfo", document], check=True, capture_output=True, text=True).stdout
+    count = int(next(line for line in pages.splitlines() if line.startswith("Pages")).split()[1])
+    assert 5 <= count <= 9
+
+
+@needs_libreoffice
+def test_the_class_list_follows_tolerances(tmp_path):
+    """The drop-down of classes holds each name of Tolerances once, stored and recalculated."""
+    path = tmp_path / "study.xlsx"
+    path.write_bytes(template_bytes(study()))
+    for one in (path, convert(path, "xlsx", tmp_path)):
+        sheet = openpyxl.load_workbook(one, data_only=True)["Lists"]
+        (place,) = [cell.column for cell in sheet[1] if cell.value == "fl_tolerance_classes"]
+        names = [sheet.cell(row, place).value for row in range(2, 7)]
+        assert [name or "" for name in names] == ["standard", "turning", "grinding", "", ""]

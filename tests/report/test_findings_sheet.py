@@ -1,0 +1,79 @@
+"""The Findings sheet: each rule once with its mend, below it every finding with its links."""
+
+from __future__ import annotations
+
+import openpyxl
+import pytest
+
+from flexlash.pipeline import run
+from flexlash.report.layout.links import FIRST_FINDING, finding_list, rules_of
+from flexlash.schema.findings import CATALOGUE
+from flexlash.schema.result_columns import FINDINGS
+
+
+@pytest.fixture
+def report(table, sound, tmp_path):
+    """Return the outcome and the Findings sheet of rows with one rule broken twice, one once, and a long name."""
+    long = "sleeve with a name that is much longer than any column of a table"
+    rows = [
+        sound,
+        {**sound, "variant": "a", "torque_Nm": ""},
+        {**sound, "variant": long, "torque_Nm": ""},
+        {**sound, "variant": "c", "wall_thickness_mm": "1,6 mm"},
+    ]
+    outcome = run(table(rows), tmp_path / "report.xlsx", samples=256)
+    return outcome, openpyxl.load_workbook(tmp_path / "report.xlsx")["Findings"]
+
+
+def test_each_rule_stands_once_on_top(report):
+    """A line for each rule tells level, code, count, title, how to learn more and the mend."""
+    outcome, sheet = report
+    rules = rules_of(outcome)
+    assert len(rules["E201"]) == 2
+    for row, (code, group) in enumerate(rules.items(), start=5):
+        cells = [cell.value for cell in sheet[row]]
+        assert cells[:4] == [group[0].level, code, len(group), CATALOGUE[code].title]
+        assert cells[6] == f"flexlash explain {code}"
+        assert cells[7]
+    fixes = {found.fix for found in rules["E201"]}
+    assert sheet.cell(5, 8).value in fixes
+
+
+def test_the_list_is_complete_and_can_be_filtered(report):
+    """Below the rules stands every finding, worst first, under a header with filters."""
+    outcome, sheet = report
+    header = FIRST_FINDING + len(rules_of(outcome))
+    assert [cell.value for cell in sheet[header]] == [column.label for column in FINDINGS]
+    last = header + len(outcome.findings)
+    assert sheet.max_row == last
+    assert sheet.auto_filter.ref == f"A{header}:J{last}"
+    codes = [sheet.cell(row, 2).value for row in range(header + 1, last + 1)]
+    assert codes == [found.code for found in finding_list(outcome)]
+
+
+def test_a_finding_names_its_column_and_leads_to_cell_and_result(report):
+    """The column is named by label above key; the cell leads to Submission, the variant to Results."""
+    outcome, sheet = report
+    start = FIRST_FINDING + len(rules_of(outcome)) + 1
+    for row, found in enumerate(finding_list(outcome), start=start):
+        cells = {column.key: sheet.cell(row, place) for place, column in enumerate(FINDINGS, start=1)}
+        if not found.cell or found.level == "info":
+            continue
+        number = int(found.cell[1:])
+        assert cells["cell"].hyperlink.location == f"Submission!{found.cell}"
+        assert cells["variant"].hyperlink.location == f"Results!A{number + 1}"
+        assert len(cells["variant"].value) <= 30
+        label, key = cells["column"].value.split("\n")
+        assert key == found.column
+        assert label in {"Torque T [N·m]", "Wall thickness Δ [mm]"}
+
+
+def test_nothing_found_is_said(table, sound, tmp_path):
+    """Without findings the sheet says so and has neither rules nor filters."""
+    outcome = run(table([sound]), tmp_path / "report.xlsx", samples=256)
+    outcome.findings = []
+    from written import write_outcome
+
+    sheet = openpyxl.load_workbook(write_outcome(outcome, tmp_path / "bare.xlsx"))["Findings"]
+    assert [cell.value for cell in sheet["A"] if cell.value] == ["Findings", "Nothing was found."]
+    assert sheet.auto_filter.ref is None

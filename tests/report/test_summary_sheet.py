@@ -1,0 +1,338 @@
+"""The Summary sheet: one printed page, its table and chart, links that lead somewhere, texts that fit."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import warnings
+import zipfile
+from functools import lru_cache
+
+import openpyxl
+import pytest
+import regenerate
+import xlsxwriter
+from libreoffice import convert_all, needs_pages
+
+from flexlash.analysis.run_summary import dimension_words, share_words
+from flexlash.pipeline import run
+from flexlash.report.explorer.curves_sheet import stored_curves
+from flexlash.report.layout.styles import PALETTE, Book
+from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
+from flexlash.report.selection import drawn_variants
+from flexlash.report.summary.summary_sheet import write_summary
+from flexlash.report.wording.sentences import sentences
+from flexlash.report.wording.verdict import RULES, light
+
+_ASCENT_AND_DESCENT = 1.22
+"""Height of a word's box over the size of its letters, in Calibri and Carlito."""
+
+FILLS = {"red": "FFF8CBAD", "amber": "FFFFE699", "green": "FFC6E5D8"}
+NUMBERS = ("backlash_arcmin", "p50_arcmin", "p97_5_arcmin", "backlash_limit_arcmin")
+
+
+@lru_cache(maxsize=2)
+def _open(path, **options):
+    with path.open("rb") as file, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return openpyxl.load_workbook(file, **options)
+
+
+def _row(sheet, words):
+    """Return the number of the row whose first cell holds these words."""
+    return next(row for row in range(1, sheet.max_row + 1) if sheet.cell(row, 1).value == words)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Return the folder of this module's reports."""
+    return tmp_path_factory.mktemp("summary")
+
+
+@pytest.fixture(scope="module")
+def study(folder):
+    """Return the study's outcome and the path of its report."""
+    path = folder / "study.xlsx"
+    return run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path), path
+
+
+def _many(count, first=700.0):
+    """Return variants from within to far over a limit; every seventh is a hat, every fifth has none."""
+    rows = []
+    for number in range(count):
+        row = {"variant": f"V{number:04d} of a study", "flexspline_type": "cup", "material": "20Cr2Ni4"}
+        row |= {"torque_Nm": first + 400 * number / count, "cylinder_length_mm": 160, "mean_radius_mm": 80}
+        row |= {"wall_thickness_mm": 1.6, "disk_inner_radius_mm": 40, "disk_outer_radius_mm": ""}
+        row["backlash_limit_arcmin"] = "" if number % 5 == 4 else 3.75
+        if number % 7 == 6:
+            row |= {"flexspline_type": "hat", "disk_inner_radius_mm": "", "disk_outer_radius_mm": 100}
+        rows.append(row)
+    return rows
+
+
+def test_key_figures_and_their_rule(study):
+    """Computed, red, amber, green and findings stand in words above their rule; only what occurs is coloured."""
+    sheet = _open(study[1])["Summary"]
+    places = (1, 2, 5, 8, 9)
+    assert [sheet.cell(4, place).value for place in places] == ["11 of 11", "3 red", "0 amber", "8 green", "5 warnings"]
+    captions = [sheet.cell(5, place).value for place in places]
+    assert captions == ["variants computed", *RULES.values(), "see Findings"]
+    fills = [sheet.cell(4, place).fill.fgColor.rgb for place in places]
+    assert fills == ["00000000", FILLS["red"], "00000000", FILLS["green"], "00000000"]
+
+
+def test_every_sentence_stands_beside_its_topic(study):
+    """The sheet holds every sentence, merged across the table and as high as its lines."""
+    outcome, path = study
+    sheet = _open(path)["Summary"]
+    merged = {str(area) for area in sheet.merged_cells.ranges}
+    for topic, text in sentences(outcome):
+        row = _row(sheet, topic)
+        assert sheet.cell(row, 2).value == text
+        assert f"B{row}:I{row}" in merged
+        assert sheet.cell(row, 2).alignment.wrap_text
+        width = sum(sheet.column_dimensions[letter].width for letter in "BCDEFGHI")
+        assert sheet.row_dimensions[row].height >= LINE_HEIGHT * lines_of(text, width)
+
+
+def test_the_table_holds_the_worst_with_their_numbers(study):
+    """Each row of the table repeats a variant's results, its verdict in word and colour, worst first."""
+    outcome, path = study
+    sheet = _open(path)["Summary"]
+    first = _row(sheet, "Variant") + 1
+    for row, one in enumerate(drawn_variants(outcome), start=first):
+        cells = [sheet.cell(row, place) for place in range(1, 10)]
+        name, verdict, *numbers, excess, share, cause = (cell.value for cell in cells)
+        assert name == one.row["variant"]
+        assert verdict == light(one.row)
+        assert cells[1].fill.fgColor.rgb == FILLS[verdict]
+        assert numbers == [pytest.approx(one.row[key], rel=1e-15) for key in NUMBERS]
+        assert excess == pytest.approx(one.row["p97_5_arcmin"] - one.row["backlash_limit_arcmin"], rel=1e-12)
+        assert share == share_words(one.row)
+        main = dimension_words(one.row["main_contributor"])
+        assert cause == f"{main} ({100 * one.row['main_contributor_share']:.0f} %)"
+
+
+def test_links_lead_to_their_variants(table, sound, tmp_path):
+    """Each name leads to the cell of Results that holds it, also behind rows with errors; Findings to its sheet."""
+    rows = [{**sound, "variant": "bad", "torque_Nm": ""}]
+    rows += [{**sound, "variant": name, "torque_Nm": 700 + place} for place, name in enumerate(("=1+1", "x" * 90, "c"))]
+    outcome = run(table(rows), tmp_path / "report.xlsx", samples=64)
+    book = _open(tmp_path / "report.xlsx")
+    sheet = book["Summary"]
+    first = _row(sheet, "Variant") + 1
+    for row, one in enumerate(drawn_variants(outcome), start=first):
+        link = sheet.cell(row, 1).hyperlink
+        assert link.target is None
+        title, cell = link.location.split("!")
+        assert book[title][cell].value == one.row["variant"]
+        start, _, end = sheet.cell(row, 1).value.partition("…")
+        assert one.row["variant"].startswith(start)
+        assert one.row["variant"].endswith(end)
+        assert sheet.cell(row, 1).data_type == "s"
+    title = sheet.cell(_row(sheet, "Findings"), 1).hyperlink.location.split("!")[0]
+    assert title in book.sheetnames
+
+
+def test_distances_are_the_same_in_sentence_and_table(study):
+    """What a sentence says a red variant is over its limit by is what its row of the table shows."""
+    sheet = _open(study[1])["Summary"]
+    cells = [sheet.cell(_row(sheet, "Variant") + 1 + place, 7) for place in range(3)]
+    shown = [f"{cell.value:.{len(cell.number_format.split(';')[0].partition('.')[2])}f}" for cell in cells]
+    assert re.findall(r"([\d.]+)′ over", sheet.cell(_row(sheet, "Which fail"), 2).value) == shown
+    assert shown == ["2.462", "0.480", "0.138"]
+
+
+def test_verdicts_of_few_points_have_a_mark(folder):
+    """By 64 draws eight green verdicts have a ? in cell and key figure, in the colour of green, and shares an ≈."""
+    study = regenerate.ROOT / "data" / "b3-160-study.xlsx"
+    run(study, folder / "few.xlsx", method="random", samples=64)
+    sheet = _open(folder / "few.xlsx")["Summary"]
+    assert [sheet.cell(4, place).value for place in (2, 5, 8)] == ["3 red", "0 amber", "8 green?"]
+    assert sheet.cell(5, 8).value == f"{RULES['green']}; 8 not settled"
+    assert sheet.cell(4, 8).fill.fgColor.rgb == FILLS["green"]
+    first = _row(sheet, "Variant") + 1
+    cells = [sheet.cell(row, 2) for row in range(first, first + 11)]
+    assert [cell.value for cell in cells] == ["red"] * 3 + ["green?"] * 8
+    assert [cell.fill.fgColor.rgb for cell in cells] == [FILLS["red"]] * 3 + [FILLS["green"]] * 8
+    assert sheet.cell(first, 9).value == "Young's modulus (≈73 %)"
+    assert {sheet.row_dimensions[row].height or LINE_HEIGHT for row in range(first, first + 11)} == {LINE_HEIGHT}
+
+
+def test_further_sheets_and_a_line_to_sign(study):
+    """Below the table links lead to Explorer and Trace, and the page ends with room for a reviewer's name."""
+    book = _open(study[1])
+    sheet = book["Summary"]
+    row = _row(sheet, "Pick a variant in")
+    for place, title in ((2, "Explorer"), (3, "Trace")):
+        assert sheet.cell(row, place).hyperlink.location == f"{title}!A1"
+        assert title in book.sheetnames
+    assert re.fullmatch(r"Reviewed by _+   Date _+", sheet.cell(sheet.max_row, 1).value)
+    assert sheet.print_area.endswith(f"$I${sheet.max_row}")
+
+
+def test_numbers_have_no_separators(study, folder, table, sound):
+    """However many lines or points there are, thousands are written in one way on the whole page."""
+    run(table([sound]), folder / "many points.xlsx", method="sobol")
+    for path in (study[1], folder / "many points.xlsx"):
+        texts = [
+            cell.value for row in _open(path)["Summary"].iter_rows() for cell in row if isinstance(cell.value, str)
+        ]
+        assert not any(re.search(r"\d,\d", text) for text in texts)
+    assert any("32768 points per variant" in text for text in texts)
+
+
+def test_long_names_of_the_table_stay_apart(table, sound, tmp_path):
+    """Names that begin alike are cut in their middle, so that each row of the table has its own."""
+    names = [f"A Name That Is The Same For Thirty Letters, Wall {wall} mm" for wall in ("1.6", "1.7", "1.8")]
+    run(table([{**sound, "variant": name} for name in names]), tmp_path / "report.xlsx", samples=64)
+    sheet = _open(tmp_path / "report.xlsx")["Summary"]
+    first = _row(sheet, "Variant") + 1
+    labels = [sheet.cell(row, 1).value for row in range(first, first + 3)]
+    assert len(set(labels)) == 3
+    assert all(re.fullmatch(r"A Name[^…]*…[^…]*1\.[678] mm", label) for label in labels)
+    width = sheet.column_dimensions["A"].width
+    assert all(lines_of(label, width) == 1 for label in labels)
+
+
+def test_where_the_numbers_come_from(study):
+    """Name, date, sha256, version, method, seed and lines stand on the page; nothing of the time of the run."""
+    outcome, path = study
+    texts = "\n".join(str(cell.value) for row in _open(path)["Summary"].iter_rows() for cell in row if cell.value)
+    assert "Submission b3-160-study.xlsx; last changed 2026-01-01" in texts
+    assert f"sha256 {outcome.submission.sha256}" in texts
+    assert re.search(r"flexlash \d+\.\d+\.\d+, method line, seed 0, \d+ (to \d+ )?lines per variant\.", texts)
+
+
+def test_a_file_without_a_date_has_none(table, sound, tmp_path):
+    """A table has no date of its own, so none is told."""
+    run(table([sound]), tmp_path / "report.xlsx", samples=64)
+    sheet = _open(tmp_path / "report.xlsx")["Summary"]
+    texts = [str(cell.value) for cell in sheet["A"] if cell.value]
+    assert "Submission submission.csv" in texts
+    assert not any("last changed" in text for text in texts)
+
+
+def _chart(path):
+    """Return the text of the Summary's chart."""
+    with zipfile.ZipFile(path) as archive:
+        return archive.read("xl/charts/chart1.xml").decode()
+
+
+def test_the_chart_holds_every_variant(study):
+    """Bars, median and limit carry the points of all variants, and the bars the colours of their verdicts."""
+    outcome, path = study
+    text = _chart(path)
+    drawn = drawn_variants(outcome)
+    series = re.findall(r"<c:ser>.*?</c:ser>", text, re.DOTALL)
+    assert len(series) == 4
+    lengths = [row.row["p97_5_arcmin"] - row.row["p2_5_arcmin"] for row in drawn]
+    expected = [
+        [one.row["p2_5_arcmin"] for one in drawn],
+        lengths,
+        [one.row["p50_arcmin"] for one in drawn],
+        [one.row["backlash_limit_arcmin"] for one in drawn],
+    ]
+    for one, numbers in zip(series, expected, strict=True):
+        values = re.search(r"<c:val>.*?</c:val>", one, re.DOTALL)[0]
+        assert [float(value) for value in re.findall(r"<c:v>([^<]+)</c:v>", values)] == pytest.approx(numbers)
+    colours = re.findall(r'<c:dPt>.*?<a:solidFill>\s*<a:srgbClr val="(\w+)"', series[1], re.DOTALL)
+    names = {"red": "red", "amber": "orange"}
+    assert colours == [PALETTE[names.get(light(one.row), "sky")].strip("#") for one in drawn]
+    low = float(re.search(r'<c:min val="([^"]+)"', text)[1])
+    assert 0 < low < min(expected[0])
+
+
+def test_more_variants_than_fit_are_said(table, tmp_path, monkeypatch):
+    """The table lists the twelve worst and the chart the sixty worst; both say of how many, not of how many drawn."""
+    monkeypatch.setattr("flexlash.pipeline.DRAWN", 70)
+    run(table(_many(80)), tmp_path / "report.xlsx", samples=64)
+    texts = [str(cell.value) for cell in _open(tmp_path / "report.xlsx")["Summary"]["A"] if cell.value]
+    assert any(text.startswith("The 12 worst of 80 are listed; all are in Results.") for text in texts)
+    assert ": the 60 worst of 80<" in _chart(tmp_path / "report.xlsx")
+    assert _chart(tmp_path / "report.xlsx").count('<c:ptCount val="60"/>') == 8
+
+
+def test_few_decimals_of_an_axis_are_enough(table, sound, tmp_path):
+    """Whatever the size of the backlash, the axis has a handful of steps whose numbers differ."""
+    for place, torque in enumerate((0.8, 80.0, 8000.0)):
+        path = tmp_path / f"{place}.xlsx"
+        run(table([{**sound, "torque_Nm": torque, "backlash_limit_arcmin": ""}]), path, samples=64)
+        text = _chart(path)
+        step = float(re.search(r'<c:majorUnit val="([^"]+)"', text)[1])
+        decimals = re.search(r'<c:numFmt formatCode="0\.?(0*)" sourceLinked="0"/>', text)[1]
+        assert round(step, len(decimals)) == pytest.approx(step)
+        assert 0 < step < 3.7 * torque / 800 / 10
+
+
+def test_nothing_computed_still_has_a_page(table, sound, tmp_path):
+    """A submission without a computed row has its Summary without table, chart and link to a variant."""
+    path = _alone(run(table([{**sound, "torque_Nm": ""}])), tmp_path / "report.xlsx", 9)
+    values = [cell.value for cell in _open(path)["Summary"]["A"]]
+    assert "0 of 1" in values
+    assert "Variant" not in values
+
+
+def _alone(outcome, path, paper):
+    """Write the Summary of an outcome, what it draws on and what it leads to, for paper of this number."""
+    with xlsxwriter.Workbook(str(path)) as workbook:
+        book = Book(workbook)
+        drawn = drawn_variants(outcome)
+        curves = stored_curves(drawn)
+        write_summary(book, outcome, drawn, curves)
+        workbook.get_worksheet_by_name("Summary").set_paper(paper)
+        curves.write(book, "")
+        workbook.add_worksheet("Results")
+        workbook.add_worksheet("Findings")
+    return path
+
+
+def _words(document):
+    """Return the letters of a document's first page cell by cell, without spaces."""
+    command = ["pdftotext", "-l", "1", document, "-"]
+    return "".join(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split())
+
+
+@needs_pages
+def test_the_summary_prints_whole_on_one_page_of_either_paper(study, table, sound, tmp_path, monkeypatch):
+    """On A4 and Letter the Summary is one page that holds every sentence whole, to its last line, in readable size."""
+    data = regenerate.ROOT / "data"
+    long = [{**row, "variant": f"{row['variant']} {'W' * 60}"} for row in _many(20)]
+    sources = {
+        "catalogue": data / "catalogue-sizes.xlsx",
+        "few": data / "b3-160-study.xlsx",
+        "fixing": data / "needs-fixing.xlsx",
+        "one": table([sound], "one.csv"),
+        "many": table(_many(600), "many.csv"),
+        "long": table(long, "long.csv"),
+    }
+    # The outcomes of reports, with as many curves as the chart can hold; the whole reports are not looked at.
+    monkeypatch.setattr("flexlash.pipeline.DRAWN", 70)
+    monkeypatch.setattr("flexlash.report.workbook.report_bytes", lambda _: b"")
+    few = {"method": "random", "samples": 64}
+    outcomes = {
+        name: run(source, tmp_path / f"{name}.xlsx", **(few if name == "few" else {}))
+        for name, source in sources.items()
+    }
+    outcomes["study"] = study[0]
+    papers = {9: r"595\.\d+ x 841\.\d+", 1: "612 x 792"}
+    asked = [(paper, name) for paper in papers for name in outcomes]
+    paths = [_alone(outcomes[name], tmp_path / f"{paper}-{name}.xlsx", paper) for paper, name in asked]
+    for (paper, name), document in zip(asked, convert_all(paths, "pdf", tmp_path), strict=True):
+        facts = subprocess.run(["pdfinfo", document], check=True, capture_output=True, text=True).stdout
+        assert re.search(rf"Page size: +{papers[paper]}", facts)
+        page = _words(document)
+        for topic, text in sentences(outcomes[name]):
+            assert "".join(text.split()) in page, topic
+        assert "Maincontributor" in page
+        assert "Methodandlimitsofthemodel:sheetAbout." in page
+        assert "Reviewedby____" in page
+        assert _text_size(document) > 7
+
+
+def _text_size(document):
+    """Return the size [pt] of the topics on a page, which is that of the sentences."""
+    command = ["pdftotext", "-bbox", "-l", "1", document, "-"]
+    text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    heights = re.findall(r'yMin="([\d.]+)" xMax="[\d.]+" yMax="([\d.]+)">Computed<', text)
+    return min(float(high) - float(low) for low, high in heights) / _ASCENT_AND_DESCENT

@@ -1,0 +1,351 @@
+"""Submissions that have every finding of the catalogue: what `flexlash explain` and docs/findings.md show is real.
+
+To add a code, add what makes it to one of the submissions below, then run `python tests/support/regenerate.py`.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import openpyxl
+from openpyxl.packaging.custom import StringProperty
+from small_workbook import MAIN, OLE2, WORKBOOK, archive_of, parts_of
+
+from flexlash.feedback.template.template_workbook import Filling, template_bytes
+from flexlash.pipeline import check, run
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.schema.columns import columns_of
+from flexlash.schema.findings import Finding
+
+__all__ = ["PENDING", "SUBMISSIONS", "examples"]
+
+PENDING = frozenset({"E118"})
+"""Codes that may stand in the catalogue without an example; E118 needs a fault of the program itself."""
+
+CUP: dict[str, Any] = {
+    "variant": "C-1",
+    "flexspline_type": "cup",
+    "material": "20Cr2Ni4",
+    "torque_Nm": 800,
+    "cylinder_length_mm": 160,
+    "mean_radius_mm": 80,
+    "wall_thickness_mm": 1.6,
+    "disk_inner_radius_mm": 40,
+}
+LABELS = {column.key: column.label for column in columns_of("Variants").values()}
+Rows = Sequence[Mapping[str, Any]]
+Made = tuple[Path, dict[str, Any]]
+
+
+def _numbered(*changes: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return a sound row for each change, changed."""
+    return [CUP | {"variant": f"C-{number}"} | change for number, change in enumerate(changes, start=1)]
+
+
+def _text(rows: Rows, headers: Mapping[str, str] = LABELS, delimiter: str = ",") -> str:
+    """Return rows as a delimited text under their labels."""
+    keys = list(dict.fromkeys(key for row in rows for key in row))
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, delimiter=delimiter, lineterminator="\n")
+    writer.writerow([headers.get(key, key) for key in keys])
+    writer.writerows([row.get(key, "") for key in keys] for row in rows)
+    return buffer.getvalue()
+
+
+def _file(folder: Path, content: str | bytes, name: str = "study.csv", **options: Any) -> Made:
+    path = folder / name
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    return path, options
+
+
+def _book(
+    folder: Path, sheets: Mapping[str, Sequence[Sequence[Any]]], change: Callable[[Any], None] | None = None
+) -> Made:
+    """Write sheets as lists of rows with openpyxl."""
+    book = openpyxl.Workbook()
+    book.remove(book.active)
+    for name, rows in sheets.items():
+        sheet = book.create_sheet(name)
+        for row in rows:
+            sheet.append(list(row))
+    if change:
+        change(book)
+    path = folder / "study.xlsx"
+    book.save(path)
+    return path, {}
+
+
+def _lines(rows: Rows) -> list[list[Any]]:
+    """Return rows as a sheet's lines under their labels."""
+    keys = list(dict.fromkeys(key for row in rows for key in row))
+    return [[LABELS.get(key, key) for key in keys], *([row.get(key) for key in keys] for row in rows)]
+
+
+def _needs_fixing(folder: Path) -> Made:
+    from regenerate import needs_fixing
+
+    return _file(folder, template_bytes(needs_fixing()), "needs-fixing.xlsx")
+
+
+def _variants(folder: Path) -> Made:
+    """Write faults in cells and rows of Variants."""
+    rows = _numbered(
+        {"disk_cone_angle_deg": 120},
+        {"torque_Nm": "1e400"},
+        {"variant": "twice"},
+        {"variant": "twice"},
+        {"torque_Nm": 1e-9},
+        {"disk_outer_radius_mm": 82},
+        {"torque_Nm": 12000},
+        {"torque_Nm": 4000, "wall_thickness_mm": 0.6, "cylinder_length_mm": 480},
+        {"torque_Nm": 800_000},
+        {"wall_thickness_mm": 20},
+        {"wall_thickness_mm": 10},
+        {"material": " 20cr2ni4", "load_inertia_kg_m2": 50},
+        {"hub_fillet_radius_mm": 30, "junction_fillet_radius_mm": 20},
+        {"wall_thickness_mm": 0.5},
+        {"wall_thickness_mm": 0.9},
+        {"disk_inner_radius_mm": 60},
+        {"wall_thickness_mm": 0.0016},
+        {"backlash_limit_arcmin": 1},
+        {"torque_Nm": 6500},
+        {"mean_radius_mm": 160, "torque_Nm": 100, "cylinder_length_mm": 1600},
+        {"mean_radius_mm": 0.08},
+        {"wall_thickness_mm": 450},
+        {"wall_thickness_mm": "TBD"},
+        {"notes": "n" * 1001},
+        {"rated_torque_Nm": 1e9},
+        {"notes": "moved by a comma"},
+    )
+    rows[0]["Customer"] = "Example Ltd"
+    text = _text(rows, LABELS | {"mean_radius_mm": "Mean radius r_m", "disk_cone_angle_deg": "Disk cone angle [mrad]"})
+    text = text.replace(",120,", f",{120 / 180 * 3141.592653589793},", 1)
+    first, *rest, last = text.splitlines()
+    rest = [f"{first},,Drawing", f"{rest[0]},unnamed,", *(f"{line},," for line in rest[1:]), f"{last},,,1,6"]
+    return _file(folder, "\n".join([*rest, *[""] * 70, ",,,?", ""]))
+
+
+def _tables(folder: Path) -> Made:
+    """Write faults in Tolerances and Materials, each in a class or material of its own."""
+    wall = {"dimension": "wall_thickness"}
+    classes: list[dict[str, Any]] = [
+        wall | {"grade": "IT 7"},
+        wall | {"lower_deviation": -1, "upper_deviation": 1, "deviation_unit": "N·m"},
+        wall | {"lower_deviation": -2, "upper_deviation": 2},
+        {"dimension": "wall_thickness", "grade": "2768-v"},
+        wall | {"grade": "IT7", "lower_deviation": 0},
+        wall | {"lower_deviation": 0},
+        wall | {"lower_deviation": 0.1, "upper_deviation": -0.1},
+        {"dimension": "torque", "grade": "IT7"},
+        wall | {"lower_deviation": 0.02, "upper_deviation": 0.02},
+        wall | {"lower_deviation": -0.7, "upper_deviation": 0.7},
+        wall | {"lower_deviation": -0.3, "upper_deviation": 0.3},
+        wall | {"grade": "2768-m"},
+        wall | {"lower_deviation": 0, "upper_deviation": 5},
+        wall | {"lower_deviation": -1e-9, "upper_deviation": 1e-9},
+        {"dimension": "rim_length", "lower_deviation": -1, "upper_deviation": 3},
+    ]
+    keys = ("dimension", "lower_deviation", "upper_deviation", "deviation_unit", "grade")
+    rows = [
+        {"tolerance_class": f"T{number}", **{key: row.get(key, "") for key in keys}}
+        for number, row in enumerate(classes, start=1)
+    ]
+    rows += [{"tolerance_class": "twice", **wall, "grade": "IT7"}] * 2
+    rows += [{"tolerance_class": name, **wall, "grade": "IT7"} for name in ("press fit", "pres fit")]
+    steel = {"youngs_modulus_GPa": 211, "poisson_ratio": 0.3, "shear_modulus_GPa": ""}
+    materials = [
+        {"material": "20Cr2Ni4", **steel},
+        {"material": "twice", **steel},
+        {"material": "Twice", **steel},
+        {"material": "half", **steel, "poisson_ratio": ""},
+        {"material": "both", **steel, "shear_modulus_GPa": 79},
+    ]
+    variants = _numbered(*({"tolerance_class": f"T{number}"} for number in range(1, len(classes) + 1)))
+    variants[-1] |= {"rim_length_mm": 158, "rim_thickness_mm": 3.2}
+    variants += [CUP | {"variant": "pressed", "tolerance_class": "press fit"}]
+    variants += [CUP | {"variant": "doubled", "tolerance_class": "twice"}]
+    variants += [CUP | {"variant": f"of {material}", "material": material} for material in ("twice", "half")]
+    options = {}
+    for name, table in (("tolerances", rows), ("materials", materials)):
+        options[name] = folder / f"{name}.csv"
+        options[name].write_text(_text(table), encoding="utf-8")
+    return _file(folder, _text(variants), **options)
+
+
+def _settings(folder: Path) -> Made:
+    """Write settings with faults and a sheet of later versions."""
+    settings = [["Setting", "Value"], ["samples", 1.5], ["seed", 1], ["seed", 2]]
+    return _book(folder, {"Variants": _lines([CUP]), "Settings": settings, "Other sources": [["Source"], ["bearing"]]})
+
+
+def _calibrated(folder: Path) -> Made:
+    filling = Filling(variants=_numbered({"hub_fillet_radius_mm": 2}), settings={"disk_calibration": 0.9})
+    return _file(folder, template_bytes(filling), "study.xlsx")
+
+
+def _headers(folder: Path) -> Made:
+    """Write wrong headers."""
+    labels = LABELS | {"wall_thickness_mm": "Wal thickness [mm]", "torque_Nm": "Torque T [ft]"}
+    row = {key: value for key, value in CUP.items() if key != "cylinder_length_mm"} | {"Mean radius": 80}
+    return _file(folder, _text([row], labels))
+
+
+def _overlooked(folder: Path) -> Made:
+    """Write what nobody sees on the screen."""
+
+    def hide(book: Any) -> None:
+        sheet = book["Variants"]
+        sheet.merge_cells("D2:D3")
+        sheet.row_dimensions[4].hidden = True
+        for place, cell in enumerate(sheet[4], start=1):
+            sheet.cell(90, place, cell.value)
+        sheet["A90"] = "far below"
+        book["Materials"].sheet_state = "hidden"
+
+    materials = [["Material", "Young's modulus E [GPa]", "Poisson's ratio ν [-]"], ["20Cr2Ni4", 211, 0.3]]
+    return _book(folder, {"Variants": _lines(_numbered({}, {}, {})), "Materials": materials}, hide)
+
+
+def _percentages(folder: Path) -> Made:
+    """Write tolerances in cells that show per cent."""
+
+    def shape(book: Any) -> None:
+        for cell in ("C2", "D2", "C3", "D3"):
+            book["Tolerances"][cell].number_format = "0%"
+
+    tolerances = [
+        ["Tolerance class", "Dimension", "Lower deviation", "Upper deviation", "Deviation unit"],
+        ["fine", "wall_thickness", -0.05, 0.05, "%"],
+        ["fine", "torque", -0.05, 0.05],
+    ]
+    return _book(folder, {"Variants": _lines([CUP | {"tolerance_class": "fine"}]), "Tolerances": tolerances}, shape)
+
+
+def _marked(name: str, value: str) -> Callable[[Path], Made]:
+    """Return what makes a template with a document property."""
+
+    def made(folder: Path) -> Made:
+        def mark(book: Any) -> None:
+            book.custom_doc_props.append(StringProperty(name=name, value=value))
+
+        return _book(folder, {"Variants": _lines([CUP])}, mark)
+
+    return made
+
+
+def _elastic(folder: Path) -> Made:
+    """Write parts that formula and elasticity see differently."""
+    hat = {
+        "flexspline_type": "hat", "mean_radius_mm": 60, "cylinder_length_mm": 48, "wall_thickness_mm": 1.8,
+        "disk_inner_radius_mm": "", "disk_outer_radius_mm": 90, "disk_thickness_mm": 5,
+        "rim_length_mm": 10, "rim_thickness_mm": 3.6,
+    }  # fmt: skip
+    rows = _numbered({"disk_outer_radius_mm": 90}, hat, {"torque_Nm": 9800, "hub_fillet_radius_mm": 1})
+    return _file(folder, _text(rows), elasticity=True)
+
+
+def _mended(folder: Path) -> Made:
+    """Write a table and what was mended in it."""
+    original = _file(folder, _text([CUP]))[0]
+    mended = _file(folder, _text([CUP]), "study-mended.csv")[0]
+    return mended, {"given": [original, mended]}
+
+
+def _results(folder: Path) -> Made:
+    """Write the results of a table."""
+    run(_file(folder, _text([CUP]))[0], folder / "results.csv", samples=16, method="random")
+    return folder / "results.csv", {}
+
+
+def _plain(content: str | bytes, name: str = "study.xlsx") -> Callable[[Path], Made]:
+    return lambda folder: _file(folder, content, name)
+
+
+def _sheets(**sheets: Sequence[Sequence[Any]]) -> Callable[[Path], Made]:
+    return lambda folder: _book(folder, {name.replace("_", " "): rows for name, rows in sheets.items()})
+
+
+def _with_units(units: str) -> str:
+    """Return a table with a row of units below its headers."""
+    header, row = _text([CUP], delimiter=";").splitlines()
+    return f"{header}\n;;;{units}\n{row}\n"
+
+
+GERMAN = _text(_numbered({"wall_thickness_mm": "1,6", "notes": "für Müller"}), delimiter=";")
+FOREIGN = parts_of()[WORKBOOK].replace(MAIN, "http://example.com/main")
+
+SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
+    "needs fixing": _needs_fixing,
+    "tables": _tables,
+    "variants": _variants,
+    "settings": _settings,
+    "calibrated": _calibrated,
+    "headers": _headers,
+    "overlooked": _overlooked,
+    "percentages": _percentages,
+    "elastic": _elastic,
+    "numbers as text": lambda folder: _book(folder, {"Variants": _lines([CUP | {"torque_Nm": "800"}])}),
+    "report": _marked("flexlash", "report"),
+    "no report": lambda folder: (_file(folder, _text([CUP]))[0], {"from_report": True}),
+    "older report": lambda folder: (_marked("flexlash", "report")(folder)[0], {"from_report": True}),
+    "altered report": lambda folder: (_book(folder, {"Carried": [["{"]]})[0], {"from_report": True}),
+    "marked": _marked("flexlash", "checked"),
+    "mended": _mended,
+    "results": _results,
+    "lock": _plain(b"\x05Anna", "~$study.xlsx"),
+    "older": _marked("flexlash_template_version", "1"),
+    "newer": _marked("flexlash_template_version", "99"),
+    "a document": _plain(b"%PDF-1.7", "drawing.pdf"),
+    "half a copy": _plain(b"PK\x03\x04half"),
+    "locked": _plain(OLE2 + "EncryptedPackage".encode("utf-16-le")),
+    "another kind": _plain(archive_of(parts_of() | {WORKBOOK: FOREIGN})),
+    "many rows": lambda folder: (_book(folder, {"Variants": _lines([CUP] * 5)})[0], {"limits": ReadingLimits(rows=5)}),
+    "old Excel": _plain(OLE2 + b"Workbook", "study.xls"),
+    "other letters": _plain(b"a,b\n\x81,2\n", "study.csv"),
+    "German": _plain(GERMAN.replace("Δ", "?").encode("cp1252"), "study.csv"),
+    "a row of units": _plain(_with_units("[N·m];[mm];[mm];[µm];[mm]"), "study.csv"),
+    "digits for notes": _plain(_text([{**CUP, "notes": 5}]), "study.csv"),
+    "no sheet": _sheets(Overview=[["a"]]),
+    "no header": _sheets(Variants=[["a", "b"]]),
+    "no rows": _sheets(Variants=_lines([CUP])[:1]),
+    "two sheets": _sheets(Variants=_lines([CUP]), Variants_=_lines([CUP])),
+    "a copied sheet": _sheets(Variants=_lines([CUP]), Variants_copy=_lines([CUP])),
+    "sheets of other names": _sheets(Sheet1=_lines([CUP])),
+    "two sheets of one kind": _sheets(
+        Variants=_lines([CUP]),
+        Tolerance=[["Tolerance class", "Dimension", "Grade", "Distribution"]],
+        Limits=[["Tolerance class", "Dimension", "Grade", "Distribution"]],
+    ),
+    "other rows": _sheets(Variants=[*_lines([CUP]), ["C-2"], [], ["Mean", "cup", None, 800]]),
+    "other columns": _plain(
+        _text(
+            [CUP | {"Rim lenght [mm]": "", "Wall tol": "±0.02", "variant ": "", "disk_inner_radius_mm": 80}],
+            LABELS | {"disk_inner_radius_mm": "Hub diameter"},
+        ),
+        "study.csv",
+    ),
+    "document type": lambda folder: _file(
+        folder, archive_of(parts_of() | {"xl/styles.xml": "<!DOCTYPE a><styleSheet/>"}), "study.xlsx"
+    ),
+}
+
+
+def examples(*names: str) -> dict[str, Finding]:
+    """Return the first finding of each code that these submissions, or all, have."""
+    found: dict[str, Finding] = {}
+    for name in names or SUBMISSIONS:
+        with tempfile.TemporaryDirectory() as folder:
+            path, options = SUBMISSIONS[name](Path(folder))
+            outcome = (
+                run(path, samples=16, method="random", **options)
+                if options.get("elasticity")
+                else check(path, **options)
+            )
+            for one in outcome.findings:
+                found.setdefault(one.code, one)
+    return dict(sorted(found.items(), key=lambda entry: ("EWI".index(entry[0][0]), entry[0])))

@@ -1,0 +1,98 @@
+"""Work for worker processes, in a module that they can import."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from pathlib import Path
+
+from flexlash.reading.read import Source, submission_of
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.reading.refusal import Refusal
+
+__all__ = [
+    "ask_for_a_process",
+    "die",
+    "die_once",
+    "each_parquet",
+    "fail",
+    "obey",
+    "own_number",
+    "sleep",
+    "slowly",
+    "square",
+]
+
+
+def square(number):
+    """Return the square of a number and the process that computed it."""
+    return number * number, os.getpid()
+
+
+def die_once(item):
+    """Return a number; the first process that takes number 2 is killed and leaves a file."""
+    number, trace = item
+    if number == 2 and not Path(trace).exists():
+        Path(trace).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def die(number):
+    """Kill every process that takes number 2, if it is not the one that is named beside it."""
+    if number[0] == 2 and os.getpid() != number[1]:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number[0]
+
+
+def fail(dimensions):
+    """Be a model that fails."""
+    raise ValueError(f"the model failed with {len(dimensions)} dimensions")
+
+
+def sleep(seconds):
+    """Do nothing for some seconds."""
+    time.sleep(seconds)
+    return os.getpid()
+
+
+def slowly(answer):
+    """Return what was given, after more time than a file has."""
+    time.sleep(1.5)
+    return answer
+
+
+def own_number():
+    """Return the number of the process that does this."""
+    return os.getpid()
+
+
+def ask_for_a_process():
+    """Return why the limited process cannot be started from here, an empty text where it can."""
+    from flexlash.reading.limited_process import ProcessFaultError, begin
+
+    try:
+        begin()
+    except ProcessFaultError as fault:
+        return str(fault)
+    return ""
+
+
+def obey(text):
+    """Do what a text says, as if a file had taken its reader over."""
+    answer = {}
+    exec(text, {"answer": answer})  # noqa: S102
+    return answer
+
+
+def each_parquet(files):
+    """Return what became of each of these files: its refusal, or that it was read."""
+    ends = []
+    for data in files:
+        try:
+            submission_of(Source(name="a.parquet", data=data), ReadingLimits())
+            ends.append("read")
+        except Refusal as refusal:
+            ends.append(refusal.code)
+    return ends

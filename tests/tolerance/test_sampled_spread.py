@@ -1,0 +1,128 @@
+"""The spread of values at points: type-7 quantiles, counted shares, and standard errors of each kind of point."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from flexlash.tolerance import Normal, Uniform
+from flexlash.tolerance.sampled_spread import SampledSpread
+from flexlash.tolerance.sampling import REPLICATES, UnitPoints, standard_error
+
+each_method = pytest.mark.parametrize("method", ["sobol", "random"])
+
+INPUTS = {"a": Normal(mean=1, sd=3), "b": Uniform(low=0, high=4)}
+
+
+def spread_of(model, inputs, *, method="sobol", samples=4096, seed=0, notes=()):
+    """Return the spread of a model at points of its own."""
+    points = UnitPoints(list(inputs), method=method, samples=samples, seed=seed)
+    return SampledSpread(model=model, inputs=inputs, points=points, notes=notes)
+
+
+def total(a, b):
+    """Return the sum of two inputs."""
+    return a + b
+
+
+@each_method
+def test_spread_says_what_it_is(method):
+    """A spread has the method and size of its points, and the notes it was given."""
+    spread = spread_of(total, INPUTS, method=method, samples=100, notes=("why",))
+    assert (spread.method, spread.notes, spread.size) == (method, ("why",), 128)
+    assert spread.values.shape == (REPLICATES, 8)
+
+
+@each_method
+def test_quantiles_do_not_depend_on_what_was_asked_before(method):
+    """Quantiles and shares are those of all values sorted, in whichever order and company they are asked for."""
+    spread = spread_of(total, INPUTS, method=method)
+    every = spread.values.copy().ravel()
+    generator = np.random.default_rng(3)
+    for _ in range(20):
+        wanted = generator.random(generator.integers(1, 5))
+        assert spread.quantile(wanted) == pytest.approx(np.quantile(every, wanted), rel=1e-13)
+        value = float(generator.choice(every))
+        assert spread.probability_above(value) == pytest.approx((every > value).mean(), abs=1e-15)
+        assert spread.standard_error(wanted).shape == wanted.shape
+    assert np.array_equal(spread.values.ravel(), every)
+
+
+@each_method
+def test_quantile_errors_are_told_together_or_alone(method):
+    """The standard error of a quantile is the same alone and among others."""
+    spread = spread_of(total, INPUTS, method=method)
+    wanted = np.array([0.00135, 0.3, 0.5, 0.99865])
+    together = spread.standard_error(wanted)
+    assert together.tolist() == [spread.standard_error(float(one)) for one in wanted]
+    assert (together > 0).all()
+
+
+def test_random_quantiles_have_the_textbook_standard_error():
+    """Of plain Monte Carlo of a normal the median errs by 1.253 s/√M and the 97.5 % quantile by 2.671 s/√M."""
+    spreads = [spread_of(lambda a: a, {"a": Normal(0, 1)}, method="random", seed=seed) for seed in range(40)]
+    for probability, factor in ((0.5, 1.253), (0.95, 2.113), (0.975, 2.671)):
+        stated = np.mean([spread.standard_error(probability) for spread in spreads]) * math.sqrt(4096)
+        assert stated == pytest.approx(factor, rel=0.15)
+
+
+@pytest.mark.parametrize("probability", [1e-5, 1e-7, 1 - 1e-7])
+def test_quantiles_beyond_the_points_have_large_errors(probability):
+    """A quantile rarer than one point in all is known no better than its distance from the last point."""
+    spread = spread_of(lambda a: a, {"a": Normal(0, 1)}, samples=1024)
+    off = abs(spread.quantile(probability) - stats.norm.ppf(probability))
+    assert off <= 4 * spread.standard_error(probability)
+
+
+@each_method
+def test_skewness_and_its_error(method):
+    """The skewness of a lognormal agrees within four standard errors, and is that of the values."""
+    spread = spread_of(lambda a: np.exp(a / 4), {"a": Normal(0, 1)}, method=method, samples=2**15)
+    exact = float(stats.lognorm(0.25).stats("s"))
+    assert 0 < spread.skewness_standard_error < 0.2
+    assert abs(spread.skewness - exact) <= 4 * spread.skewness_standard_error
+    assert spread.skewness == pytest.approx(float(stats.skew(spread.values.ravel())), rel=1e-9)
+
+
+@each_method
+def test_large_offsets_keep_the_spread(method):
+    """A constant a billion times the spread costs the standard deviation no more than its rounding."""
+    near = spread_of(total, INPUTS, method=method)
+    far = spread_of(lambda a, b: 1e9 + a + b, INPUTS, method=method)
+    assert far.sd == pytest.approx(near.sd, rel=1e-6)
+    assert far.mean - 1e9 == pytest.approx(near.mean, abs=1e-6)
+
+
+def test_standard_error_is_students():
+    """The standard error of replicates is s/√n, widened so that ± 1.96 of it is Student's 95 % interval."""
+    replicates = np.array([[1.0, 2.0, 4.0, 7.0], [3.0, 3.0, 3.0, 3.0]])
+    found = standard_error(replicates)
+    plain = replicates.std(axis=1, ddof=1) / 2
+    assert found == pytest.approx(plain * stats.t(3).ppf(0.975) / stats.norm.ppf(0.975), rel=1e-12)
+    assert found[1] == 0
+
+
+@pytest.mark.parametrize("count", [8, 16])
+def test_standard_error_covers(count):
+    """Of normal replicates 95 of 100 means lie within 1.96 standard errors of the truth."""
+    replicates = np.random.default_rng(count).standard_normal((20_000, count))
+    held = np.abs(replicates.mean(axis=1)) <= 1.96 * standard_error(replicates)
+    assert held.mean() == pytest.approx(0.95, abs=0.008)
+
+
+def test_a_model_of_another_shape_or_without_a_number_is_refused():
+    """A model that loses its shape, or is not finite once, is refused in a sentence."""
+    with pytest.raises(ValueError, match=r"^the model returned shape \(\), not that of its inputs$"):
+        spread_of(lambda a, b: (a + b).mean(), INPUTS)
+    with pytest.raises(ValueError, match=r"^the model returned a number that is not finite"):
+        spread_of(lambda a, b: np.where(b > 3.99, np.nan, a), INPUTS)
+
+
+def test_total_shares_count_interaction():
+    """Total shares of a product of centred inputs are 1 each, its shares 0."""
+    spread = spread_of(lambda a, b: a * b, {"a": Normal(0, 1), "b": Uniform(-1, 1)}, samples=2**15)
+    assert spread.total_shares == pytest.approx({"a": 1.0, "b": 1.0}, abs=0.03)
+    assert spread.shares == pytest.approx({"a": 0.0, "b": 0.0}, abs=0.03)
+    alone = spread_of(lambda a: a, {"a": Normal(0, 1)})
+    assert alone.shares == alone.total_shares == {"a": 1.0}

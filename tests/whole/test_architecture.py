@@ -1,0 +1,158 @@
+"""The house: who may import whom, and how large a room may be."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).resolve().parents[2] / "src" / "flexlash"
+MODULES = sorted(SOURCE.rglob("*.py"))
+
+ROOMS = (
+    "workers",
+    "schema",
+    "reading",
+    "validation",
+    "mechanics",
+    "tolerance",
+    "analysis",
+    "feedback",
+    "report",
+    "comparison",
+    "outputs",
+    "pipeline",
+    "cli",
+)
+"""The order of the rooms: each imports those before it alone."""
+
+ENTRANCES = {"__init__", "__main__"}
+
+CLIMBS = {
+    ("analysis.options", "outputs.plan"),
+    ("analysis.run_summary", "feedback.fixing.fix"),
+    ("reading.inside_limits", "feedback.annotation.marked_copy"),
+    ("reading.inside_limits", "validation.validate"),
+    ("reading.libraries", "feedback.annotation.loading"),
+    ("reading.libraries", "feedback.annotation.marked_copy"),
+    ("reading.libraries", "feedback.annotation.packing"),
+}
+"""The imports that go the other way, each because the limited process loads before its limits what it will need."""
+
+EDGES = {
+    "openpyxl": {"feedback", "reading"},
+    "xlsxwriter": {"feedback", "report"},
+    "pandera": {"validation"},
+    "click": {"cli"},
+    "scipy": {"mechanics", "report", "tolerance"},
+    "pebble": {"reading", "workers"},
+    "rapidfuzz": {"schema"},
+    "skfem": {"mechanics"},
+    "matplotlib": {"report"},
+}
+
+
+def _name(path):
+    parts = path.relative_to(SOURCE).with_suffix("").parts
+    return ".".join(parts).removesuffix(".__init__")
+
+
+NAMES = {_name(path): path for path in MODULES}
+
+
+def _imports(path):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+            inner = [name for name in names if name.removeprefix("flexlash.") in NAMES]
+            yield from inner
+            if len(inner) < len(names):
+                yield node.module
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+
+
+def _edges():
+    """Return which module imports which other one of the package."""
+    return {
+        name: {found.removeprefix("flexlash.") for found in _imports(path)} & set(NAMES) for name, path in NAMES.items()
+    }
+
+
+def test_imports_point_one_way():
+    """A room imports those before it in the order alone; the few that do not are named, and stay few."""
+    found = {
+        (name, target)
+        for name, targets in _edges().items()
+        for target in targets
+        if name.split(".")[0] not in ENTRANCES and ROOMS.index(target.split(".")[0]) > ROOMS.index(name.split(".")[0])
+    }
+    assert found == CLIMBS
+
+
+def test_every_entry_is_a_room():
+    """The folder holds the rooms of the order and the two entrances, nothing else."""
+    assert {name.split(".")[0] for name in NAMES} == {*ROOMS, *ENTRANCES}
+
+
+def test_no_two_modules_have_one_name():
+    """A module is called by its last name, which no other has."""
+    last = [name.split(".")[-1] for name in NAMES]
+    assert {name for name in last if last.count(name) > 1} <= {"__init__"}
+
+
+@pytest.mark.parametrize("path", MODULES, ids=_name)
+def test_libraries_stay_at_their_edge(path):
+    """Each third-party library is imported in the rooms that are its edge, and nowhere else."""
+    stage = _name(path).split(".")[0]
+    for name in _imports(path):
+        library = name.split(".")[0]
+        assert stage in EDGES.get(library, {stage}), f"{stage} imports {library}"
+
+
+def test_no_rooms_without_a_purpose():
+    """No module is called utils, helpers, common, base or manager."""
+    names = {part for path in MODULES for part in _name(path).split(".")}
+    assert not names & {"utils", "util", "helpers", "common", "base", "manager", "misc"}
+
+
+@pytest.mark.parametrize("path", MODULES, ids=_name)
+def test_modules_and_public_names_are_documented(path):
+    """Every module and every public function or class says what it is."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    assert ast.get_docstring(tree)
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+            assert ast.get_docstring(node), node.name
+
+
+@pytest.mark.parametrize("path", MODULES, ids=_name)
+def test_functions_are_short(path):
+    """No function body is longer than 50 lines, docstring aside."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef):
+            start = node.body[1].lineno if ast.get_docstring(node) and len(node.body) > 1 else node.body[0].lineno
+            assert node.end_lineno - start < 50, node.name
+
+
+def test_help_imports_nothing_heavy():
+    """`flexlash --help` answers without loading polars, scipy, pandera, numpy or the workbook libraries."""
+    code = (
+        "import sys\nfrom flexlash.cli import cli\ncli.main(['--help'], standalone_mode=False)\n"
+        "heavy = {'polars', 'scipy', 'pandera', 'numpy', 'openpyxl', 'xlsxwriter'} & set(sys.modules)\n"
+        "assert not heavy, heavy"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+
+
+def test_check_does_not_load_the_sampler():
+    """Validation loads neither the Sobol' sampler nor the report writer's workbook."""
+    study = SOURCE.parent.parent / "data" / "b3-160-study.xlsx"
+    code = (
+        f"import sys\nfrom flexlash.pipeline import check\ncheck({str(study)!r})\n"
+        "assert 'scipy.stats' not in sys.modules and 'flexlash.report.workbook' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)

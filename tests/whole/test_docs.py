@@ -1,0 +1,100 @@
+"""What the documents say is what happens: their code blocks are executed, their links lead somewhere."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import sys
+
+import pytest
+import regenerate
+
+from flexlash import __version__
+from flexlash.cli import main
+from flexlash.feedback.template.template_workbook import study
+
+ROOT = regenerate.ROOT
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+DOCUMENTS = [*ROOT.glob("*.md"), *(ROOT / "data").glob("*.md")]
+
+
+def _blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+
+
+@pytest.fixture
+def copy(tmp_path, monkeypatch):
+    """Work in a folder that holds the examples as a clone does."""
+    (tmp_path / "data").mkdir()
+    for path in (ROOT / "data").glob("*.xlsx"):
+        shutil.copy(path, tmp_path / "data")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_shell_blocks_run(copy, monkeypatch, capsys):
+    """Every flexlash command of the README, in order, ends with 0, or with 3 where the faulty example is given."""
+    commands = [line for block in _blocks("sh") for line in block.replace(" && ", "\n").splitlines()]
+    ours = [line for line in commands if line.startswith("flexlash ")]
+    assert len(ours) >= 7
+    assert {line.split()[0] for line in commands} <= {"flexlash", "pip", "pytest"}
+    for line in ours:
+        monkeypatch.setattr(sys, "argv", shlex.split(line))
+        try:
+            main()
+        except SystemExit as stop:
+            assert (stop.code or 0) == (3 if "needs-fixing" in line else 0), line  # noqa: PT017
+    assert (copy / "data" / "b3-160-study-report.xlsx").exists()
+    assert (copy / "results.csv").exists()
+    assert {path.name for path in (copy / "marked").iterdir()} == {
+        "needs-fixing-checked.xlsx",
+        "needs-fixing-report.xlsx",
+    }
+    assert (copy / "mended.xlsx").exists()
+    assert "Traceback" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("block", _blocks("python"))
+def test_python_blocks_run(copy, block, capsys):  # noqa: ARG001
+    """Every Python block of the README runs as printed."""
+    exec(compile(block, "README.md", "exec"), {})  # noqa: S102
+    assert capsys.readouterr().out
+
+
+def test_the_quickstart_is_two_commands():
+    """The README names the two commands that do all the set-up."""
+    assert "pip install . && flexlash run data/b3-160-study.xlsx" in README
+    assert "pip install '.[test]' && pytest" in README
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+def test_links_lead_to_files(path):
+    """Every relative link and picture of a document exists."""
+    for target in re.findall(r"\]\(([^)#]+)\)", path.read_text(encoding="utf-8")):
+        if not target.startswith("http"):
+            assert (path.parent / target).exists(), target
+
+
+def test_the_readme_counts_right():
+    """The figures that the README states in words are those of the program."""
+    from flexlash.tolerance.engine.line_points import LINE_REPLICATES
+    from flexlash.tolerance.engine.line_spread import OF_SD
+
+    words = " ".join(README.split())
+    assert LINE_REPLICATES == 8
+    assert "Eight independent scrambled Sobol' nets of lines" in words
+    assert OF_SD == 1e-3
+    assert "known to a thousandth of the standard deviation" in words
+    assert "39 variants" in (ROOT / "data" / "README.md").read_text(encoding="utf-8")
+    assert len(regenerate.catalogue_sizes().variants) == 39
+    assert len(regenerate.FAULTS) == 24
+    assert "twenty-four rows with a different fault" in (ROOT / "data" / "README.md").read_text(encoding="utf-8")
+    assert len(study().variants) == 11
+
+
+def test_one_version_everywhere():
+    """pyproject, package and changelog agree on the version."""
+    pyproject = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    assert f'version = "{__version__}"' in pyproject
+    assert "## [Unreleased]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
