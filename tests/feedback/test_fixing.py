@@ -196,7 +196,7 @@ def test_a_row_of_more_cells_than_headers_stays_one():
     """Mending one cell of a table never hides that a decimal comma may have split another."""
     sheet = read_table(b"variant,material,torque_Nm,notes\nA,s,1,6,\nB,s ,8,x\n", "Variants")
     again = read_table(mended_table(sheet, [_repair("B3", "s")]), "Variants")
-    assert again.manner.longer == sheet.manner.longer == frozenset({2})
+    assert again.dialect.longer == sheet.dialect.longer == frozenset({2})
     assert again.rows[3][2] == "s"
 
 

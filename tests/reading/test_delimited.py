@@ -68,7 +68,7 @@ def test_csv_rows_are_numbered_as_excel_shows_them(what):
 )
 def test_the_delimiter_makes_even_rows(content, delimiter):
     """Of comma, semicolon, tab and bar that is the delimiter which makes the most rows of one width."""
-    assert _read(content).manner.delimiter == delimiter
+    assert _read(content).dialect.delimiter == delimiter
 
 
 DECIMAL_COMMAS = """a;b;c;d;e;f
@@ -80,7 +80,7 @@ DECIMAL_COMMAS = """a;b;c;d;e;f
 
 def test_decimal_commas_do_not_pass_for_delimiters():
     """A table with semicolons and decimal commas has semicolons, also where the last cells are blank."""
-    assert _read(DECIMAL_COMMAS).manner.delimiter == ";"
+    assert _read(DECIMAL_COMMAS).dialect.delimiter == ";"
 
 
 @pytest.mark.parametrize("title", ["Study of spring", "Study, spring, 2026"])
@@ -124,7 +124,7 @@ def test_error_words_of_a_table_are_errors(error):
 def test_a_table_beside_is_named_as_asked():
     """A CSV file given beside a submission becomes the sheet that it stands for."""
     sheet = read_table(b"a;b\n", "Tolerances", "fine.csv")
-    assert (sheet.name, sheet.manner.file) == ("Tolerances", "fine.csv")
+    assert (sheet.name, sheet.dialect.file) == ("Tolerances", "fine.csv")
 
 
 @pytest.mark.parametrize("line", ["sep=;", "SEP=;", '"sep=;"'])
@@ -133,7 +133,7 @@ def test_a_table_beside_is_named_as_asked():
 def test_a_line_for_excel_tells_the_delimiter_and_is_no_row(line, end, mark):
     """The line sep=; wins over what the rows look like, and Excel counts the rows from below it."""
     sheet = _read(f"{mark}{line}{end}a,b;c,d{end}1,2;3,4{end}")
-    assert sheet.manner.delimiter == ";"
+    assert sheet.dialect.delimiter == ";"
     assert sheet.rows[1] == {1: "a,b", 2: "c,d"}
 
 
@@ -151,7 +151,7 @@ def test_encodings_of_excel_are_read_and_told(encoding):
     """A table in UTF-8, in UTF-16 with its mark or in Windows-1252 is read letter by letter and says which it was."""
     sheet = _read("Länge [µm]\tb\nMüller\t5\n".encode(encoding))
     assert sheet.rows == {1: {1: "Länge [µm]", 2: "b"}, 2: {1: "Müller", 2: "5"}}
-    assert sheet.manner.encoding == ENCODINGS[encoding]
+    assert sheet.dialect.encoding == ENCODINGS[encoding]
 
 
 @pytest.mark.parametrize("mark", ["", "\ufeff"])
@@ -160,7 +160,7 @@ def test_both_byte_orders(order, mark):
     """UTF-16 is read in the order of bytes that its mark tells, or else the zeros beside its ASCII letters."""
     sheet = _read(f"{mark}Länge\tΔ\n1,6\tx\n".encode(order))
     assert sheet.rows == {1: {1: "Länge", 2: "Δ"}, 2: {1: "1,6", 2: "x"}}
-    assert sheet.manner.encoding == "UTF-16"
+    assert sheet.dialect.encoding == "UTF-16"
 
 
 @pytest.mark.parametrize("order", ["utf-32-le", "utf-32-be"])
@@ -172,8 +172,8 @@ def test_four_bytes_a_letter(order):
 def test_a_text_that_other_encodings_would_show_otherwise_has_an_address():
     """In Windows-1252 the first cell beyond ASCII is named, in Unicode none."""
     table = "a,b\nx,Müller\ny,Möller\n"
-    assert _read(table.encode("cp1252")).manner.foreign_text == (2, 2)
-    assert _read(table).manner.foreign_text is None
+    assert _read(table.encode("cp1252")).dialect.foreign_text == (2, 2)
+    assert _read(table).dialect.foreign_text is None
 
 
 UNREADABLE = {
@@ -248,12 +248,12 @@ def test_numbers_with_a_decimal_comma(what):
         for place, cell in cells.items():
             found.get(type(cell), []).append((number, place))
     assert (found[CommaNumber], found[DoubtfulNumber]) == (commas, doubtful)
-    assert sheet.manner.comma_number == (commas[0] if commas else None)
+    assert sheet.dialect.comma_number == (commas[0] if commas else None)
 
 
 def test_the_first_number_named_is_beyond_doubt():
     """The example that is told of a table is no number that might mean thousands."""
-    assert _read("a;b\n1,234;1,6\n").manner.comma_number == (2, 2)
+    assert _read("a;b\n1,234;1,6\n").dialect.comma_number == (2, 2)
 
 
 NAMED = "variant;material;torque_Nm;wall_thickness_mm;Revision\n{};20Cr2Ni4;{};2;{}\n"
@@ -265,7 +265,7 @@ def test_only_numbers_tell_what_a_point_is(variant, revision):
     sheet = _read(NAMED.format(variant, "1.050", revision))
     kinds = {place: type(cell) for place, cell in sheet.rows[2].items()}
     assert (kinds[1], kinds[2], kinds[3], kinds[4]) == (str, str, DoubtfulNumber, str)
-    assert sheet.manner.comma_number is None
+    assert sheet.dialect.comma_number is None
 
 
 def test_own_columns_are_in_doubt_as_well():
@@ -302,13 +302,13 @@ SPLIT = "variant,material,torque_Nm,wall_thickness_mm,notes\n"
 )
 def test_a_row_with_one_value_more_than_headers(rows, longer):
     """A row of more cells than headers is noted, also where the last is blank, unless numbers have decimal points."""
-    assert _read(SPLIT + rows).manner.longer == longer
+    assert _read(SPLIT + rows).dialect.longer == longer
 
 
 def test_rows_above_the_headers_and_other_delimiters_do_not_count():
     """A title may be wider than the header row, and a semicolon too many at each end is no split number."""
-    assert _read("Study,of,many,things,in,one\n" + SPLIT + "A,s,800,2,\n").manner.longer == frozenset()
-    assert _read(SPLIT.replace(",", ";") + "A;s;800;2;;\n").manner.longer == frozenset()
+    assert _read("Study,of,many,things,in,one\n" + SPLIT + "A,s,800,2,\n").dialect.longer == frozenset()
+    assert _read(SPLIT.replace(",", ";") + "A;s;800;2;;\n").dialect.longer == frozenset()
 
 
 def _measured(content, **limits):

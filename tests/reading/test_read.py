@@ -277,7 +277,7 @@ def test_a_delimited_text_is_the_variants_and_knows_how_it_was_written(tmp_path)
     submission = read_submission(path)
     assert (submission.kind, list(submission.sheets)) == ("csv", ["Variants"])
     assert (submission.delimiter, submission.encoding, submission.decimal_comma) == (";", "Windows-1252", True)
-    assert submission.manner.file == "submission.csv"
+    assert submission.dialect.file == "submission.csv"
 
 
 def test_damaged_parquet(tmp_path):

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from flexlash.reading.raw import (
     CommaNumber,
+    CsvDialect,
     DoubtfulNumber,
     ErrorCell,
-    Manner,
     Percentage,
     RawSheet,
     Unstored,
@@ -90,7 +90,7 @@ def test_everything_about_a_file_comes_through():
                 name="c",
                 rows={1: {1: "x"}},
                 numbers_are_texts=True,
-                manner=Manner(
+                dialect=CsvDialect(
                     delimiter=";",
                     encoding="UTF-8",
                     file="c.csv",

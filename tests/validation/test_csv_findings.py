@@ -6,13 +6,13 @@ import pytest
 
 from flexlash.pipeline import check, mend
 from flexlash.reading.delimited import read_table
-from flexlash.validation.csv_findings import tell_manner
+from flexlash.validation.csv_findings import report_dialect
 from flexlash.validation.ledger import Ledger
 
 
 def _told(content):
     ledger = Ledger("study.csv")
-    tell_manner(read_table(content, "Variants", "a.csv"), ledger)
+    report_dialect(read_table(content, "Variants", "a.csv"), ledger)
     return ledger.findings
 
 

@@ -17,7 +17,7 @@ from flexlash.tolerance.dimension_limits import Limits, LimitsProblem, limits_of
 from flexlash.tolerance.spread_statistics import Variation
 from flexlash.validation.blocking_errors import name_waiting
 from flexlash.validation.headers import plain
-from flexlash.validation.ledger import Slip
+from flexlash.validation.ledger import UnitMistake
 from flexlash.validation.unit_mistakes import settle
 from flexlash.validation.validate import Validated
 
@@ -68,14 +68,14 @@ def assess(validated: Validated, settings: Settings) -> dict[int, Computed]:
     _warn_exact(validated)
     sound = [variant for variant in validated.variants if variant.row not in validated.ledger.rows]
     numbers = nominal_numbers(sound, settings.lost_motion_percent / 100)
-    slips = validated.ledger.slips_by_owner()
+    mistakes = validated.ledger.unit_mistakes_by_owner()
     for variant, nominal in zip(sound, numbers, strict=True):
-        slipped = [*slips.get(variant.row, ()), *slips.get(plain(variant.material), ())]
+        mistaken = [*mistakes.get(variant.row, ()), *mistakes.get(plain(variant.material), ())]
         if not _LEAST < nominal["backlash"] < _GREATEST:  # type: ignore[operator]
-            _blame_backlash(validated, variant, nominal, slipped)
+            _blame_backlash(validated, variant, nominal, mistaken)
             continue
         _warn_calibration(validated, variant)
-        if not slipped:
+        if not mistaken:
             _warn_strength(validated, variant, nominal)
             _warn_stiffness(validated, variant, nominal)
             _warn_limit(validated, variant, nominal)
@@ -166,10 +166,10 @@ def _warn_exact(validated: Validated) -> None:
             validated.ledger.add("W438", column="tolerance_class", value=name, detail=words, **place)
 
 
-def _blame_backlash(validated: Validated, variant: Variant, nominal: Numbers, slipped: Sequence[Slip]) -> None:
-    """Record a backlash that no flexspline has: where a unit slipped, once for all rows of a material; else here."""
+def _blame_backlash(validated: Validated, variant: Variant, nominal: Numbers, mistaken: Sequence[UnitMistake]) -> None:
+    """Record a backlash that no flexspline has: where a unit is mistaken, once for a material; else here."""
     value = f"{nominal['backlash']:.3g}"
-    cause = next((slip for slip in slipped if slip.column != "yield_MPa"), None)
+    cause = next((mistake for mistake in mistaken if mistake.column != "yield_MPa"), None)
     if cause is None:
         blame(validated, "E324", variant, "torque_Nm", value=value)
         return

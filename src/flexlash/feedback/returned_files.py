@@ -71,5 +71,5 @@ def mended(outcome: Outcome, repairs: list[Repair], limits: ReadingLimits) -> tu
     if submission.kind == "workbook":
         return ask(mended_workbook, limits, submission.data, repairs, limits)
     own = [repair for repair in repairs if repair.sheet in submission.sheets]
-    (sheet,) = (sheet for sheet in submission.sheets.values() if sheet.manner == submission.manner)
+    (sheet,) = (sheet for sheet in submission.sheets.values() if sheet.dialect == submission.dialect)
     return ask(mended_table, limits, sheet, own), own

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable
 from typing import Any, get_args
 
-from flexlash.reading.raw import ErrorCell, Manner, Percentage, RawSheet, RawValue, Submission
+from flexlash.reading.raw import CsvDialect, ErrorCell, Percentage, RawSheet, RawValue, Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.reading.wire import from_wire
@@ -127,7 +127,7 @@ def _check_sheets(sheets: list[RawSheet], limits: ReadingLimits) -> None:
             all(len(area) == 4 and _are_places(area, MAXIMUM_ROW) for area in sheet.merged),  # noqa: PLR2004
             isinstance(sheet.hidden, bool),
             isinstance(sheet.numbers_are_texts, bool),
-            sheet.manner is None or _is_manner(sheet.manner),
+            sheet.dialect is None or _is_dialect(sheet.dialect),
         )
         for cells in sheet.rows.values():
             _require(_are_places(cells, MAXIMUM_COLUMN), all(map(_is_value, cells.values())))
@@ -147,13 +147,13 @@ def _is_value(value: Any) -> bool:
     return isinstance(value, get_args(RawValue))
 
 
-def _is_manner(manner: Manner) -> bool:
+def _is_dialect(dialect: CsvDialect) -> bool:
     """Whether a delimited text can have been written like this."""
-    places = (manner.comma_number, manner.foreign_text)
+    places = (dialect.comma_number, dialect.foreign_text)
     return (
-        manner.delimiter in _DELIMITERS
-        and isinstance(manner.encoding, str)
-        and isinstance(manner.file, str)
-        and _are_places(manner.longer, MAXIMUM_ROW)
+        dialect.delimiter in _DELIMITERS
+        and isinstance(dialect.encoding, str)
+        and isinstance(dialect.file, str)
+        and _are_places(dialect.longer, MAXIMUM_ROW)
         and all(place is None or (len(place) == 2 and _are_places(place, MAXIMUM_ROW)) for place in places)  # noqa: PLR2004
     )

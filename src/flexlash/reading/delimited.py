@@ -12,7 +12,7 @@ from itertools import islice
 
 from flexlash.reading.decimal_signs import Settled, settle_numbers
 from flexlash.reading.encodings import WINDOWS, decoded
-from flexlash.reading.raw import ERROR_WORDS, ErrorCell, Manner, RawSheet, RawValue
+from flexlash.reading.raw import ERROR_WORDS, CsvDialect, ErrorCell, RawSheet, RawValue
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.columns import ENTRY_SHEETS, columns_of
@@ -61,7 +61,7 @@ def read_table(data: bytes, name: str, file: str = "", limits: ReadingLimits | N
     # Without a quote no cell of a table that is separated by commas holds one.
     is_settled = delimiter == "," and '"' not in text and not longer
     settled = Settled() if is_settled else settle_numbers(read.rows, columns, others, delimiter=delimiter)
-    manner = Manner(
+    dialect = CsvDialect(
         delimiter=delimiter,
         encoding=encoding,
         file=file,
@@ -69,7 +69,7 @@ def read_table(data: bytes, name: str, file: str = "", limits: ReadingLimits | N
         foreign_text=_first_foreign(read.rows) if encoding == WINDOWS else None,
         longer=frozenset() if settled.has_decimal_point else longer,
     )
-    return RawSheet(name=name, rows=read.rows, numbers_are_texts=True, manner=manner)
+    return RawSheet(name=name, rows=read.rows, numbers_are_texts=True, dialect=dialect)
 
 
 class _TooLong(csv.Error):

@@ -10,9 +10,9 @@ from typing import Any, TypeAlias
 __all__ = [
     "ERROR_WORDS",
     "CommaNumber",
+    "CsvDialect",
     "DoubtfulNumber",
     "ErrorCell",
-    "Manner",
     "Percentage",
     "RawSheet",
     "RawValue",
@@ -70,7 +70,7 @@ RawValue: TypeAlias = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Manner:
+class CsvDialect:
     """How a delimited text was written: whatever of it was recognised rather than known.
 
     `comma_number` and `foreign_text` are the addresses, row and column, of the first number with a decimal comma
@@ -90,7 +90,7 @@ class Manner:
 class RawSheet:
     """Cells by row and column number, both from 1 as the user counts; blank cells are absent.
 
-    `numbers_are_texts` tells a delimited text, in which a text may be a number, `manner` how it was written.
+    `numbers_are_texts` tells a delimited text, in which a text may be a number, `dialect` how it was written.
     `hidden_rows` hold cells that Excel does not show; `merged` are areas as (first row, first column, last row, last
     column).
     """
@@ -101,7 +101,7 @@ class RawSheet:
     hidden: bool = False
     hidden_rows: frozenset[int] = frozenset()
     merged: tuple[tuple[int, int, int, int], ...] = ()
-    manner: Manner | None = None
+    dialect: CsvDialect | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,24 +122,24 @@ class Submission:
     run_with: Mapping[str, Any] | None = None
 
     @property
-    def manner(self) -> Manner | None:
+    def dialect(self) -> CsvDialect | None:
         """How a delimited submission was written; None for workbooks."""
-        return next((sheet.manner for sheet in self.sheets.values() if self.kind == "csv" and sheet.manner), None)
+        return next((sheet.dialect for sheet in self.sheets.values() if self.kind == "csv" and sheet.dialect), None)
 
     @property
     def delimiter(self) -> str:
         """What separates the columns of a delimited text; an empty text for others."""
-        return self.manner.delimiter if self.manner else ""
+        return self.dialect.delimiter if self.dialect else ""
 
     @property
     def encoding(self) -> str:
         """The encoding of a delimited text; an empty text for others."""
-        return self.manner.encoding if self.manner else ""
+        return self.dialect.encoding if self.dialect else ""
 
     @property
     def decimal_comma(self) -> bool:
         """Whether numbers of a delimited text were read with a decimal comma."""
-        return bool(self.manner and self.manner.comma_number)
+        return bool(self.dialect and self.dialect.comma_number)
 
 
 def column_letters(number: int) -> str:

@@ -12,9 +12,9 @@ from typing import Any
 
 from flexlash.reading.raw import (
     CommaNumber,
+    CsvDialect,
     DoubtfulNumber,
     ErrorCell,
-    Manner,
     Percentage,
     RawSheet,
     RawValue,
@@ -60,7 +60,7 @@ def to_wire(cells: Cells) -> dict[str, Any]:
                 "hidden_rows": sorted(sheet.hidden_rows),
                 "merged": sheet.merged,
                 "numbers_are_texts": sheet.numbers_are_texts,
-                "manner": asdict(sheet.manner) | {"longer": sorted(sheet.manner.longer)} if sheet.manner else None,
+                "manner": asdict(sheet.dialect) | {"longer": sorted(sheet.dialect.longer)} if sheet.dialect else None,
             }
             for sheet in cells.sheets
         ],
@@ -91,7 +91,7 @@ def from_wire(wire: dict[str, Any]) -> Cells:
                 hidden_rows=frozenset(sheet["hidden_rows"]),
                 merged=tuple(tuple(area) for area in sheet["merged"]),
                 numbers_are_texts=sheet["numbers_are_texts"],
-                manner=_manner(sheet["manner"]),
+                dialect=_dialect(sheet["manner"]),
             )
             for sheet in wire["sheets"]
         ],
@@ -101,12 +101,12 @@ def from_wire(wire: dict[str, Any]) -> Cells:
     )
 
 
-def _manner(written: dict[str, Any] | None) -> Manner | None:
+def _dialect(written: dict[str, Any] | None) -> CsvDialect | None:
     """Return how a delimited text was written."""
     if written is None:
         return None
     places = {name: place and tuple(place) for name, place in written.items() if name in _PLACES}
-    return Manner(**(written | places | {"longer": frozenset(written.get("longer", ()))}))
+    return CsvDialect(**(written | places | {"longer": frozenset(written.get("longer", ()))}))
 
 
 def _read(value: Any) -> RawValue:

@@ -7,24 +7,24 @@ from typing import Any
 from flexlash.reading.raw import RawSheet, column_letters
 from flexlash.validation.ledger import Ledger
 
-__all__ = ["tell_manner"]
+__all__ = ["report_dialect"]
 
 _NAMES = {",": "comma", ";": "semicolon", "\t": "tab", "|": "bar"}
 
 
-def tell_manner(sheet: RawSheet, ledger: Ledger) -> None:
+def report_dialect(sheet: RawSheet, ledger: Ledger) -> None:
     """Tell delimiter, encoding and decimal sign of a sheet that was read from a delimited text."""
-    manner = sheet.manner
-    if manner is None:
+    dialect = sheet.dialect
+    if dialect is None:
         return
-    facts: dict[str, Any] = {"file": manner.file} if manner.file else {}
-    if manner.delimiter != "," or manner.encoding == "UTF-16":
-        ledger.add("I507", value=_NAMES[manner.delimiter], detail=manner.encoding, **facts)
-    if manner.comma_number:
-        facts |= _at(sheet, manner.comma_number)
+    facts: dict[str, Any] = {"file": dialect.file} if dialect.file else {}
+    if dialect.delimiter != "," or dialect.encoding == "UTF-16":
+        ledger.add("I507", value=_NAMES[dialect.delimiter], detail=dialect.encoding, **facts)
+    if dialect.comma_number:
+        facts |= _at(sheet, dialect.comma_number)
         ledger.add("I510", suggestion=facts["value"].replace(",", "."), **facts)
-    if manner.foreign_text:
-        ledger.add("I511", **facts | _at(sheet, manner.foreign_text))
+    if dialect.foreign_text:
+        ledger.add("I511", **facts | _at(sheet, dialect.foreign_text))
 
 
 def _at(sheet: RawSheet, place: tuple[int, int]) -> dict[str, Any]:

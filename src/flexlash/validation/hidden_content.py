@@ -41,7 +41,9 @@ def tell_overlooked(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
 
 def _tell_digits(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
     """Warn of remarks that are nothing but short digits, as where decimal commas have split numbers."""
-    for key in sorted(_REMARKS & table.heading.places.keys()) if sheet.manner and sheet.manner.delimiter == "," else ():
+    for key in (
+        sorted(_REMARKS & table.heading.places.keys()) if sheet.dialect and sheet.dialect.delimiter == "," else ()
+    ):
         filled = table.frame.select("row", key).drop_nulls().rows()
         if filled and all(_DIGITS.fullmatch(text) for _, text in filled):
             row, text = filled[0]

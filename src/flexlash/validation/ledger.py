@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from flexlash.schema.findings import Finding, finding
 
-__all__ = ["Ledger", "Slip"]
+__all__ = ["Ledger", "UnitMistake"]
 
 _UNKNOWN = frozenset({"E209", "E210", "E211", "E307", "E309"})
 """Codes of names that are unknown however they are spelt."""
@@ -18,8 +18,8 @@ _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Slip:
-    """A cell whose unit has slipped, with what to say of it: `suggestion` is what was probably meant.
+class UnitMistake:
+    """A cell whose unit is mistaken, with what to say of it: `suggestion` is what was probably meant.
 
     `material` is the plain name of the material whose row it stands in, empty for a cell of Variants.
     """
@@ -42,9 +42,9 @@ class Ledger:
     """Findings so far, and what is not to be computed because of them.
 
     `rows` are rows of Variants; `materials` and `classes` names whose rows are faulty, `sources` the sheets and rows
-    in which they are; `everything` is set when a fault leaves no row computable. `slips` are the cells whose unit has
-    slipped, by sheet, row and column: an error there gets the value that was meant, and no other warning is recorded
-    there.
+    in which they are; `everything` is set when a fault leaves no row computable. `unit_mistakes` are the cells whose
+    unit is mistaken, by sheet, row and column: an error there gets the value that was meant, and no other warning is
+    recorded there.
     """
 
     def __init__(self, file: str) -> None:
@@ -55,14 +55,14 @@ class Ledger:
         self.classes: set[str] = set()
         self.sources: dict[tuple[str, str], list[tuple[str, int]]] = defaultdict(list)
         self.everything = False
-        self.slips: dict[tuple[str, int, str], Slip] = {}
+        self.unit_mistakes: dict[tuple[str, int, str], UnitMistake] = {}
 
     def add(self, code: str, *, rows: Iterable[int] = (), **facts: Any) -> None:
         """Record a finding; an error spoils the given rows of Variants."""
-        if slip := self._slip_at(facts):
+        if mistake := self._unit_mistake_at(facts):
             if code[0] == "W" and code != "W420":
                 return
-            facts = {**facts, "suggestion": facts.get("suggestion") or slip.suggestion}
+            facts = {**facts, "suggestion": facts.get("suggestion") or mistake.suggestion}
         found = finding(code, **{"file": self.file, **facts})
         self.findings.append(found)
         if found.level == "error":
@@ -95,18 +95,18 @@ class Ledger:
         message = found.message.replace(f'"{found.value}"', f'"{value}"', 1)
         return replace(found, value=value, message=message)
 
-    def _slip_at(self, facts: Mapping[str, Any]) -> Slip | None:
-        """Return the slip of the cell that a finding is about."""
+    def _unit_mistake_at(self, facts: Mapping[str, Any]) -> UnitMistake | None:
+        """Return the mistake of the cell that a finding is about."""
         digits = str(facts.get("cell", "")).lstrip(_LETTERS)
-        if not self.slips or not digits.isdecimal():
+        if not self.unit_mistakes or not digits.isdecimal():
             return None
-        return self.slips.get((facts["sheet"], int(digits), facts.get("column", "")))
+        return self.unit_mistakes.get((facts["sheet"], int(digits), facts.get("column", "")))
 
-    def slips_by_owner(self) -> dict[int | str, list[Slip]]:
-        """Return the slips by row of Variants, or by plain name of the material."""
-        found: dict[int | str, list[Slip]] = defaultdict(list)
-        for slip in self.slips.values():
-            found[slip.material if slip.schema == "Materials" else slip.row].append(slip)
+    def unit_mistakes_by_owner(self) -> dict[int | str, list[UnitMistake]]:
+        """Return the mistakes by row of Variants, or by plain name of the material."""
+        found: dict[int | str, list[UnitMistake]] = defaultdict(list)
+        for mistake in self.unit_mistakes.values():
+            found[mistake.material if mistake.schema == "Materials" else mistake.row].append(mistake)
         return found
 
     def name_variants(self, sheet: str, names: Mapping[int, str]) -> None:

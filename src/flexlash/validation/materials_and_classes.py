@@ -109,7 +109,7 @@ def _check_constants(table: Table, ledger: Ledger, record: dict[str, Any], mater
     elif (
         young is not None
         and poisson is not None
-        and not any((table.sheet, row, key) in ledger.slips for key in _CONSTANTS)
+        and not any((table.sheet, row, key) in ledger.unit_mistakes for key in _CONSTANTS)
     ):
         implied = young / (2 * (1 + poisson))
         if abs(shear / implied - 1) > 5e-4:  # noqa: PLR2004

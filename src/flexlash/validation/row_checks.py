@@ -12,16 +12,16 @@ from pandera.errors import SchemaErrors
 from flexlash.schema.columns import Column, columns_of
 from flexlash.schema.spellings import misspelt, spelt_alike, suggested
 from flexlash.validation.cell_values import is_no_value, no_value_facts
-from flexlash.validation.ledger import Ledger, Slip
+from flexlash.validation.ledger import Ledger, UnitMistake
 from flexlash.validation.relations import RELATIONS, Relation
 from flexlash.validation.typed_columns import Table
-from flexlash.validation.unit_mistakes import find_slips, tell_contradiction
+from flexlash.validation.unit_mistakes import find_unit_mistakes, report_contradiction
 from flexlash.validation.unusual_values import report_unusual
 
 __all__ = ["check_cells", "check_relations"]
 
 _OF_SIZES = frozenset({"E303", "E305", "E306", "E312", "E313", "E328", "E330"})
-"""Relations between lengths, which a slipped unit breaks."""
+"""Relations between lengths, which a mistaken unit breaks."""
 
 
 def _checks(column: Column) -> list[pa.Check]:
@@ -69,7 +69,7 @@ def _failures(schema: pa.DataFrameSchema, frame: pl.DataFrame) -> Iterator[tuple
 
 
 def check_cells(table: Table, ledger: Ledger) -> None:
-    """Check every cell by itself: required, bounds, lists; and find the units that slipped."""
+    """Check every cell by itself: required, bounds, lists; and find the units that are mistaken."""
     columns = columns_of(table.schema)
     for check, key, index in _failures(_cell_schema(table.schema), table.frame):
         row = table.frame["row"][index]
@@ -93,7 +93,7 @@ def check_cells(table: Table, ledger: Ledger) -> None:
             **no_value_facts(column),
             rows=[row] if table.schema == "Variants" else [],
         )
-    find_slips(table, ledger)
+    find_unit_mistakes(table, ledger)
     report_unusual(table, ledger)
 
 
@@ -107,10 +107,10 @@ def check_relations(table: Table, ledger: Ledger) -> None:
         row = record["row"]
         if any((row, key) in table.faulty for key in relation.keys):
             continue
-        if relation.code[0] != "E" and any((table.sheet, row, key) in ledger.slips for key in relation.keys):
+        if relation.code[0] != "E" and any((table.sheet, row, key) in ledger.unit_mistakes for key in relation.keys):
             continue
-        if relation.code in _OF_SIZES and (slip := _slipped_beside(table, ledger, row, relation)):
-            tell_contradiction(slip, columns[relation.key].name, ledger)
+        if relation.code in _OF_SIZES and (mistake := _unit_mistake_beside(table, ledger, row, relation)):
+            report_contradiction(mistake, columns[relation.key].name, ledger)
             continue
         value = record[relation.key]
         facts = {
@@ -129,7 +129,7 @@ def check_relations(table: Table, ledger: Ledger) -> None:
         )
 
 
-def _slipped_beside(table: Table, ledger: Ledger, row: int, relation: Relation) -> Slip | None:
-    """Return the slipped cell that breaks a relation, where that is not the cell which the relation blames."""
-    slips = {key: ledger.slips.get((table.sheet, row, key)) for key in relation.keys}
-    return None if slips[relation.key] else next(filter(None, slips.values()), None)
+def _unit_mistake_beside(table: Table, ledger: Ledger, row: int, relation: Relation) -> UnitMistake | None:
+    """Return the mistaken cell that breaks a relation, where that is not the cell which the relation blames."""
+    mistakes = {key: ledger.unit_mistakes.get((table.sheet, row, key)) for key in relation.keys}
+    return None if mistakes[relation.key] else next(filter(None, mistakes.values()), None)

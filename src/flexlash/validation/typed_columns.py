@@ -124,17 +124,17 @@ def _entries(
 
 def _surplus(sheet: RawSheet, heading: Heading, row: int) -> list[int]:
     """Return the places of a delimited text's row that lie beyond the last header, blank ones where they may count."""
-    if sheet.manner is None:
+    if sheet.dialect is None:
         return []
     last = max(sheet.rows[heading.row])
     found = [place for place, value in sheet.rows[row].items() if place > last and _as_shown(value)]
-    return found or ([last + 1] if row in sheet.manner.longer else [])
+    return found or ([last + 1] if row in sheet.dialect.longer else [])
 
 
 def _blame_surplus(table: Table, row: int, surplus: list[int], sheet: RawSheet, ledger: Ledger) -> None:
     """Record that a row has more cells than headers, so that nothing tells which value belongs to which."""
     table.faulty |= {(row, key) for key in columns_of(table.schema)}
-    comma = sheet.manner is not None and sheet.manner.delimiter == ","
+    comma = sheet.dialect is not None and sheet.dialect.delimiter == ","
     ledger.add(
         "E215",
         sheet=table.sheet,

@@ -1,4 +1,4 @@
-"""Units slipped by 1000: numbers that may stand in a cell, but not beside the rest of their row or in any material."""
+"""Units mistaken by a factor of 1000: numbers that suit no material, or not the rest of their row."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 from flexlash.schema.columns import columns_of
 from flexlash.schema.findings import spelled_out
 from flexlash.validation.headers import plain
-from flexlash.validation.ledger import Ledger, Slip
+from flexlash.validation.ledger import Ledger, UnitMistake
 from flexlash.validation.typed_columns import Table
 
-__all__ = ["SHARES", "find_slips", "settle", "tell_contradiction"]
+__all__ = ["SHARES", "find_unit_mistakes", "report_contradiction", "settle"]
 
 _THOUSAND = 1000.0
 _RADII = {"mean_radius_mm": 1.0, "bore_diameter_mm": 0.5}
@@ -32,7 +32,7 @@ SHARES = {
     "rim_length_mm": (0.03, 5.0),
     "rim_thickness_mm": (0.01, 1.0),
 }
-"""What a length can be in mean radii. A length has slipped when it lies outside, and inside if shifted by 1000; each
+"""What a length can be in mean radii. A length is mistaken when it lies outside, and inside if shifted by 1000; each
 span is at most 250-fold, so that between the two there is room where nothing is said."""
 
 _DOUBTS = frozenset({"W405", "W418", "W419", "W440"})
@@ -59,7 +59,7 @@ _TENFOLD = 10.0
 
 
 class _Span(NamedTuple):
-    """What a material's value can be, beyond which entries one has slipped, and by which factors."""
+    """What a material's value can be, beyond which entries one is mistaken, and by which factors."""
 
     least: float
     most: float
@@ -75,8 +75,8 @@ _MATERIAL = {
 }
 
 
-def find_slips(table: Table, ledger: Ledger) -> None:
-    """Put the cells of Variants or Materials whose unit has slipped into the ledger; `settle` tells them."""
+def find_unit_mistakes(table: Table, ledger: Ledger) -> None:
+    """Put the cells of Variants or Materials whose unit is mistaken into the ledger; `settle` tells them."""
     find = {"Variants": _variant_factors, "Materials": _material_factors}.get(table.schema)
     if find is None:
         return
@@ -86,52 +86,52 @@ def find_slips(table: Table, ledger: Ledger) -> None:
     for record in table.frame.iter_rows(named=True):
         sound = {**record, **faulty.get(record["row"], {})}
         for found in find(sound):
-            ledger.slips[table.sheet, record["row"], found[0]] = _slip(table, sound, found)
+            ledger.unit_mistakes[table.sheet, record["row"], found[0]] = _unit_mistake(table, sound, found)
 
 
-def _facts(slip: Slip) -> dict[str, Any]:
-    """Return what a finding says of a slipped cell."""
+def _facts(mistake: UnitMistake) -> dict[str, Any]:
+    """Return what a finding says of a mistaken cell."""
     return {
-        "sheet": slip.sheet,
-        "cell": slip.cell,
-        "column": slip.column,
-        "name": columns_of(slip.schema)[slip.column].name,
-        "variant": slip.variant,
-        "value": slip.shown,
-        "entered": slip.entered,
-        "other": slip.times,
-        "detail": slip.beside,
+        "sheet": mistake.sheet,
+        "cell": mistake.cell,
+        "column": mistake.column,
+        "name": columns_of(mistake.schema)[mistake.column].name,
+        "variant": mistake.variant,
+        "value": mistake.shown,
+        "entered": mistake.entered,
+        "other": mistake.times,
+        "detail": mistake.beside,
     }
 
 
 def settle(ledger: Ledger) -> None:
-    """Leave each cell its error alone: drop the doubts about its value, and record only the other slips."""
+    """Leave each cell its error alone: drop the doubts about its value, and record only the other mistakes."""
     wrong = {(found.sheet, found.cell) for found in ledger.findings if found.level == "error"}
     ledger.findings = [
         found for found in ledger.findings if found.code not in _DOUBTS or (found.sheet, found.cell) not in wrong
     ]
-    for slip in ledger.slips.values():
-        if (slip.sheet, slip.cell) not in wrong:
-            ledger.add("W420", suggestion=slip.suggestion, **_facts(slip))
+    for mistake in ledger.unit_mistakes.values():
+        if (mistake.sheet, mistake.cell) not in wrong:
+            ledger.add("W420", suggestion=mistake.suggestion, **_facts(mistake))
 
 
-def tell_contradiction(slip: Slip, contradicted: str, ledger: Ledger) -> None:
-    """Record, once, that a slipped cell of Variants makes its row contradictory; the other cell is not blamed."""
-    if any((found.sheet, found.cell) == (slip.sheet, slip.cell) for found in ledger.findings):
-        ledger.rows.add(slip.row)
+def report_contradiction(mistake: UnitMistake, contradicted: str, ledger: Ledger) -> None:
+    """Record, once, that a mistaken cell of Variants makes its row contradictory; the other cell is not blamed."""
+    if any((found.sheet, found.cell) == (mistake.sheet, mistake.cell) for found in ledger.findings):
+        ledger.rows.add(mistake.row)
         return
-    ledger.add("E329", contradicted=contradicted, rows=[slip.row], **_facts(slip))
+    ledger.add("E329", contradicted=contradicted, rows=[mistake.row], **_facts(mistake))
 
 
-def _slip(table: Table, record: Mapping[str, Any], found: tuple[str, float, str]) -> Slip:
-    """Return a slip with what to say of it; the suggestion is in the unit of the cell's own header."""
+def _unit_mistake(table: Table, record: Mapping[str, Any], found: tuple[str, float, str]) -> UnitMistake:
+    """Return a mistake with what to say of it; the suggestion is in the unit of the cell's own header."""
     key, factor, beside = found
     row, conversion, unit = record["row"], table.heading.factors[key], columns_of(table.schema)[key].unit
     entered = record[key] / conversion
     given = spelled_out(entered, 10)
     shown = f"{given} {unit}" if conversion == 1 else f"{given} ({spelled_out(record[key])} {unit})"
     times = f"{max(factor, 1 / factor):.10g} times too {'small' if factor > 1 else 'large'}"
-    return Slip(
+    return UnitMistake(
         sheet=table.sheet,
         schema=table.schema,
         cell=table.address(row, key),
@@ -148,18 +148,18 @@ def _slip(table: Table, record: Mapping[str, Any], found: tuple[str, float, str]
 
 
 def _variant_factors(record: Mapping[str, Any]) -> Iterator[tuple[str, float, str]]:
-    """Yield the slipped cells of a Variants row, each with the factor that mends it."""
-    slipped = _length_factors(record)
-    for key, factor in slipped.items():
+    """Yield the mistaken cells of a Variants row, each with the factor that mends it."""
+    mistaken = _length_factors(record)
+    for key, factor in mistaken.items():
         yield key, factor, "beside the other lengths of the row"
     (key, radius), wall = _radius(record), record["wall_thickness_mm"]
-    if slipped or radius is None or wall is None or not _REACH[0] <= radius <= _REACH[1]:
+    if mistaken or radius is None or wall is None or not _REACH[0] <= radius <= _REACH[1]:
         return
-    slips = {name: _torque_factor(record[name], radius, wall) for name in _TORQUES}
-    in_doubt = 1 / _THOUSAND in slips.values() and radius * _TENFOLD <= _GREATEST_RADIUS
+    mistakes = {name: _torque_factor(record[name], radius, wall) for name in _TORQUES}
+    in_doubt = 1 / _THOUSAND in mistakes.values() and radius * _TENFOLD <= _GREATEST_RADIUS
     if in_doubt:
         yield key, _TENFOLD, "for this torque: check the unit of all lengths, or of the torque"
-    for name, mend in slips.items():
+    for name, mend in mistakes.items():
         if mend is not None and not in_doubt:
             yield name, mend, "for this wall" if mend < 1 else "for this radius"
 
@@ -171,8 +171,8 @@ def _torque_factor(torque: float | None, radius: float, wall: float) -> float | 
     if _FEEBLE[0] <= torque / radius**3 <= _FEEBLE[1]:
         return _THOUSAND
     shear = torque * _THOUSAND / (2 * math.pi * radius**2 * wall)
-    slipped = torque >= _UNUSUAL_TORQUE * radius**3 and shear > _UNBEARABLE_SHEAR >= shear / _THOUSAND
-    return 1 / _THOUSAND if slipped else None
+    mistaken = torque >= _UNUSUAL_TORQUE * radius**3 and shear > _UNBEARABLE_SHEAR >= shear / _THOUSAND
+    return 1 / _THOUSAND if mistaken else None
 
 
 def _radius(record: Mapping[str, Any]) -> tuple[str, float | None]:
@@ -200,9 +200,9 @@ def _length_factors(record: Mapping[str, Any]) -> dict[str, float]:
     if not readings:
         return {}
     best = min(readings, key=lambda reading: sum(factor != 1 for factor in reading.values()))
-    slipped = {name: factor for name, factor in best.items() if factor not in {None, 1.0}}
+    mistaken = {name: factor for name, factor in best.items() if factor not in {None, 1.0}}
     kept, odd = list(best.values()).count(1.0), list(best.values()).count(None)
-    return {} if odd and kept <= len(slipped) else {name: factor for name, factor in slipped.items() if factor}
+    return {} if odd and kept <= len(mistaken) else {name: factor for name, factor in mistaken.items() if factor}
 
 
 def _factor(key: str, share: float) -> float | None:
@@ -213,7 +213,7 @@ def _factor(key: str, share: float) -> float | None:
 
 
 def _material_factors(record: Mapping[str, Any]) -> Iterator[tuple[str, float, str]]:
-    """Yield the slipped cells of a Materials row, each with the factor that mends it."""
+    """Yield the mistaken cells of a Materials row, each with the factor that mends it."""
     for key, span in _MATERIAL.items():
         value = record[key]
         if value is not None and not span.below <= value <= span.above:

@@ -20,7 +20,7 @@ _KEY = "tolerance_class"
 def tell_unused_classes(tolerances: Table | None, variants: Table, known: Iterable[str], ledger: Ledger) -> None:
     """Warn once of each unused class whose name is nearly that of a class in use; `known` are plain names.
 
-    A class that is used but not known has an error of its own; standard is no slip, and stands in every template.
+    A class that is used but not known has an error of its own; standard, which is in every template, is none.
     """
     if tolerances is None:
         return

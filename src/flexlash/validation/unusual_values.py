@@ -1,4 +1,4 @@
-"""Values that may stand in a cell, but lie far from what is usual and are no slip of a unit: a warning each."""
+"""Values that may stand in a cell, but lie far from what is usual and are no mistake of the unit: a warning each."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ _TORQUES = (1e-3, 1e3)
 
 
 def report_unusual(table: Table, ledger: Ledger) -> None:
-    """Warn of each cell of a table that is far from usual, but of none in a row where a unit slipped."""
-    slipped = {row for sheet, row, _ in ledger.slips if sheet == table.sheet}
+    """Warn of each cell of a table that is far from usual, but of none in a row where a unit is mistaken."""
+    mistaken = {row for sheet, row, _ in ledger.unit_mistakes if sheet == table.sheet}
     for key, low, high in _ranges(table.schema):
         strange = table.frame.filter(~pl.col(key).is_between(low, high)).select("row", key, low=low, high=high)
         for row, value, least, most in strange.iter_rows():
-            if (row, key) in table.faulty or row in slipped:
+            if (row, key) in table.faulty or row in mistaken:
                 continue
             column = columns_of(table.schema)[key]
             told = {"value": f"{value:.10g}", "detail": _words(column, least, most), "name": column.name}

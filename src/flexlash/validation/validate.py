@@ -15,7 +15,7 @@ from flexlash.schema.columns import columns_of
 from flexlash.schema.spellings import affordable, misspelt, plain, spelt_alike, suggested
 from flexlash.schema.variant import Material, Settings, ToleranceRow, Variant
 from flexlash.validation.cell_values import is_no_value, no_value_facts
-from flexlash.validation.csv_findings import tell_manner
+from flexlash.validation.csv_findings import report_dialect
 from flexlash.validation.entry_sheets import entry_sheets, tell_other_names, tell_second_tables
 from flexlash.validation.hidden_content import tell_overlooked
 from flexlash.validation.ledger import Ledger
@@ -86,7 +86,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
             result.header_rows[schema] = table.heading.row
             tables[schema] = table
     for sheet in sheets.values():
-        tell_manner(sheet, ledger)
+        report_dialect(sheet, ledger)
     tell_additions(submission, {schema: table.heading for schema, table in tables.items()}, ledger)
     _fill_tables(result, submission, sheets.keys() | unclear, tables)
     result.table, result.tolerances = tables.get("Variants"), tables.get("Tolerances")

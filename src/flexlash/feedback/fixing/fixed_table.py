@@ -18,14 +18,14 @@ def mended_table(sheet: RawSheet, repairs: Sequence[Repair]) -> bytes:
 
     Rows, columns, delimiter and decimal sign are those of the submission.
     """
-    comma = bool(sheet.manner and sheet.manner.comma_number)
+    comma = bool(sheet.dialect and sheet.dialect.comma_number)
     now: dict[int, dict[int, str]] = defaultdict(dict)
     for repair in repairs:
         letters = repair.cell.rstrip("0123456789")
         now[int(repair.cell[len(letters) :])][column_number(letters)] = _written(repair.value, comma=comma)
     width = max((max(cells) for cells in sheet.rows.values()), default=0)
     buffer = io.StringIO(newline="")
-    writer = csv.writer(buffer, delimiter=sheet.manner.delimiter if sheet.manner else ",", lineterminator="\r\n")
+    writer = csv.writer(buffer, delimiter=sheet.dialect.delimiter if sheet.dialect else ",", lineterminator="\r\n")
     for number in range(1, max(sheet.rows, default=0) + 1):
         own = [""] * width
         for place, cell in sheet.rows.get(number, {}).items():
@@ -33,7 +33,7 @@ def mended_table(sheet: RawSheet, repairs: Sequence[Repair]) -> bytes:
         for place, text in now.get(number, {}).items():
             own[place - 1] = text
         # A row of one cell more than the headers stays one: its numbers may be split by decimal commas.
-        writer.writerow([*own, ""] if sheet.manner and number in sheet.manner.longer else own)
+        writer.writerow([*own, ""] if sheet.dialect and number in sheet.dialect.longer else own)
     return buffer.getvalue().encode("utf-8-sig")
 
 
