@@ -8,6 +8,7 @@ import math
 
 import pytest
 import xlsxwriter
+from grids import for_each
 
 from flexlash.feedback.template.cell_writer import DATE_FORMATS, CellWriter, Formula, writable
 from flexlash.reading.raw import ErrorCell, Unstored
@@ -51,7 +52,7 @@ def _through_a_workbook(value):
     return read.rows[1][1]
 
 
-@pytest.mark.parametrize("value", SAME, ids=lambda value: repr(value)[:30])
+@for_each("value", SAME)
 def test_what_is_written_is_read(value):
     """Texts stay texts, numbers keep every digit and their kind, times and errors stay what they are."""
     read = _through_a_workbook(value)
@@ -64,7 +65,7 @@ def test_what_a_workbook_cannot_hold(value, expected):
     assert _through_a_workbook(value) == expected
 
 
-@pytest.mark.parametrize("value", SAME[:-2], ids=lambda value: repr(value)[:30])
+@for_each("value", SAME[:-2])
 def test_the_same_value_is_writable_as_it_is(value):
     """A value that a cell can hold is not touched."""
     assert writable(value) is value

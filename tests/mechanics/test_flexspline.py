@@ -9,6 +9,7 @@ import re
 import numpy as np
 import pytest
 from flexsplines import B3_160, CONE, FROM_BORE, HAT, POWER_LAW, REFINED, REFINEMENTS, SHAPES, without
+from grids import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
@@ -123,7 +124,7 @@ def test_public_functions_are_found():
     assert len(PUBLIC) >= 25
 
 
-@pytest.mark.parametrize("name", PUBLIC)
+@for_each("name", PUBLIC)
 def test_docstring_has_five_parts(name):
     """A mechanics function states its unit, equation, arguments, validity and source, and runs an example."""
     text = inspect.getdoc(PUBLIC[name]) or ""

@@ -5,6 +5,7 @@ from itertools import product, starmap
 
 import numpy as np
 import pytest
+from grids import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from slow_meridian import slow_windup
@@ -295,27 +296,25 @@ def corner(wall, hub, disk):
     }
 
 
-each_corner = pytest.mark.parametrize(
-    "cup", list(starmap(corner, product([0.003, 0.1], [0.1, 0.5, 0.95], [0.2, 1, 5])))
-)
+each_corner = for_each("cup", starmap(corner, product([0.003, 0.1], [0.1, 0.5, 0.95], [0.2, 1, 5])))
 
 
 @each_corner
-@pytest.mark.parametrize("taper", [0.2, 0.5, 2.0, 5.0])
+@for_each("taper", [0.2, 0.5, 2.0, 5.0])
 def test_tapers_in_the_corners_of_the_range(cup, taper):
     """Cups in the corners of the valid range agree when their disk thins or thickens up to fivefold."""
     assert_agrees("cup", cup | {"disk_hub_thickness": taper * cup["disk_thickness"]})
 
 
 @each_corner
-@pytest.mark.parametrize("multiple", [0.01, 1.0, 3.0, 20.0])
+@for_each("multiple", [0.01, 1.0, 3.0, 20.0])
 def test_hub_fillets_in_the_corners_of_the_range(cup, multiple):
     """Cups in the corners of the valid range agree with hub fillets of 0.01 to 20 times the disk's thickness."""
     assert_agrees("cup", cup | {"hub_fillet_radius": min(multiple * cup["disk_thickness"], disk_width(cup))})
 
 
-@pytest.mark.parametrize("multiple", [0.01, 1.0, 3.0, 20.0])
-@pytest.mark.parametrize("wall", [0.003, 0.03, 0.1])
+@for_each("multiple", [0.01, 1.0, 3.0, 20.0])
+@for_each("wall", [0.003, 0.03, 0.1])
 def test_junction_fillets_in_the_corners_of_the_range(wall, multiple):
     """Cups in the corners of the valid range agree with junction fillets of 0.01 to 20 walls, the wall all fillet."""
     fillet = min(multiple * wall, 1 - wall / 2)

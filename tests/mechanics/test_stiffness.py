@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from grids import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -191,7 +192,7 @@ def test_torques_agree_with_other_lists():
             assert other in {None, one}, drive
 
 
-@pytest.mark.parametrize("row", tables.rows("catalogue_torque"), ids=lambda row: f"{row['size']}-{row['ratio']}")
+@for_each("row", tables.rows("catalogue_torque"))
 def test_no_listed_torque_is_above_the_limit(row):
     """No rated or repeated-peak torque of the catalogue is above the limit that its size has."""
     size, torque = stiffness.catalogue_torque(int(row["size"]) * 0.00254 / 2)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from grids import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
@@ -164,8 +165,8 @@ RATIOS = np.geomspace(1.05, 20, 12)
 """Outer over inner radius of a disk."""
 
 
-@pytest.mark.parametrize("radius_ratio", RATIOS)
-@pytest.mark.parametrize("thickness_ratio", [*np.geomspace(0.05, 20, 15), 0.999, 1.0, 1.001])
+@for_each("radius_ratio", RATIOS)
+@for_each("thickness_ratio", [*np.geomspace(0.05, 20, 15), 0.999, 1.0, 1.001])
 def test_taper_by_quadrature(radius_ratio, thickness_ratio):
     """A straight taper agrees with quadrature to 1e-13 and lies between the even disks of its ends."""
     inner, outer, first, last = 0.04, 0.04 * radius_ratio, 0.004, 0.004 * thickness_ratio
@@ -175,8 +176,8 @@ def test_taper_by_quadrature(radius_ratio, thickness_ratio):
     assert ends[0] * (1 - 1e-13) <= found <= ends[1] * (1 + 1e-13)
 
 
-@pytest.mark.parametrize("radius_ratio", RATIOS)
-@pytest.mark.parametrize("off", [0.0, 1e-15, 1e-9, -1e-5, 1e-2, -0.0999, 0.0999, -0.1, 0.1, -0.1001, 0.1001, 0.15])
+@for_each("radius_ratio", RATIOS)
+@for_each("off", [0.0, 1e-15, 1e-9, -1e-5, 1e-2, -0.0999, 0.0999, -0.1, 0.1, -0.1001, 0.1001, 0.15])
 def test_taper_close_to_a_thickness_that_grows_with_the_radius(radius_ratio, off):
     """A disk whose thickness is proportional to the radius, or nearly so, agrees with quadrature to 1e-13."""
     inner, outer, first, last = 0.04, 0.04 * radius_ratio, 0.004, 0.004 * radius_ratio * (1 + off)
@@ -184,7 +185,7 @@ def test_taper_close_to_a_thickness_that_grows_with_the_radius(radius_ratio, off
     assert found == pytest.approx(slow_taper(inner, outer, first, last), rel=1e-13)
 
 
-@pytest.mark.parametrize("radius_ratio", RATIOS)
+@for_each("radius_ratio", RATIOS)
 def test_taper_of_a_thickness_proportional_to_the_radius(radius_ratio):
     """A thickness b r winds up by (1/r_i³ − 1/r_o³)/(3 b)."""
     inner, outer = 0.04, 0.04 * radius_ratio

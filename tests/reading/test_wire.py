@@ -4,7 +4,7 @@ import datetime
 import json
 import math
 
-import pytest
+from grids import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -55,7 +55,7 @@ def _through(value):
     return from_wire(json.loads(json.dumps(to_wire(cells)))).sheets[0].rows[7][3]
 
 
-@pytest.mark.parametrize("value", VALUES, ids=repr)
+@for_each("value", VALUES)
 def test_a_value_comes_through(value):
     """Every kind of value comes out as what went in, of the same type."""
     found = _through(value)

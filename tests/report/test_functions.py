@@ -7,6 +7,7 @@ import math
 import openpyxl
 import pytest
 import xlsxwriter
+from grids import for_each
 from libreoffice import convert, needs_libreoffice
 
 from flexlash.report.formula.functions import (
@@ -93,7 +94,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
+@for_each("name", CASES)
 def test_values(name):
     """Each expression carries the value that a reader works out by hand."""
     found, expected = CASES[name]

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from grids import for_each
 
 from flexlash.schema.columns import (
     DIMENSIONS,
@@ -315,7 +316,7 @@ def test_other_defaults():
     assert {column.key: column.choices for column in SETTINGS}["method"] == ("line", "sobol", "random")
 
 
-@pytest.mark.parametrize("place", REQUIREMENTS, ids=".".join)
+@for_each("place", REQUIREMENTS)
 def test_requirement(place):
     """What a cell must hold is said in words."""
     sheet, key = place
@@ -342,7 +343,7 @@ def test_requirement_with_an_upper_bound_alone():
     assert Column(sheet="x", key="x", label="x", help="x", maximum=5).requirement == "a number at most 5"
 
 
-@pytest.mark.parametrize("column", EVERY, ids=_key)
+@for_each("column", EVERY)
 def test_a_label_names_its_unit(column):
     """The brackets of a label hold the column's unit, and the key ends with it."""
     bracketed = column.label.rpartition(" [")[2].removesuffix("]") if column.label.endswith("]") else ""
@@ -356,7 +357,7 @@ def test_a_label_names_its_unit(column):
         assert column.key.startswith(column.dimension)
 
 
-@pytest.mark.parametrize("column", EVERY, ids=_key)
+@for_each("column", EVERY)
 def test_a_column_explains_itself(column):
     """Every column has a help text of whole sentences that fits Excel's 255-character hint."""
     assert column.help.endswith((".", ")"))
@@ -399,7 +400,7 @@ def test_names(sheet, key, name, plain, dimension):
     assert (column.name, column.plain_name, column.dimension) == (name, plain, dimension)
 
 
-@pytest.mark.parametrize("column", EVERY, ids=_key)
+@for_each("column", EVERY)
 def test_dictionary_entry(column):
     """An entry of the data dictionary begins with the contract's fields in its order and is plain JSON."""
     entry = column.as_dictionary()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 import regenerate
 from finding_examples import PENDING
+from grids import for_each
 
 from flexlash.schema.finding_catalogue import CATALOGUE
 from flexlash.schema.finding_explanations import explanation_of, findings_page, real_examples
@@ -17,7 +18,7 @@ def test_every_code_has_a_real_example():
     assert sorted(set(real_examples()) & PENDING) == []
 
 
-@pytest.mark.parametrize("code", sorted(set(CATALOGUE) - PENDING))
+@for_each("code", sorted(set(CATALOGUE) - PENDING))
 def test_examples_are_short_enough(code):
     """A real message, its question included, has few words and no gap."""
     words = [word for word in real_examples()[code].split() if any(map(str.isalnum, word))]
@@ -44,7 +45,7 @@ def test_an_unknown_code_has_no_explanation():
         explanation_of("E999")
 
 
-@pytest.mark.parametrize("code", CATALOGUE)
+@for_each("code", CATALOGUE)
 def test_the_page_says_what_the_command_says(code):
     """Pattern, meaning, mend and example of docs/findings.md are those of `flexlash explain`."""
     page = (regenerate.ROOT / "docs" / "findings.md").read_text(encoding="utf-8")

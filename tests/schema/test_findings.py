@@ -6,14 +6,16 @@ import string
 from pathlib import Path
 
 import pytest
+from grids import for_each
 
 import flexlash
 from flexlash.schema.findings import CATALOGUE, Finding, finding, shown, spelled_out
 
 SOURCE = Path(flexlash.__file__).parent
 JARGON = re.compile(
-    r"\b(schema|dtype|null|none|nan|dataframe|frame|exception|traceback|parse[dr]?|regex|string|float|boolean|"
-    r"reference variable|tuple|index|expat|openpyxl|pandera|polars|xlsxwriter|zip|unicode error)\b",
+    r"\b(schema|dtype|null|none|nan|dataframe|frame|exception|traceback|parse[dr]?|regex|string|float|int|boolean|enum|"
+    r"reference variable|tuple|index|coerce|validator|expat|openpyxl|pandera|polars|python|xlsxwriter|(?<!Open )xml|"
+    r"zip|utf-16le|unicode error)\b",
     re.IGNORECASE,
 )
 FACTS = {
@@ -71,14 +73,14 @@ def test_codes_rise_and_are_keyed_by_themselves():
         assert len(own) == len(set(own))
 
 
-@pytest.mark.parametrize("code", CATALOGUE)
+@for_each("code", CATALOGUE)
 def test_level_is_the_letter(code):
     """E is an error, W a warning and I an information, in catalogue and finding alike."""
     assert re.fullmatch(r"E[123]\d\d|W4\d\d|I5\d\d", code)
     assert CATALOGUE[code].level == LEVELS[code[0]] == _filled(code).level
 
 
-@pytest.mark.parametrize("code", CATALOGUE)
+@for_each("code", CATALOGUE)
 def test_every_code_has_its_words(code):
     """Title, message, mend and explanation are there, and the last three are sentences."""
     rule = CATALOGUE[code]
@@ -90,7 +92,7 @@ def test_every_code_has_its_words(code):
         assert "  " not in sentence
 
 
-@pytest.mark.parametrize("code", CATALOGUE)
+@for_each("code", CATALOGUE)
 def test_every_message_says_where(code):
     """A message names the cell or the file."""
     fields = {name for _, name, _, _ in string.Formatter().parse(CATALOGUE[code].message) if name}
@@ -100,14 +102,14 @@ def test_every_message_says_where(code):
     assert "{" not in message + _filled(code).fix
 
 
-@pytest.mark.parametrize("code", CATALOGUE)
+@for_each("code", CATALOGUE)
 def test_messages_are_short(code):
     """A message filled with short values has at most 25 words."""
     words = re.findall(r"\S*\w\S*", _filled(code, suggestion="").message)
     assert len(words) <= 25, " ".join(words)
 
 
-@pytest.mark.parametrize("code", CATALOGUE)
+@for_each("code", CATALOGUE)
 def test_words_are_an_engineers(code):
     """No programmer's word stands in title, message, mend or explanation."""
     rule = CATALOGUE[code]

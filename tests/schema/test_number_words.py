@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from grids import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -54,7 +55,7 @@ SHARES = {
 }
 
 
-@pytest.mark.parametrize("case", SHARES)
+@for_each("case", SHARES)
 def test_a_share_in_words(case):
     """A share is told in per cent, ppm or ppb with its interval and with no more digits than that justifies."""
     numbers, words = SHARES[case]
@@ -73,7 +74,7 @@ def _first_number(words):
     return float(re.search(r"[\d.]+", words)[0])
 
 
-@pytest.mark.parametrize("total", [2**power for power in range(4, 23)])
+@for_each("total", [2**power for power in range(4, 23)])
 def test_a_counted_share_is_never_a_bare_zero_or_hundred(total):
     """Whatever count of whatever number of points, its words begin with neither 0 nor 100 %."""
     few = range(min(total, 40) + 1)

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from grids import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -13,7 +14,7 @@ thorough = settings(deadline=None, max_examples=80, derandomize=True)
 GRADES = [f"{letters}{number}" for letters in ("IT", "js", "JS", "h", "H") for number in range(5, 13)]
 
 
-@pytest.mark.parametrize("text", [*GRADES, "2768-f", "2768-m", "2768-c", "2768-v"])
+@for_each("text", [*GRADES, "2768-f", "2768-m", "2768-c", "2768-v"])
 def test_grades_are_recognised(text):
     """IT, js, h and H from 5 to 12 and the four general tolerances are grades."""
     assert is_grade(text)

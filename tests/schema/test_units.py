@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from grids import for_each
 
 from flexlash.schema.units import ARCMIN, ARCSEC, RPM, as_entered, find_unit
 
@@ -123,7 +124,7 @@ SPELLINGS = [
 ]
 
 
-@pytest.mark.parametrize(("quantity", "name", "size"), SIZES)
+@for_each("quantity, name, size", SIZES)
 def test_size_in_si(quantity, name, size):
     """A unit is found by its printed name and has the size that its standard gives."""
     unit = find_unit(name, quantity)
@@ -132,7 +133,7 @@ def test_size_in_si(quantity, name, size):
     assert unit.si == pytest.approx(size, rel=1e-14)
 
 
-@pytest.mark.parametrize(("quantity", "text", "name"), SPELLINGS)
+@for_each("quantity, text, name", SPELLINGS)
 def test_spellings(quantity, text, name):
     """Signs, spaces and usual other spellings lead to one unit; what measures something else is not guessed at."""
     unit = find_unit(text, quantity)
@@ -169,8 +170,8 @@ def test_a_quantity_that_nobody_measures_is_a_fault_of_the_program():
         find_unit("mm", "colour")
 
 
-@pytest.mark.parametrize("entry", [3.8, 0.1, 37.3, 3.75, 1e-9, 780000.0, 2 / 3])
-@pytest.mark.parametrize("unit", [ARCMIN, 1e-3, 0.0254, 1.0])
+@for_each("entry", [3.8, 0.1, 37.3, 3.75, 1e-9, 780000.0, 2 / 3])
+@for_each("unit", [ARCMIN, 1e-3, 0.0254, 1.0])
 def test_an_entry_comes_back_as_it_was_made(entry, unit):
     """A number converted to SI and back is the one that was entered, or, with more digits than 15, its size is kept."""
     back = as_entered(entry * unit, unit)

@@ -3,6 +3,7 @@
 import datetime
 
 import pytest
+from grids import for_each
 
 from flexlash.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Percentage, Unstored
 from flexlash.schema.columns import ENTRY_SHEETS, SETTINGS, columns_of
@@ -30,8 +31,8 @@ NO_ENTRY = [
 ]
 
 
-@pytest.mark.parametrize(("value", "fault"), NO_ENTRY, ids=repr)
-@pytest.mark.parametrize("from_text", [False, True])
+@for_each("value, fault", NO_ENTRY)
+@for_each("from_text", [False, True])
 def test_what_is_no_entry(value, fault, from_text):
     """Truth values, errors, formulas without result, dates and infinities are neither numbers nor texts."""
     assert as_number(value, from_text=from_text) == fault
@@ -78,11 +79,11 @@ def test_a_text_of_a_table_may_be_a_number(text, number):
     assert fault.code == "E202"
 
 
-@pytest.mark.parametrize(
+@for_each(
     "text",
     ["1,6", "1.6 mm", "1_000", "0x10", "nan", "inf", "infinity", "1e", "e5", "1.2.3", "--1", "1/4", "١٢", "１６", "x"],
 )
-@pytest.mark.parametrize("from_text", [False, True])
+@for_each("from_text", [False, True])
 def test_other_texts_are_not_numbers(text, from_text):
     """What only a programming language, another country or a human would read as a number is text."""
     fault = as_number(text, from_text=from_text)

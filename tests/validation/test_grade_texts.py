@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from grids import for_each
 
 from flexlash.feedback.fixing.certain_fixes import repair_of
 from flexlash.pipeline import check
@@ -39,7 +40,7 @@ MEANT = [
 ]
 
 
-@pytest.mark.parametrize(("entered", "meant"), MEANT)
+@for_each("entered, meant", MEANT)
 def test_the_grade_that_was_meant(entered, meant):
     """Spaces, letter case where it cannot mean two, and the standard's full name do not hide a grade."""
     assert meant_grade(entered) == meant

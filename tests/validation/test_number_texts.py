@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from grids import for_each
 
 from flexlash.schema.columns import SETTINGS, columns_of
 from flexlash.validation.number_texts import Measure, is_both_ways, meant_number
@@ -139,7 +140,7 @@ NOTHING = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("key", "text", "number"), CERTAIN, ids=ascii)
+@for_each("key, text, number", CERTAIN)
 def test_what_can_mean_one_number_only(key, text, number):
     """Signs, digits, spaces and known units of all countries give the number in the column's unit, to be written."""
     meant = meant_number(text, COLUMNS[key])
@@ -147,14 +148,14 @@ def test_what_can_mean_one_number_only(key, text, number):
     assert float(meant.words) == number
 
 
-@pytest.mark.parametrize(("key", "text", "words"), GUESSED, ids=ascii)
+@for_each("key, text, words", GUESSED)
 def test_what_is_guessed_is_never_written(key, text, words):
     """What may mean thousands, is said roughly, is out of bounds or needs halving is only suggested."""
     meant = meant_number(text, COLUMNS[key])
     assert (meant.words, meant.repair) == (words, None)
 
 
-@pytest.mark.parametrize(("key", "text"), NOTHING, ids=ascii)
+@for_each("key, text", NOTHING)
 def test_where_nothing_is_suggested(key, text):
     """An unknown unit, a unit of something else, or more than one number suggests nothing."""
     assert meant_number(text, COLUMNS[key]).numbers == ()

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
+from grids import for_each
 
 SOURCE = Path(__file__).resolve().parents[2] / "src" / "flexlash"
 MODULES = sorted(SOURCE.rglob("*.py"))
@@ -104,7 +104,7 @@ def test_no_two_modules_have_one_name():
     assert {name for name in last if last.count(name) > 1} <= {"__init__"}
 
 
-@pytest.mark.parametrize("path", MODULES, ids=_name)
+@for_each("path", MODULES)
 def test_libraries_stay_at_their_edge(path):
     """Each third-party library is imported in the rooms that are its edge, and nowhere else."""
     stage = _name(path).split(".")[0]
@@ -119,7 +119,7 @@ def test_no_rooms_without_a_purpose():
     assert not names & {"utils", "util", "helpers", "common", "base", "manager", "misc"}
 
 
-@pytest.mark.parametrize("path", MODULES, ids=_name)
+@for_each("path", MODULES)
 def test_modules_and_public_names_are_documented(path):
     """Every module and every public function or class says what it is."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
@@ -129,7 +129,7 @@ def test_modules_and_public_names_are_documented(path):
             assert ast.get_docstring(node), node.name
 
 
-@pytest.mark.parametrize("path", MODULES, ids=_name)
+@for_each("path", MODULES)
 def test_functions_are_short(path):
     """No function body is longer than 50 lines, docstring aside."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
