@@ -17,14 +17,15 @@ from flexlash.analysis.run_summary import (
     worst_first,
 )
 from flexlash.pipeline import check, run
-from flexlash.schema.findings import Finding, cell_ranges
+from flexlash.schema.cell_addresses import cell_address, cell_ranges
+from flexlash.schema.findings import Finding
 
 
 def test_cells_are_drawn_together():
     """Runs of a column become ranges, doubles one cell, a sheet's column alone stays itself."""
-    assert cell_ranges(["D6", "D8", "D7", "D14", "E3", "D14"]) == "D6:D8, D14, E3"
-    assert cell_ranges(["AA2", "F3", "C4", "C5"]) == "C4:C5, F3, AA2"
-    assert cell_ranges([f"A{row}" for row in range(2, 60, 2)], most=3) == "A2, A4, A6 and 26 more"
+    assert cell_ranges(map(cell_address, ["D6", "D8", "D7", "D14", "E3", "D14"])) == "D6:D8, D14, E3"
+    assert cell_ranges(map(cell_address, ["AA2", "F3", "C4", "C5"])) == "C4:C5, F3, AA2"
+    assert cell_ranges((cell_address(f"A{row}") for row in range(2, 60, 2)), most=3) == "A2, A4, A6 and 26 more"
     assert cell_ranges([]) == ""
 
 

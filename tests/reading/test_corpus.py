@@ -15,9 +15,10 @@ from here import WHERE, answer_here
 from libreoffice import convert, needs_libreoffice
 
 from flexlash.pipeline import check
-from flexlash.reading.raw import ErrorCell, Unstored, column_letters
+from flexlash.reading.raw import ErrorCell, Unstored
 from flexlash.reading.read import read_submission
 from flexlash.reading.refusal import Refusal
+from flexlash.schema.cell_addresses import column_letters
 
 CORPUS = Path(os.environ.get("FLEXLASH_CORPUS", "no such folder"))
 CODES = {

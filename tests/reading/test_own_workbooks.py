@@ -13,8 +13,9 @@ from python_calamine import CalamineWorkbook
 
 from flexlash.feedback.annotation import marked_copy
 from flexlash.pipeline import check
-from flexlash.reading.raw import Unstored, column_letters
+from flexlash.reading.raw import Unstored
 from flexlash.reading.read import read_submission
+from flexlash.schema.cell_addresses import column_letters
 
 CORPUS = Path(os.environ.get("FLEXLASH_CORPUS", "no such folder"))
 ALSO_CALLED = {

@@ -12,7 +12,8 @@ import pytest
 import xlsxwriter
 
 from flexlash.reading.gate import Refusal
-from flexlash.reading.read import ErrorCell, Unstored, column_letters, read_submission
+from flexlash.reading.read import ErrorCell, Unstored, read_submission
+from flexlash.schema.cell_addresses import column_letters
 
 ERRORS = ["#REF!", "#DIV/0!", "#VALUE!", "#NAME?", "#N/A", "#NUM!", "#NULL!", "#SPILL!", "#CALC!"]
 

@@ -9,7 +9,7 @@ from random import Random
 
 from edited_workbooks import HEADER, LETTERS, last_row, records
 
-from flexlash.reading.raw import column_letters
+from flexlash.schema.cell_addresses import column_letters
 from flexlash.schema.columns import ENTRY_SHEETS, SETTINGS, Column
 
 __all__ = ["KINDS", "Corruption", "corruption"]

@@ -16,7 +16,7 @@ from small_workbook import MAIN, archive_of
 
 from flexlash.feedback.template.entry_rules import FIRST_ROW, HEADER_ROW
 from flexlash.feedback.template.template_workbook import Filling, template_bytes
-from flexlash.reading.raw import column_letters
+from flexlash.schema.cell_addresses import column_letters
 from flexlash.schema.columns import ENTRY_SHEETS
 
 __all__ = [

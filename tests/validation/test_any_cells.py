@@ -24,11 +24,11 @@ from openpyxl.utils.exceptions import IllegalCharacterError
 
 from flexlash.analysis.run_summary import finding_lines, summary_lines
 from flexlash.pipeline import check, run
-from flexlash.reading.raw import ErrorCell, RawSheet, Submission, Unstored, column_letters
+from flexlash.reading.raw import ErrorCell, RawSheet, Submission, Unstored
 from flexlash.reading.read import ReadReport, Source
+from flexlash.schema.cell_addresses import cell_ranges, column_letters
 from flexlash.schema.columns import ENTRY_SHEETS, SETTINGS
 from flexlash.schema.finding_catalogue import CATALOGUE
-from flexlash.schema.findings import cell_ranges
 
 EXAMPLES = 40
 FILES = 12
@@ -158,7 +158,7 @@ def _expect_words(outcome):
         if found.cell:
             rows = sheets[found.sheet].rows
             match = re.fullmatch(r"([A-Z]{1,3})([1-9]\d*)", found.cell)
-            assert cell_ranges([found.cell]) == found.cell
+            assert cell_ranges([found.address]) == found.cell
             assert int(match[2]) <= max(rows) + 1
             assert match[1] in {column_letters(place) for place in range(1, max(map(max, rows.values())) + 2)}
     assert json.loads(json.dumps(outcome.as_dictionary(), allow_nan=False)) == outcome.as_dictionary()

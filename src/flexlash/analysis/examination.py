@@ -16,7 +16,7 @@ from flexlash.analysis.options import Options
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.results import results_frame
 from flexlash.reading.products import require_submission
-from flexlash.reading.raw import Submission, column_number
+from flexlash.reading.raw import Submission
 from flexlash.reading.read import ReadReport, Source, report_of, submission_of, table_of
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.findings import Finding, finding
@@ -94,8 +94,7 @@ def _place_order(submission: Submission) -> Callable[[Finding], tuple[int, int, 
     sheets = {name: place for place, name in enumerate(submission.sheets)}
 
     def key(found: Finding) -> tuple[int, int, int, str]:
-        letters = found.cell.rstrip("0123456789")
-        row = int(found.cell[len(letters) :] or 0)
-        return sheets.get(found.sheet, -1), row, column_number(letters), found.code
+        row, column = found.address or (0, 0)
+        return sheets.get(found.sheet, -1), row, column, found.code
 
     return key

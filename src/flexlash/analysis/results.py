@@ -80,8 +80,7 @@ def results_of(outcome: Outcome, *, cross_check: bool = False, elasticity: bool 
     sheet = outcome.validated.table.sheet if outcome.validated.table else ""
     for found in outcome.findings:
         if found.sheet == sheet and found.cell and found.level != "info":
-            row = int(found.cell.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
-            by_row.setdefault(row, []).append(found)
+            by_row.setdefault(found.row, []).append(found)
     stops = stopped_by(outcome.validated)
     records = []
     for row, name, notes in outcome.validated.submitted:

@@ -9,8 +9,9 @@ from typing import Any
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.feedback.fixing.fix import Repair
+from flexlash.schema.cell_addresses import cell_ranges
 from flexlash.schema.columns import DIMENSIONS
-from flexlash.schema.findings import CATALOGUE, Finding, cell_ranges, shown
+from flexlash.schema.findings import CATALOGUE, Finding, shown
 from flexlash.schema.limit_verdict import BOUNDS, VERDICTS, misses_limit
 from flexlash.schema.number_words import ALL_UNITS, angle_words, rounded, share_words
 from flexlash.validation.blocking_errors import waiting_rows
@@ -62,8 +63,8 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[tuple[str, str]]:
         groups[_LEVELS.index(found.level), found.code, found.sheet].append(found)
     for (_, code, sheet), group in sorted(groups.items()):
         level = group[0].level
-        cells = {found.cell: None for found in group if found.cell}
-        where = f", {counted(len(cells), 'cell')}: {shown(sheet)}!{cell_ranges(list(cells))}" if cells else ""
+        cells = {found.address for found in group if found.address}
+        where = f", {counted(len(cells), 'cell')}: {shown(sheet)}!{cell_ranges(cells)}" if cells else ""
         yield level, f"{level} {code} {CATALOGUE[code].title}{where}"
         for found in group[:_SHOWN_MESSAGES]:
             yield "", f"    {found.message}"

@@ -16,6 +16,7 @@ from flexlash.reading.raw import RawSheet, Submission
 from flexlash.reading.read import Source, limits_of_reports, report_of, submission_of
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
+from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import DIMENSIONS, MATERIALS, columns_of
 from flexlash.schema.findings import shown
 from flexlash.schema.result_columns import result_columns
@@ -36,7 +37,6 @@ _NAMED = 3
 
 _ESCAPED = re.compile("_x([0-9A-Fa-f]{4})_")
 _ESCAPE = "x005F_"
-_LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +102,7 @@ class Side:
         """Return what was entered for each variant: blank cells with their default, faulty ones as entered."""
         table = self.validated.table
         mends = {
-            (found.cell, found.column): found.repair
+            (found.address, found.column): found.repair
             for found in self.validated.ledger.findings
             if table and found.sheet == table.sheet and found.repair is not None
         }
@@ -127,7 +127,7 @@ class Side:
         sheet = self.validated.table.sheet if self.validated.table else ""
         for one in self.validated.ledger.findings:
             if one.level == "error" and one.sheet == sheet and one.cell:
-                found[int(one.cell.lstrip(_LETTERS))].append(f"{one.code} {one.cell}")
+                found[one.row].append(f"{one.code} {one.cell}")
         for row, errors in stopped_by(self.validated).items():
             if row not in found:
                 found[row] = [f"{one.code} {one.place}" for one in errors[:_NAMED]]
@@ -235,7 +235,7 @@ def _named(names: Iterable[str]) -> list[Name]:
 
 
 def _entered(
-    record: Mapping[str, Any], table: Table, mends: Mapping[tuple[str, str], str | float | None]
+    record: Mapping[str, Any], table: Table, mends: Mapping[tuple[CellAddress | None, str], str | float | None]
 ) -> dict[str, Any]:
     """Return a row of Variants as it is compared."""
     found = {}

@@ -18,8 +18,6 @@ __all__ = [
     "RawValue",
     "Submission",
     "Unstored",
-    "column_letters",
-    "column_number",
 ]
 
 ERROR_WORDS = frozenset((
@@ -140,28 +138,3 @@ class Submission:
     def decimal_comma(self) -> bool:
         """Whether numbers of a delimited text were read with a decimal comma."""
         return bool(self.dialect and self.dialect.comma_number)
-
-
-def column_letters(number: int) -> str:
-    """Return the letters of a column number.
-
-    >>> column_letters(28)
-    'AB'
-    """
-    letters = ""
-    while number:
-        number, rest = divmod(number - 1, 26)
-        letters = chr(65 + rest) + letters
-    return letters
-
-
-def column_number(letters: str) -> int:
-    """Return the number of a column's letters.
-
-    >>> column_number("AB")
-    28
-    """
-    number = 0
-    for letter in letters:
-        number = number * 26 + ord(letter) - 64
-    return number

@@ -17,7 +17,7 @@ from flexlash.reading.gate import kind_of, read_bytes
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.reading.limited_process import ask
 from flexlash.reading.parquet import read_parquet
-from flexlash.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored, column_letters
+from flexlash.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.reading.xlsx import PROPERTY, Cells, read_workbook
@@ -32,7 +32,6 @@ __all__ = [
     "Source",
     "Submission",
     "Unstored",
-    "column_letters",
     "limits_of_reports",
     "of_table",
     "read_submission",

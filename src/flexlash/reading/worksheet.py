@@ -10,9 +10,9 @@ from __future__ import annotations
 import re
 
 from flexlash.reading.elements import MAIN, Elements
-from flexlash.reading.raw import column_number
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
+from flexlash.schema.cell_addresses import CellAddress, cell_address
 
 __all__ = ["MAXIMUM_COLUMN", "MAXIMUM_ROW", "Worksheet"]
 
@@ -22,21 +22,17 @@ MAXIMUM_COLUMN = 16_384
 
 _NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 _INDEX = re.compile(r"\s*\d{1,9}\s*", re.ASCII)
-_REFERENCE = re.compile(r"([A-Za-z]{1,3})([1-9]\d{0,6})", re.ASCII)
 _AREA = re.compile(r"([A-Za-z]{1,3}[1-9]\d{0,6})(?::([A-Za-z]{1,3}[1-9]\d{0,6}))?", re.ASCII)
 _KINDS = frozenset(("n", "s", "str", "b", "e", "inlineStr", "d"))
 _TRUE = frozenset(("1", "true", "on"))
 
 
-def _place(reference: str) -> tuple[int, int]:
-    """Return row and column of a cell's address; raise Refusal when it is none, or beyond the sheet's corner."""
-    match = _REFERENCE.fullmatch(reference)
-    if match is None:
+def _address(reference: str) -> CellAddress:
+    """Return a cell's address; raise Refusal when a text is none, or beyond the sheet's corner."""
+    address = cell_address(reference)
+    if address is None or address.row > MAXIMUM_ROW or address.column > MAXIMUM_COLUMN:
         raise Refusal("E102")
-    row, column = int(match[2]), column_number(match[1].upper())
-    if row > MAXIMUM_ROW or column > MAXIMUM_COLUMN:
-        raise Refusal("E102")
-    return row, column
+    return address
 
 
 class Worksheet(Elements):
@@ -126,7 +122,7 @@ class Worksheet(Elements):
         if reference is None:
             self.column += 1
         else:
-            row, column = _place(reference)
+            row, column = _address(reference)
             if row != self.row or column <= self.column:
                 raise Refusal("E102")
             self.column = column
@@ -177,7 +173,7 @@ class Worksheet(Elements):
         match = _AREA.fullmatch(attributes.get("ref", ""))
         if match is None:
             raise Refusal("E102")
-        self.merged.append((*_place(match[1]), *_place(match[2] or match[1])))
+        self.merged.append((*_address(match[1]), *_address(match[2] or match[1])))
 
 
 def _index(text: str) -> int:

@@ -6,8 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeGuard
 
-from xlsxwriter.utility import xl_cell_to_rowcol
-
 from flexlash.analysis.outcome import Outcome
 from flexlash.feedback.template.template_workbook import TITLES
 from flexlash.reading.read import RawSheet, Submission, Unstored
@@ -73,7 +71,7 @@ def write_submission(book: Book, outcome: Outcome) -> None:
     for schema, title in _TITLES.items():
         raw = by_title.get(title)
         if raw:
-            mine = {xl_cell_to_rowcol(cell): guilt for (name, cell), guilt in guilty.items() if name == raw.name}
+            mine = {(row - 1, place - 1): guilt for (name, row, place), guilt in guilty.items() if name == raw.name}
             mirror = _Mirror(raw=raw, title=title, header=headers.get(schema, 0), guilty=mine)
             if schema == "Variants" and table is not None:
                 linked = table.heading.places.get("variant", 0) - 1
@@ -83,12 +81,12 @@ def write_submission(book: Book, outcome: Outcome) -> None:
             _write_mirror(book, _Mirror(raw=built_in_sheet(schema), title=title, guilty={}, header=1))
 
 
-def _guilty(outcome: Outcome) -> dict[tuple[str, str], _Guilt]:
-    """Return what is wrong with each cell, errors first; the first cells alone have messages."""
-    found: dict[tuple[str, str], _Guilt] = {}
+def _guilty(outcome: Outcome) -> dict[tuple[str, int, int], _Guilt]:
+    """Return what is wrong with each cell, by sheet, row and column, errors first; the first alone have messages."""
+    found: dict[tuple[str, int, int], _Guilt] = {}
     for one in finding_list(outcome):
-        if one.cell and one.level != "info":
-            guilt = found.setdefault((one.sheet, one.cell), _Guilt(level=one.level))
+        if one.address and one.level != "info":
+            guilt = found.setdefault((one.sheet, *one.address), _Guilt(level=one.level))
             guilt.messages.append(f"{one.code} {one.message}")
     for guilt in list(found.values())[MOST_COMMENTS:]:
         guilt.messages.clear()

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import datetime
-import math
 import re
-from collections import defaultdict
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from flexlash.schema.cell_addresses import CellAddress, cell_address
 from flexlash.schema.finding_catalogue import CATALOGUE, Level
 
-__all__ = ["CATALOGUE", "Finding", "cell_ranges", "finding", "readable", "shown", "spelled_out"]
+__all__ = ["CATALOGUE", "Finding", "finding", "readable", "shown", "spelled_out"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,12 +41,22 @@ class Finding:
         """Sheet and cell as Excel writes them: `Variants!D7`."""
         return f"{self.sheet}!{self.cell}" if self.cell else self.sheet
 
+    @property
+    def address(self) -> CellAddress | None:
+        """Row and column of the cell, None for a finding without one."""
+        return cell_address(self.cell)
+
+    @property
+    def row(self) -> int:
+        """Row of the cell, 0 for a finding without one."""
+        return self.address.row if self.address else 0
+
 
 _LONGEST = 400
 """Most characters of a text that a message quotes from outside."""
 
 
-def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **facts: Any) -> Finding:
+def finding(code: str, *, sheet: str = "", cell: CellAddress | str = "", column: str = "", **facts: Any) -> Finding:
     """Return a finding with the catalogue's words filled in.
 
     `facts` are what the message names; `variant`, `value`, `suggestion` and `repair` also become fields. `entered` is
@@ -68,7 +76,7 @@ def finding(code: str, *, sheet: str = "", cell: str = "", column: str = "", **f
         level=rule.level,
         code=code,
         sheet=sheet,
-        cell=cell,
+        cell=str(cell),
         column=column,
         variant=str(inert.get("variant", "")),
         value=shown(facts.get("entered", value)),
@@ -127,27 +135,3 @@ def spelled_out(value: float, digits: int = 4) -> str:
     """
     rounded = float(f"{value:.{digits}g}")
     return f"{rounded:.15g}"
-
-
-def cell_ranges(cells: Sequence[str], most: int = 20) -> str:
-    """Return cell addresses with runs in a column drawn together, as many of them as a line may hold.
-
-    >>> cell_ranges(["D6", "D7", "D8", "D14", "E3"])
-    'D6:D8, D14, E3'
-    """
-    by_column: dict[str, list[int]] = defaultdict(list)
-    for cell in cells:
-        letters = cell.rstrip("0123456789")
-        by_column[letters].append(int(cell[len(letters) :] or 0))
-    found = []
-    for letters, numbers in sorted(by_column.items(), key=lambda entry: (len(entry[0]), entry[0])):
-        start = last = None
-        for number in [*sorted(set(numbers)), math.inf]:
-            if last is not None and number == last + 1:
-                last = number
-                continue
-            if start is not None:
-                found.append(f"{letters}{start}" if start == last else f"{letters}{start}:{letters}{last}")
-            start = last = number
-    more = f" and {len(found) - most} more" if len(found) > most else ""
-    return ", ".join(found[:most]) + more

@@ -5,7 +5,6 @@ And the other way round: which rows wait for an error.
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,14 +18,6 @@ __all__ = ["Waiting", "name_waiting", "stopped_by", "waiting_rows"]
 
 Kind: TypeAlias = Literal["material", "class"]
 
-_ROW = re.compile(r"\d+$")
-
-
-def _row(found: Finding) -> int:
-    """Return the row of a finding's cell, 0 where it has none."""
-    match = _ROW.search(found.cell)
-    return int(match[0]) if match else 0
-
 
 def stopped_by(validated: Validated) -> dict[int, list[Finding]]:
     """Return the errors at other places that stop each row of Variants, by its row number."""
@@ -36,7 +27,7 @@ def stopped_by(validated: Validated) -> dict[int, list[Finding]]:
     by_place: dict[tuple[str, int], list[Finding]] = defaultdict(list)
     for found in ledger.findings:
         if found.level == "error":
-            by_place[found.sheet, _row(found)].append(found)
+            by_place[found.sheet, found.row].append(found)
     headers = by_place[table.sheet, table.heading.row]
     named = {place for places in ledger.sources.values() for place in places}
     own = {(table.sheet, row) for row in table.frame["row"]}
@@ -90,7 +81,7 @@ def name_waiting(validated: Validated) -> None:
         sentences |= dict.fromkeys(one.places, f" {wait} for {one.kind} {shown(one.name)}.")
     every = f" All rows of {sheet} wait for it." if ledger.everything and not table.frame.is_empty() else ""
     ledger.findings = [
-        replace(found, message=found.message + sentences.get((found.sheet, _row(found)), every))
+        replace(found, message=found.message + sentences.get((found.sheet, found.row), every))
         if found.level == "error" and found.cell and found.sheet != table.sheet
         else found
         for found in ledger.findings

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from flexlash.reading.raw import RawSheet, column_letters
+from flexlash.reading.raw import RawSheet
+from flexlash.schema.cell_addresses import CellAddress
 from flexlash.validation.ledger import Ledger
 
 __all__ = ["report_dialect"]
@@ -31,4 +32,4 @@ def _at(sheet: RawSheet, place: tuple[int, int]) -> dict[str, Any]:
     """Return the address and the text of a cell."""
     row, column = place
     text = str(sheet.rows[row][column]).strip()
-    return {"sheet": sheet.name, "cell": f"{column_letters(column)}{row}", "value": text}
+    return {"sheet": sheet.name, "cell": CellAddress(row=row, column=column), "value": text}

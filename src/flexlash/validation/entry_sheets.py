@@ -7,6 +7,7 @@ from typing import Any
 from flexlash.reading.raw import RawSheet, Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
+from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import ENTRY_SHEETS, columns_of
 from flexlash.schema.spellings import closest, plain
 from flexlash.validation.headers import count_headings
@@ -106,5 +107,5 @@ def tell_second_tables(submission: Submission, present: dict[str, RawSheet], led
             continue
         for schema in present:
             if count_headings(sheet, schema) >= min(_TELLING, len(columns_of(schema))):
-                ledger.add("W428", sheet=name, cell=f"A{min(sheet.rows)}", other=schema)
+                ledger.add("W428", sheet=name, cell=CellAddress(row=min(sheet.rows), column=1), other=schema)
                 break

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from flexlash.reading.read import ErrorCell, RawSheet, RawValue, Unstored, column_letters
+from flexlash.reading.read import ErrorCell, RawSheet, RawValue, Unstored
+from flexlash.schema.cell_addresses import CellAddress, column_letters
 from flexlash.schema.columns import Column, columns_of
 from flexlash.schema.findings import shown
 from flexlash.schema.header_names import BLANK, LAST_HEADER_ROW, known_names, name_and_unit
@@ -94,7 +95,7 @@ class _Recogniser:
         known = self.known_by_row()
         best = max(known, key=lambda number: known[number], default=0)
         if not known or known[best] < min(2, len(self.columns)):
-            self.ledger.add("E109", sheet=self.sheet.name, cell="A1")
+            self.ledger.add("E109", sheet=self.sheet.name, cell=CellAddress(row=1, column=1))
             self.ledger.everything = True
             return None
         heading = Heading(row=best)
@@ -124,7 +125,7 @@ class _Recogniser:
                 continue
             self.ledger.everything = True
             if key not in heading.doubtful.values():
-                address = f"{column_letters(next_place)}{heading.row}"
+                address = CellAddress(row=heading.row, column=next_place)
                 facts: dict[str, Any] = {"column": key, "name": column.name, "label": column.label}
                 self.ledger.add("E111", sheet=self.sheet.name, cell=address, **facts)
 
@@ -155,7 +156,7 @@ class _Recogniser:
         """Recognise one header cell, or say what is wrong with it; `unknown` is what it may mean else."""
         name, unit_text = name_and_unit(header)
         meant = unknown.keys if unknown else [self.spellings[plain(name)]]
-        address = f"{column_letters(place)}{heading.row}"
+        address = CellAddress(row=heading.row, column=place)
         facts: dict[str, Any] = {"sheet": self.sheet.name, "cell": address, "value": header.strip()}
         if not meant:
             heading.extra[place] = header.strip()

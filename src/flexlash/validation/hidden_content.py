@@ -7,7 +7,8 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from itertools import pairwise
 
-from flexlash.reading.raw import RawSheet, column_letters
+from flexlash.reading.raw import RawSheet
+from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import columns_of
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.typed_columns import Table
@@ -26,15 +27,15 @@ def tell_overlooked(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
     """Tell what an engineer may not see in the rows of an entry sheet; cells under a merged area are errors."""
     rows = sorted(table.cells)
     if sheet.hidden and rows:
-        ledger.add("W426", sheet=sheet.name, cell="A1", value=len(rows))
+        ledger.add("W426", sheet=sheet.name, cell=CellAddress(row=1, column=1), value=len(rows))
     for row, place, area in _covered(sheet, table, rows):
         _blame_covered(table, ledger, row, place, area)
     for first, last in _runs(rows, sheet.hidden_rows):
         words = f"row {first} is" if first == last else f"rows {first} to {last} are"
-        ledger.add("W425", sheet=sheet.name, cell=f"{_first_letter(table)}{first}", detail=words)
+        ledger.add("W425", sheet=sheet.name, cell=_name_cell(table, first), detail=words)
     for above, row in pairwise(rows):
         if row - above > _EMPTY_ROWS:
-            cell = f"{_first_letter(table)}{row}"
+            cell = _name_cell(table, row)
             ledger.add("W427", sheet=sheet.name, cell=cell, detail=row - above - 1, other=above)
     _tell_digits(sheet, table, ledger)
 
@@ -51,10 +52,9 @@ def _tell_digits(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
             ledger.add("W430", sheet=sheet.name, cell=table.address(row, key), column=key, name=name, value=text)
 
 
-def _first_letter(table: Table) -> str:
-    """Return the letters of the column that names a row."""
-    first = next(iter(columns_of(table.schema)))
-    return column_letters(table.heading.places.get(first, 1))
+def _name_cell(table: Table, row: int) -> CellAddress:
+    """Return the cell that names a row."""
+    return table.address(row, next(iter(columns_of(table.schema))))
 
 
 def _covered(sheet: RawSheet, table: Table, rows: list[int]) -> Iterator[tuple[int, int, str]]:
@@ -69,7 +69,7 @@ def _covered(sheet: RawSheet, table: Table, rows: list[int]) -> Iterator[tuple[i
             for row in rows[first:last]:
                 hides = place in table.cells[row]
                 if (row, place) != (top, left) and (shown or hides):
-                    yield row, place, f"{column_letters(left)}{top}:{column_letters(right)}{bottom}"
+                    yield row, place, f"{CellAddress(row=top, column=left)}:{CellAddress(row=bottom, column=right)}"
                 judged[place] = row
 
 

@@ -7,14 +7,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.findings import Finding, finding
 
 __all__ = ["Ledger", "UnitMistake"]
 
 _UNKNOWN = frozenset({"E209", "E210", "E211", "E307", "E309"})
 """Codes of names that are unknown however they are spelt."""
-
-_LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,7 +25,7 @@ class UnitMistake:
 
     sheet: str
     schema: str
-    cell: str
+    cell: CellAddress
     column: str
     variant: str
     material: str
@@ -97,10 +96,8 @@ class Ledger:
 
     def _unit_mistake_at(self, facts: Mapping[str, Any]) -> UnitMistake | None:
         """Return the mistake of the cell that a finding is about."""
-        digits = str(facts.get("cell", "")).lstrip(_LETTERS)
-        if not self.unit_mistakes or not digits.isdecimal():
-            return None
-        return self.unit_mistakes.get((facts["sheet"], int(digits), facts.get("column", "")))
+        address: CellAddress | None = facts.get("cell")
+        return address and self.unit_mistakes.get((facts["sheet"], address.row, facts.get("column", "")))
 
     def unit_mistakes_by_owner(self) -> dict[int | str, list[UnitMistake]]:
         """Return the mistakes by row of Variants, or by plain name of the material."""
@@ -112,7 +109,7 @@ class Ledger:
     def name_variants(self, sheet: str, names: Mapping[int, str]) -> None:
         """Put the variant's name into the findings at cells of its row."""
         self.findings = [
-            replace(found, variant=names.get(int(found.cell.lstrip(_LETTERS)), ""))
+            replace(found, variant=names.get(found.row, ""))
             if found.sheet == sheet and found.cell and not found.variant
             else found
             for found in self.findings

@@ -9,9 +9,9 @@ from typing import Any
 
 import polars as pl
 
-from flexlash.reading.raw import Percentage, RawSheet, RawValue, Unstored, column_letters
+from flexlash.reading.raw import Percentage, RawSheet, RawValue, Unstored
+from flexlash.schema.cell_addresses import CellAddress, cell_ranges, column_letters
 from flexlash.schema.columns import DIMENSIONS, Column, columns_of
-from flexlash.schema.findings import cell_ranges
 from flexlash.schema.header_names import BLANK
 from flexlash.schema.units import find_unit
 from flexlash.validation.cell_values import Fault, as_number, as_text
@@ -54,9 +54,9 @@ class Table:
         """Return a cell as the user entered it, an empty text where it is blank."""
         return self.cells[row].get(self.heading.places.get(key, 0), "")
 
-    def address(self, row: int, key: str) -> str:
+    def address(self, row: int, key: str) -> CellAddress:
         """Return a cell's address; a column that the sheet lacks stands at the row's first cell."""
-        return f"{column_letters(self.heading.places.get(key, 1))}{row}"
+        return CellAddress(row=row, column=self.heading.places.get(key, 1))
 
     def partners(self, rows: Sequence[int], key: str) -> Iterator[tuple[int, str]]:
         """Yield rows that hold the same entry, each with the addresses of the others; of many rows, those of all."""
@@ -115,7 +115,7 @@ def _entries(
     for number, cells in _data_rows(sheet, table.heading, next(iter(columns_of(table.schema))), ledger):
         none = no_entries.of(cells, apart=number > last + 1) if number != units else None
         if none and none.code[0] == "W":
-            ledger.add(none.code, sheet=sheet.name, cell=f"{column_letters(none.place)}{number}", **none.facts)
+            ledger.add(none.code, sheet=sheet.name, cell=CellAddress(row=number, column=none.place), **none.facts)
             continue
         last = number
         if number != units:
@@ -138,7 +138,7 @@ def _blame_surplus(table: Table, row: int, surplus: list[int], sheet: RawSheet, 
     ledger.add(
         "E215",
         sheet=table.sheet,
-        cell=f"{column_letters(surplus[0])}{row}",
+        cell=CellAddress(row=row, column=surplus[0]),
         value=_as_shown(sheet.rows[row].get(surplus[0], "")),
         detail="an unquoted decimal comma makes two cells of one" if comma else "a separator stands once too often",
         rows=[row] if table.schema == "Variants" else [],
@@ -178,11 +178,11 @@ def _data_rows(
             yield number, entered
         elif cells:
             place, value = next(iter((entered or cells).items()))
-            address = f"{column_letters(place)}{number}"
+            address = CellAddress(row=number, column=place)
             ledger.add("W408", sheet=sheet.name, cell=address, value=_as_shown(value))
     for place, number in sorted(nameless.items()) if first_key != _MEANT_BESIDE else ():
-        letters = column_letters(place)
-        ledger.add("I509", sheet=sheet.name, cell=f"{letters}{number}", value=letters)
+        address = CellAddress(row=number, column=place)
+        ledger.add("I509", sheet=sheet.name, cell=address, value=column_letters(place))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -111,13 +111,13 @@ def settle(ledger: Ledger) -> None:
         found for found in ledger.findings if found.code not in _DOUBTS or (found.sheet, found.cell) not in wrong
     ]
     for mistake in ledger.unit_mistakes.values():
-        if (mistake.sheet, mistake.cell) not in wrong:
+        if (mistake.sheet, str(mistake.cell)) not in wrong:
             ledger.add("W420", suggestion=mistake.suggestion, **_facts(mistake))
 
 
 def report_contradiction(mistake: UnitMistake, contradicted: str, ledger: Ledger) -> None:
     """Record, once, that a mistaken cell of Variants makes its row contradictory; the other cell is not blamed."""
-    if any((found.sheet, found.cell) == (mistake.sheet, mistake.cell) for found in ledger.findings):
+    if any((found.sheet, found.cell) == (mistake.sheet, str(mistake.cell)) for found in ledger.findings):
         ledger.rows.add(mistake.row)
         return
     ledger.add("E329", contradicted=contradicted, rows=[mistake.row], **_facts(mistake))

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from flexlash.reading.raw import RawSheet, RawValue, column_letters
+from flexlash.reading.raw import RawSheet, RawValue
+from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.column import Column
 from flexlash.schema.columns import columns_of
 from flexlash.schema.header_names import name_and_unit
@@ -42,7 +43,7 @@ def take_units_row(sheet: RawSheet, heading: Heading, schema: str, ledger: Ledge
     ledger.add(
         "I515",
         sheet=sheet.name,
-        cell=f"{column_letters(place)}{row}",
+        cell=CellAddress(row=row, column=place),
         value=" ".join(str(cell).strip() for cell in cells.values()),
     )
     return row
@@ -79,7 +80,7 @@ def _blame(sheet: RawSheet, heading: Heading, row: int, column: Column, ledger: 
     ledger.add(
         "E219",
         sheet=sheet.name,
-        cell=f"{column_letters(place)}{row}",
+        cell=CellAddress(row=row, column=place),
         column=column.key,
         name=column.name,
         value=str(sheet.rows[row][place]).strip(),

@@ -11,6 +11,7 @@ import polars as pl
 
 from flexlash.reading.read import Submission
 from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import columns_of
 from flexlash.schema.spellings import affordable, misspelt, plain, spelt_alike, suggested
 from flexlash.schema.variant import Material, Settings, ToleranceRow, Variant
@@ -211,7 +212,7 @@ def _tell_other_sources(submission: Submission, ledger: Ledger) -> None:
     """Warn when the sheet of a later version is filled."""
     for name, sheet in submission.sheets.items():
         if plain(name) == plain(_OTHER_SOURCES) and len(sheet.rows) > 1:
-            ledger.add("W406", sheet=name, cell=f"A{min(sheet.rows)}")
+            ledger.add("W406", sheet=name, cell=CellAddress(row=min(sheet.rows), column=1))
 
 
 def _variant(record: dict[str, Any], result: Validated) -> Variant:

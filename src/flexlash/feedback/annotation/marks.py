@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from copy import copy
 from typing import Any
 
 from openpyxl import Workbook
-from openpyxl.utils.cell import coordinate_to_tuple
 from openpyxl.worksheet.worksheet import Worksheet
 
 from flexlash.feedback.annotation.appearance import AUTHOR, FILLS, level_of, note, wear, worn
@@ -24,7 +22,6 @@ MOST_NOTES = 1000
 
 _MOST_IN_A_NOTE = 5
 _HEAD = "— flexlash —"
-_ADDRESS = re.compile(r"[A-Z]{1,3}[1-9]\d{0,6}", re.ASCII)
 _LAST_ROW, _LAST_COLUMN = 1_048_576, 16_384
 
 Place = tuple[str, int, int]
@@ -37,8 +34,8 @@ def guilty_cells(workbook: Workbook, findings: Iterable[Finding]) -> dict[Place,
     sheets = {sheet.title: sheet for sheet in workbook.worksheets}
     merged = {title: [area.bounds for area in sheet.merged_cells.sorted()] for title, sheet in sheets.items()}
     for one in findings:
-        if one.sheet in sheets and _ADDRESS.fullmatch(one.cell):
-            row, column = coordinate_to_tuple(one.cell)
+        if one.sheet in sheets and one.address:
+            row, column = one.address
             if row <= _LAST_ROW and column <= _LAST_COLUMN:
                 row, column = _top_left(merged[one.sheet], row, column)
                 found.setdefault((one.sheet, row, column), []).append(one)

@@ -8,7 +8,8 @@ from collections import defaultdict
 from collections.abc import Sequence
 
 from flexlash.feedback.fixing.fix import Repair
-from flexlash.reading.raw import ErrorCell, RawSheet, RawValue, column_number
+from flexlash.reading.raw import ErrorCell, RawSheet, RawValue
+from flexlash.schema.cell_addresses import cell_address
 
 __all__ = ["mended_table"]
 
@@ -21,8 +22,8 @@ def mended_table(sheet: RawSheet, repairs: Sequence[Repair]) -> bytes:
     comma = bool(sheet.dialect and sheet.dialect.comma_number)
     now: dict[int, dict[int, str]] = defaultdict(dict)
     for repair in repairs:
-        letters = repair.cell.rstrip("0123456789")
-        now[int(repair.cell[len(letters) :])][column_number(letters)] = _written(repair.value, comma=comma)
+        if address := cell_address(repair.cell):
+            now[address.row][address.column] = _written(repair.value, comma=comma)
     width = max((max(cells) for cells in sheet.rows.values()), default=0)
     buffer = io.StringIO(newline="")
     writer = csv.writer(buffer, delimiter=sheet.dialect.delimiter if sheet.dialect else ",", lineterminator="\r\n")

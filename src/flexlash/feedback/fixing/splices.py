@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from xml.parsers import expat
 from xml.sax.saxutils import escape
 
-from flexlash.reading.raw import column_letters, column_number
+from flexlash.schema.cell_addresses import CellAddress, cell_address
 
 __all__ = ["CellSpan", "before_end", "cell_spans", "cell_xml", "spliced", "xml_text"]
 
@@ -58,10 +58,10 @@ class _Cells:
         elif local == "c":
             self.column += 1
             self.address = attributes.get("r", "").upper()
-            if self.address:
-                self.column = column_number(self.address.rstrip("0123456789"))
+            if address := cell_address(self.address):
+                self.column = address.column
             else:
-                self.address = f"{column_letters(self.column)}{self.row}"
+                self.address = str(CellAddress(row=self.row, column=self.column))
             if self.address in self.wanted:
                 self.begin = self.parser.CurrentByteIndex
                 self.prefix = f"{prefix}:" if prefix else ""

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from flexlash.reading.archive import unpacked
 from flexlash.reading.elements import MAIN, Elements, Listing
 from flexlash.reading.package import Package, SheetPart, open_package
-from flexlash.reading.raw import column_number
 from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.schema.cell_addresses import cell_address
 
 __all__ = ["Leftovers", "Place", "leftovers"]
 
@@ -31,7 +31,6 @@ _THINGS = (
 
 _DRAWING = re.compile(r"(?:.*/)?drawings/drawing\d*\.xml")
 _SHAPES = ("sp", "cxnSp")
-_REFERENCE = re.compile(r"([A-Z]{1,3})([1-9]\d{0,6})", re.ASCII)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,5 +101,4 @@ def _notes(package: Package, sheet: SheetPart, limits: ReadingLimits) -> list[Pl
 
 def _place(reference: str) -> Place:
     """Return row and column of an address; what is none counts as row and column 0."""
-    match = _REFERENCE.fullmatch(reference)
-    return (int(match[2]), column_number(match[1])) if match else (0, 0)
+    return cell_address(reference) or (0, 0)

@@ -14,10 +14,11 @@ from flexlash.feedback.template.filling import Entries, Filling
 from flexlash.feedback.template.leftovers import Leftovers, Place, leftovers
 from flexlash.feedback.template.template_workbook import TITLES, template_bytes
 from flexlash.reading.limited_process import ask
-from flexlash.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored, column_letters
+from flexlash.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored
 from flexlash.reading.read import Source, submission_of
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
+from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import ENTRY_SHEETS, SETTINGS, Column
 from flexlash.schema.spellings import plain
 from flexlash.validation.cell_values import as_number
@@ -123,7 +124,7 @@ class _Carried:
         if heading is None:
             self._remark(f"{len(sheet.rows)} rows have no header row above them and were left behind", ())
             return
-        told = {found.cell for found in ledger.findings}
+        told = {found.address for found in ledger.findings}
         self.heading = heading
         self.keys = _keys(heading)
         self.own = self._own_places()
@@ -145,10 +146,10 @@ class _Carried:
         meanings = explained if self.schema == "Settings" else set()
         return sorted(below - self.keys.keys() - self.heading.ignored - meanings)
 
-    def _column(self, column: Column, told: set[str]) -> Column:
+    def _column(self, column: Column, told: set[CellAddress | None]) -> Column:
         """Return a column under the user's header, with the unit of that header, where it differs from ours."""
         place = next((place for place, key in self.keys.items() if key == column.key), 0)
-        if f"{column_letters(place)}{self.heading.row}" not in told:
+        if CellAddress(row=self.heading.row, column=place) not in told:
             return column
         label = str(self.sheet.rows[self.heading.row][place])
         factor = self.heading.factors.get(column.key, 1.0)
@@ -263,7 +264,7 @@ def _is_ours(value: RawValue, schema: str) -> bool:
 
 def _addresses(sheet: str, places: Sequence[Place]) -> str:
     """Return cells as Excel writes them, the first few by name."""
-    named = ", ".join(f"{column_letters(place)}{row}" for row, place in places[:_LISTED])
+    named = ", ".join(str(CellAddress(row=row, column=place)) for row, place in places[:_LISTED])
     more = f" and {len(places) - _LISTED} more" if len(places) > _LISTED else ""
     return f"{sheet}!{named}{more}" if places else sheet
 

@@ -7,7 +7,7 @@ from typing import Any
 from xlsxwriter.url import Url
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.reading.raw import column_letters
+from flexlash.schema.cell_addresses import column_letters
 from flexlash.schema.findings import Finding
 
 __all__ = [
@@ -69,8 +69,7 @@ def rules_of(outcome: Outcome) -> dict[str, list[Finding]]:
 def row_of(outcome: Outcome, found: Finding) -> int:
     """Return the row number in Variants that a finding is about, 0 for none."""
     table = outcome.validated.table if outcome.validated else None
-    digits = found.cell.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")
-    return int(digits) if table is not None and found.sheet == table.sheet and digits else 0
+    return found.row if table is not None and found.sheet == table.sheet else 0
 
 
 def finding_rows(outcome: Outcome) -> dict[int, int]:
