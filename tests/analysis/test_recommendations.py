@@ -49,7 +49,7 @@ def test_the_main_contributor_and_the_main_drawing_dimension_are_halved(table, s
     """Where a material constant scatters most, the dimension of the drawing that scatters most is halved as well."""
     outcome = run(table([sound]))
     first, second, every = _only(outcome).halvings
-    shares = next(iter(outcome.computed.values())).variation.shares
+    shares = next(iter(outcome.computed.values())).spread.shares
     assert list(first.limits) == ["youngs_modulus"] == [max(shares, key=shares.get)]
     assert list(second.limits) == ["wall_thickness"]
     assert set(every.limits) == set(shares)

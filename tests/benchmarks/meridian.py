@@ -14,8 +14,8 @@ from flexlash.mechanics.elasticity.twist import elasticity_check
 from flexlash.mechanics.flexspline import backlash
 from flexlash.schema.variant import Variant
 from flexlash.tolerance.dimension_limits import limits_of
-from flexlash.tolerance.row_spreads import spread_rows
-from flexlash.tolerance.spread_statistics import Draws
+from flexlash.tolerance.row_batches import spread_rows
+from flexlash.tolerance.spread_statistics import SamplingPlan
 from flexlash.validation.materials_and_classes import standard_class
 
 PLAIN = {
@@ -73,7 +73,7 @@ def spread_time(dimensions, lines=None):
     ]
     model = partial(backlash, "cup")
     tasks = [(model, one.dimensions, limits_of(one, standard_class())[0], None) for one in variants]
-    return best(lambda: list(spread_rows(tasks, Draws("line", lines, 0), jobs=1)), 3) / ROWS
+    return best(lambda: list(spread_rows(tasks, SamplingPlan("line", lines, 0), jobs=1)), 3) / ROWS
 
 
 def model_time(dimensions):

@@ -36,7 +36,7 @@ WANTED = 1e-3
 PROBABILITY = 0.99865
 SIZES = (1 << 18, 1 << 20)
 PEER_SEEDS = 160
-"""Draws and seeds by which the error of plain Monte Carlo is measured."""
+"""SamplingPlan and seeds by which the error of plain Monte Carlo is measured."""
 CALLS = 300
 
 TORQUE = 800.0
@@ -335,18 +335,18 @@ def spread_once(rows):
     """Print seconds, peak memory [MiB] before and after, and by which methods rows were answered, as JSON."""
     from collections import Counter
 
-    from flexlash.tolerance.row_spreads import spread_rows
-    from flexlash.tolerance.spread_statistics import Draws
+    from flexlash.tolerance.row_batches import spread_rows
+    from flexlash.tolerance.spread_statistics import SamplingPlan
 
     tasks = drawn_tasks(rows)
-    draws = Draws(method="line", samples=None, seed=0)
+    draws = SamplingPlan(method="line", samples=None, seed=0)
     list(spread_rows(tasks[:200], draws, jobs=1))
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     start = time.perf_counter()
     found = list(spread_rows(tasks, draws, jobs=1))
     wall = time.perf_counter() - start
     after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    lines = Counter(f"{one.words['spread_method']} {one.statistics['spread_points']:.0f}" for _, one in found)
+    lines = Counter(f"{one.texts['spread_method']} {one.numbers['spread_points']:.0f}" for _, one in found)
     print(json.dumps([wall, before, after, dict(lines.most_common(4))]))
 
 

@@ -386,7 +386,7 @@ def test_calibration_reproduces_the_finite_elements():
     assert row["backlash_rad"] == pytest.approx(9.86e-4, rel=1e-3)
     assert outcome.findings == []
     (computed,) = outcome.computed.values()
-    shares = computed.variation.shares
+    shares = computed.spread.shares
     # Three per cent at three sigma of 4/7 and 3/7 of the backlash, against two of Young's modulus.
     ratio = shares["cylinder_calibration"] / shares["youngs_modulus"]
     assert ratio == pytest.approx((3 * row["cylinder_windup_rad"] / (2 * row["windup_rad"])) ** 2, rel=0.02)

@@ -155,9 +155,9 @@ def test_worst_case(row):
 def test_shares_of_variance(submitted, method, tolerance):
     """Every dimension causes its share of the variance, and together they leave next to no interaction."""
     (computed,) = submitted[method].computed.values()
-    shares = computed.variation.shares
+    shares = computed.spread.shares
     assert shares == pytest.approx(SHARES, abs=tolerance)
-    assert computed.variation.totals == pytest.approx(SHARES, abs=tolerance)
+    assert computed.spread.total_shares == pytest.approx(SHARES, abs=tolerance)
     assert sum(shares.values()) == pytest.approx(1, abs=2 * tolerance)
 
 

@@ -77,5 +77,5 @@ def test_causes_are_those_of_the_outcome(table, sound):
     outcome = run(table([sound, {**sound, "variant": "bad", "torque_Nm": ""}]), method="random", samples=64)
     (cause,) = causes_of(outcome)
     (computed,) = outcome.computed.values()
-    assert (cause.name, cause.shares) == ("B3-160", computed.variation.shares)
+    assert (cause.name, cause.shares) == ("B3-160", computed.spread.shares)
     assert cause.main == outcome.results["main_contributor"][0]

@@ -61,7 +61,7 @@ def test_the_heat_map_is_the_shares(study):
     assert list(table) == [_words(name) for name in dimensions]
     blanks = 0
     for name in dimensions:
-        shares = [one.computed.variation.shares.get(name) for one in drawn]
+        shares = [one.computed.spread.shares.get(name) for one in drawn]
         expected = [None if share is None else pytest.approx(share, rel=1e-15) for share in shares]
         assert list(table[_words(name)][: len(drawn)]) == expected
         blanks += shares.count(None)
@@ -86,7 +86,7 @@ def test_the_columns_over_all_variants_are_over_all(table, sound, tmp_path):
         "Main contributor in",
     ]
     for name in ranked_dimensions(causes_of(outcome)):
-        shares = {one.variant.name: one.variation.shares[name] for one in outcome.computed.values()}
+        shares = {one.variant.name: one.spread.shares[name] for one in outcome.computed.values()}
         mean, greatest, where, times = found[_words(name)][MAPPED:]
         assert mean == pytest.approx(sum(shares.values()) / count, rel=1e-12)
         assert (greatest, where) == (pytest.approx(max(shares.values()), rel=1e-15), max(shares, key=shares.get))

@@ -176,24 +176,24 @@ def test_sensitivity_has_first_order_and_total_indices(study):
         for name in DIMENSIONS:
             words = dimension_words(name)
             if words in columns:
-                for heading, indices in ((words, one.variation.shares), (f"{words}, total", one.variation.totals)):
+                for heading, indices in ((words, one.spread.shares), (f"{words}, total", one.spread.total_shares)):
                     value = sheet.cell(row, columns[heading]).value
                     assert value == (pytest.approx(indices[name], abs=5.001e-5) if name in indices else None)
-    assert set(firsts) == {dimension_words(name) for one in outcome.computed.values() for name in one.variation.shares}
+    assert set(firsts) == {dimension_words(name) for one in outcome.computed.values() for name in one.spread.shares}
 
 
 def test_tornado_has_both_indices_of_the_worst_variant(study):
     """The tornado's table has, by falling share, swings, first-order and total index of the worst variant."""
     outcome, path = study
     sheet = _open(path)["Sensitivity"]
-    worst = selection.drawn_variants(outcome)[0].computed.variation
+    worst = selection.drawn_variants(outcome)[0].computed.spread
     assert [cell.value for cell in sheet[4]][:5] == [
         "Dimension", "At lower limit", "At upper limit", "Share of variance", "Share with interactions",
     ]  # fmt: skip
     by_share = sorted(worst.shares, key=worst.shares.get, reverse=True)
     for row, name in enumerate(by_share, start=5):
         found = [cell.value for cell in sheet[row]][:5]
-        expected = [*(end / ARCMIN for end in worst.swings[name]), worst.shares[name], worst.totals[name]]
+        expected = [*(end / ARCMIN for end in worst.swings[name]), worst.shares[name], worst.total_shares[name]]
         assert found == [dimension_words(name), *(pytest.approx(value, rel=1e-14) for value in expected)]
 
 

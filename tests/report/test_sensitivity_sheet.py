@@ -22,12 +22,12 @@ def test_every_variant_has_its_shares_however_few_are_drawn(table, sound, tmp_pa
     sheet = openpyxl.load_workbook(tmp_path / "report.xlsx")["Sensitivity"]
     names = [sheet.cell(row, 1).value for row in range(_HEADER + 2, sheet.max_row + 1)]
     assert names == [f"v{number}" for number in range(5)]
-    first = next(iter(outcome.computed.values())).variation
+    first = next(iter(outcome.computed.values())).spread
     headings = {cell.value: cell.column for cell in sheet[_HEADER + 1]}
     for name, share in first.shares.items():
         assert sheet.cell(_HEADER + 2, headings[dimension_words(name)]).value == round(share, 4)
         assert sheet.cell(_HEADER + 2, headings[f"{dimension_words(name)}, total"]).value == round(
-            first.totals[name], 4
+            first.total_shares[name], 4
         )
     assert sheet.auto_filter.ref.startswith(f"A{_HEADER + 1}:")
     assert sheet.auto_filter.ref.endswith(str(_HEADER + 1 + 5))

@@ -13,10 +13,10 @@ from flexlash.mechanics import flexspline
 from flexlash.tolerance.cross_check import AGREES, cross_checked
 from flexlash.tolerance.dimension_limits import Limits
 from flexlash.tolerance.distributions import Normal
-from flexlash.tolerance.row_spreads import variations_of
+from flexlash.tolerance.row_batches import batch_statistics
 from flexlash.tolerance.sampled_spread import SampledSpread
 from flexlash.tolerance.sampling import UnitPoints
-from flexlash.tolerance.spread_statistics import PERCENTILES, Draws
+from flexlash.tolerance.spread_statistics import PERCENTILES, SamplingPlan
 
 LIMITS = {
     "wall_thickness": Limits(low=0.00155, high=0.00165, distribution="uniform"),
@@ -26,9 +26,9 @@ COMPARED = (*PERCENTILES, "mean", "sd")
 
 
 def spread(limit=None, *, limits=LIMITS, method="line", samples=None, seed=0, cross_check=True):
-    """Return the cross-checked variation of the cup."""
-    draws = Draws(method, samples, seed, cross_check=cross_check)
-    return variations_of([(CUP, NOMINAL, limits, limit)], draws)[0]
+    """Return the cross-checked statistics of the cup."""
+    draws = SamplingPlan(method, samples, seed, cross_check=cross_check)
+    return batch_statistics([(CUP, NOMINAL, limits, limit)], draws)[0]
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -36,19 +36,19 @@ def spread(limit=None, *, limits=LIMITS, method="line", samples=None, seed=0, cr
 def test_lines_and_points_agree_with_plain_draws(method, seed):
     """Lines and Sobol' points agree with plain Monte Carlo in mean, sd, percentiles and share over the limit."""
     found = spread(1.09e-3, method=method, seed=seed)
-    assert found.words["cross_check"] == "agrees"
-    assert found.statistics["cross_check_deviation"] <= AGREES
+    assert found.texts["cross_check"] == "agrees"
+    assert found.numbers["cross_check_deviation"] <= AGREES
 
 
 @pytest.mark.parametrize("name", COMPARED)
 def test_a_wrong_statistic_is_found(name):
     """A statistic moved by ten of its standard errors by plain draws no longer agrees, whichever it is."""
     found = spread()
-    wrong = found.statistics[f"random_{name}"] + 10 * found.statistics[f"random_{name}_standard_error"]
-    moved = replace(found, statistics=found.statistics | {name: wrong})
+    wrong = found.numbers[f"random_{name}"] + 10 * found.numbers[f"random_{name}_standard_error"]
+    moved = replace(found, numbers=found.numbers | {name: wrong})
     checked = cross_checked(moved, plain(), None)
-    assert checked.words["cross_check"] == "differs"
-    assert checked.statistics["cross_check_deviation"] > AGREES
+    assert checked.texts["cross_check"] == "differs"
+    assert checked.numbers["cross_check_deviation"] > AGREES
 
 
 def plain(size=2**17):
@@ -62,27 +62,27 @@ def plain(size=2**17):
 def test_a_wrong_share_over_the_limit_is_found(factor):
     """A share over the limit half or twice as great as it is no longer agrees."""
     found = spread(1.11e-3)
-    assert cross_checked(found, plain(), 1.11e-3).words["cross_check"] == "agrees"
-    share = found.statistics["probability_over_limit"] * factor
-    moved = replace(found, statistics=found.statistics | {"probability_over_limit": share})
-    assert cross_checked(moved, plain(), 1.11e-3).words["cross_check"] == "differs"
+    assert cross_checked(found, plain(), 1.11e-3).texts["cross_check"] == "agrees"
+    share = found.numbers["probability_over_limit"] * factor
+    moved = replace(found, numbers=found.numbers | {"probability_over_limit": share})
+    assert cross_checked(moved, plain(), 1.11e-3).texts["cross_check"] == "differs"
 
 
 def test_own_numbers_stay_and_plain_ones_stand_beside():
     """The spread keeps its own numbers; those of plain draws stand beside them with their standard errors."""
     alone, checked = spread(1.09e-3, cross_check=False), spread(1.09e-3)
-    assert {name: checked.statistics[name] for name in alone.statistics} == alone.statistics
-    assert checked.words == alone.words | {"cross_check": "agrees"}
+    assert {name: checked.numbers[name] for name in alone.numbers} == alone.numbers
+    assert checked.texts == alone.texts | {"cross_check": "agrees"}
     assert checked.shares == alone.shares
     beside = {f"random_{name}" for name in COMPARED} | {f"random_{name}_standard_error" for name in COMPARED}
     beside |= {"random_probability_over_limit", "random_points", "cross_check_deviation"}
-    assert set(checked.statistics) - set(alone.statistics) == beside
-    assert checked.statistics["random_points"] == 2**17
+    assert set(checked.numbers) - set(alone.numbers) == beside
+    assert checked.numbers["random_points"] == 2**17
 
 
 def test_plain_numbers_are_those_of_the_method_random():
     """What stands beside the spread is, bit for bit, what the method random gives."""
-    checked, drawn = (spread(1.09e-3, method=method).statistics for method in ("line", "random"))
+    checked, drawn = (spread(1.09e-3, method=method).numbers for method in ("line", "random"))
     for name in COMPARED:
         for end in (name, f"{name}_standard_error"):
             assert checked[f"random_{end}"] == drawn[end]
@@ -91,7 +91,7 @@ def test_plain_numbers_are_those_of_the_method_random():
 
 def test_the_deviation_is_the_greatest_in_combined_standard_errors():
     """The deviation is the greatest of all differences, each over the root of both squared standard errors."""
-    found = spread().statistics
+    found = spread().numbers
     errors = {
         name: math.hypot(found[f"{name}_standard_error"], found[f"random_{name}_standard_error"]) for name in COMPARED
     }
@@ -103,8 +103,8 @@ def test_the_deviation_is_the_greatest_in_combined_standard_errors():
 def test_plain_monte_carlo_is_not_checked_against_itself():
     """The method random has nothing to be checked against and says nothing of agreement."""
     found = spread(method="random", samples=1024)
-    assert "cross_check" not in found.words
-    assert not {name for name in found.statistics if name.startswith(("random_", "cross_check"))}
+    assert "cross_check" not in found.texts
+    assert not {name for name in found.numbers if name.startswith(("random_", "cross_check"))}
 
 
 def test_a_row_that_points_answered_is_checked_too():
@@ -115,9 +115,9 @@ def test_a_row_that_points_answered_is_checked_too():
     def bowl(dimensions):
         return dimensions["torque"] ** 2 + dimensions["cylinder_length"] ** 2
 
-    (found,) = variations_of([(bowl, nominal, bowl_limits, 5.0)], Draws("line", None, 0, cross_check=True))
-    assert found.words["spread_method"] == "sobol"
-    assert found.words["cross_check"] == "agrees"
+    (found,) = batch_statistics([(bowl, nominal, bowl_limits, 5.0)], SamplingPlan("line", None, 0, cross_check=True))
+    assert found.texts["spread_method"] == "sobol"
+    assert found.texts["cross_check"] == "agrees"
 
 
 @pytest.mark.parametrize(("share", "agrees"), [(1e-9, True), (1e-5, True), (2e-3, False)])
@@ -127,12 +127,12 @@ def test_a_share_too_rare_for_plain_draws_agrees_with_none_seen(share, agrees):
     points = UnitPoints(["a"], method="random", samples=4096, seed=0)
     drawn = SampledSpread(model=lambda a: a, inputs={"a": Normal(mean=0.0, sd=1.0)}, points=points)
     assert drawn.probability_above(limit) == 0
-    (found,) = variations_of(
-        [(lambda d: d["a"], {"a": 0.0}, {"a": Limits(low=-3.0, high=3.0)}, limit)], Draws("line", None, 0)
+    (found,) = batch_statistics(
+        [(lambda d: d["a"], {"a": 0.0}, {"a": Limits(low=-3.0, high=3.0)}, limit)], SamplingPlan("line", None, 0)
     )
-    moved = replace(found, statistics=found.statistics | {"probability_over_limit": share})
-    deviation = cross_checked(moved, drawn, limit).statistics["cross_check_deviation"]
-    same = cross_checked(found, drawn, limit).statistics["cross_check_deviation"]
+    moved = replace(found, numbers=found.numbers | {"probability_over_limit": share})
+    deviation = cross_checked(moved, drawn, limit).numbers["cross_check_deviation"]
+    same = cross_checked(found, drawn, limit).numbers["cross_check_deviation"]
     error = max(math.sqrt(share * (1 - share) / 4096), 0.5 / 4096)
     assert deviation == pytest.approx(max(same, share / error), rel=1e-12)
     assert (share / error < 1) == agrees
@@ -141,8 +141,8 @@ def test_a_share_too_rare_for_plain_draws_agrees_with_none_seen(share, agrees):
 def test_a_row_without_tolerances_is_not_checked():
     """A row none of whose dimensions scatters is exact and has nothing to check."""
     found = spread(limits={})
-    assert found.statistics["sd"] == 0
-    assert "cross_check" not in found.words
+    assert found.numbers["sd"] == 0
+    assert "cross_check" not in found.texts
 
 
 WITHOUT_EFFECT = {
@@ -158,9 +158,9 @@ def test_a_tolerance_without_effect_agrees(case, method):
     kind, name, low, high = WITHOUT_EFFECT[case]
     nominal = NOMINAL | {name: (low + high) / 2}
     task = partial(flexspline.backlash, kind), nominal, {name: Limits(low=low, high=high)}, 1e-3
-    (found,) = variations_of([task], Draws(method, None, 0, cross_check=True))
+    (found,) = batch_statistics([task], SamplingPlan(method, None, 0, cross_check=True))
     # A hub fillet far below rounding still shakes the last bit.
-    assert 0 <= found.statistics["sd"] <= 1e-15 * found.statistics["mean"]
-    assert 0 <= found.statistics["random_sd"] <= 1e-15 * found.statistics["mean"]
-    assert found.statistics["cross_check_deviation"] <= AGREES
-    assert found.words["cross_check"] == "agrees"
+    assert 0 <= found.numbers["sd"] <= 1e-15 * found.numbers["mean"]
+    assert 0 <= found.numbers["random_sd"] <= 1e-15 * found.numbers["mean"]
+    assert found.numbers["cross_check_deviation"] <= AGREES
+    assert found.texts["cross_check"] == "agrees"

@@ -11,8 +11,8 @@ from scipy.special import ndtr, ndtri
 
 from flexlash.tolerance.dimension_limits import Limits
 from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS, curve_of, curves_of
-from flexlash.tolerance.row_spreads import variations_of
-from flexlash.tolerance.spread_statistics import PERCENTILES, Draws
+from flexlash.tolerance.row_batches import batch_statistics
+from flexlash.tolerance.spread_statistics import PERCENTILES, SamplingPlan
 
 SCORES = np.array(CURVE_SCORES)
 MIDDLE = len(SCORES) // 2
@@ -33,9 +33,9 @@ def total(dimensions):
 
 def _both(task, **draws):
     """Return a row's spread and its curve."""
-    chosen = Draws(**{"method": "line", "samples": None, "seed": 0} | draws)
-    (variation,) = variations_of([task], chosen)
-    return variation, curve_of((task, variation), chosen)
+    chosen = SamplingPlan(**{"method": "line", "samples": None, "seed": 0} | draws)
+    (statistics,) = batch_statistics([task], chosen)
+    return statistics, curve_of((task, statistics), chosen)
 
 
 CUP_TASK = (CUP, NOMINAL, LIMITS, 1.08e-3)
@@ -70,15 +70,15 @@ def test_a_normal_has_a_straight_curve(method):
 @pytest.mark.parametrize("method", METHODS)
 def test_the_curve_is_that_of_the_spread(method):
     """The curve passes through the spread's percentiles with their standard errors, and rises."""
-    variation, curve = _both(CUP_TASK, method=method)
+    statistics, curve = _both(CUP_TASK, method=method)
     assert (np.diff(curve.outputs) > 0).all()
-    sd = variation.statistics["sd"]
+    sd = statistics.numbers["sd"]
     for name, share in PERCENTILES.items():
         read = np.interp(ndtri(share), SCORES, curve.outputs)
-        assert read == pytest.approx(variation.statistics[name], abs=2e-3 * sd if method == "line" else 0.02 * sd)
-    assert curve.outputs[MIDDLE] == pytest.approx(variation.statistics["p50"], rel=1e-12)
+        assert read == pytest.approx(statistics.numbers[name], abs=2e-3 * sd if method == "line" else 0.02 * sd)
+    assert curve.outputs[MIDDLE] == pytest.approx(statistics.numbers["p50"], rel=1e-12)
     slope = (curve.outputs[MIDDLE + 1] - curve.outputs[MIDDLE - 1]) / (SCORES[MIDDLE + 1] - SCORES[MIDDLE - 1])
-    told = variation.statistics["p50_standard_error"]
+    told = statistics.numbers["p50_standard_error"]
     assert curve.score_errors[MIDDLE] * slope == pytest.approx(told, rel=1e-6 if method == "line" else 0.05)
     assert curve.heights.shape == (HISTOGRAM_BINS,)
     assert curve.edges.shape == (HISTOGRAM_BINS + 1,)
@@ -100,8 +100,8 @@ def test_one_scattering_dimension_is_the_model_itself():
 @pytest.mark.parametrize(("method", "samples"), [("sobol", 1024), ("random", 64), ("random", 1)])
 def test_points_go_on_in_a_straight_line_beyond_their_rarest(method, samples):
     """Beyond one in all points the curve of points is straight, and it says how rare a share it can tell."""
-    variation, curve = _both(SUM_TASK, method=method, samples=samples)
-    assert curve.rarest == pytest.approx(1 / variation.statistics["spread_points"])
+    statistics, curve = _both(SUM_TASK, method=method, samples=samples)
+    assert curve.rarest == pytest.approx(1 / statistics.numbers["spread_points"])
     beyond = (np.diff(curve.outputs) / np.diff(SCORES))[ndtr(SCORES[1:]) < curve.rarest]
     assert beyond == pytest.approx(beyond[0])
     assert (np.diff(curve.outputs) > 0).all()
@@ -109,16 +109,16 @@ def test_points_go_on_in_a_straight_line_beyond_their_rarest(method, samples):
 
 def test_without_scatter_the_curve_is_level():
     """A row that does not scatter has its backlash everywhere and no errors."""
-    variation, curve = _both((CUP, NOMINAL, {}, None))
-    assert set(curve.outputs.tolist()) == set(curve.edges.tolist()) == {variation.statistics["p50"]}
+    statistics, curve = _both((CUP, NOMINAL, {}, None))
+    assert set(curve.outputs.tolist()) == set(curve.edges.tolist()) == {statistics.numbers["p50"]}
     assert curve.score_errors.max() == curve.rarest == 0
     assert curve.heights.sum() == 1
 
 
 def test_workers_and_neighbours_change_no_bit():
     """A row's curve has the same bits in a worker process, alone, and among other rows."""
-    draws = Draws("sobol", 2**17, 3)
-    tasks = [(task, variations_of([task], draws)[0]) for task in (CUP_TASK, (CUP, NOMINAL, LIMITS, None))]
+    draws = SamplingPlan("sobol", 2**17, 3)
+    tasks = [(task, batch_statistics([task], draws)[0]) for task in (CUP_TASK, (CUP, NOMINAL, LIMITS, None))]
     here = list(curves_of(tasks, draws, jobs=1))
     there = list(curves_of(tasks[::-1], draws, jobs=2))[::-1]
     for one, other in zip(here, there, strict=True):

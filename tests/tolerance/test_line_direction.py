@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform
-from flexlash.tolerance.engine.line_direction import Course, Inputs, across, course_of
+from flexlash.tolerance.engine.line_direction import Inputs, LineDirection, across, direction_of
 from flexlash.tolerance.engine.line_points import line_net
 
 thorough = settings(deadline=None, max_examples=40, derandomize=True)
@@ -40,7 +40,7 @@ def course_from(*directions):
     direction = np.array(directions, dtype=float).T
     direction = direction / np.linalg.norm(direction, axis=0)
     order = np.repeat(np.arange(len(direction))[:, None], direction.shape[1], axis=1)
-    return Course(direction=direction, order=order)
+    return LineDirection(direction=direction, order=order)
 
 
 def test_inputs_hold_location_and_scale_per_row():
@@ -74,7 +74,7 @@ def test_one_bent_input_is_told(row, bent):
 def test_course_of_a_linear_model_is_its_gradient():
     """Of normals in a linear model the course is the unit vector of slope times sd, with its signs."""
     rows = [NORMALS, {"a": Normal(0, 1), "b": Normal(0, 4), "c": Normal(9, 6)}]
-    course = course_of(row_model(linear), Inputs.of(rows))
+    course = direction_of(row_model(linear), Inputs.of(rows))
     wanted = np.array([[2 * 2, -3 * 0.5, 0.5], [2 * 1, -3 * 4, 0.5 * 6]]).T
     assert course.direction == pytest.approx(wanted / np.linalg.norm(wanted, axis=0), rel=1e-12)
 
@@ -84,7 +84,7 @@ def test_course_of_a_linear_model_is_its_gradient():
 def test_course_is_a_unit_vector_with_the_signs_of_the_slopes(weights):
     """Whatever the distributions, the course is of unit length and points where the output rises."""
     one, two, three = weights
-    course = course_of(row_model(lambda a, b, c: one * a + two * b + three * c), Inputs.of([MIXED]))
+    course = direction_of(row_model(lambda a, b, c: one * a + two * b + three * c), Inputs.of([MIXED]))
     assert np.linalg.norm(course.direction) == pytest.approx(1, rel=1e-12)
     signs = np.sign(course.direction[:, 0])
     steady = np.abs(weights) > 1e-6 * np.max(np.abs(weights))
@@ -94,9 +94,9 @@ def test_course_is_a_unit_vector_with_the_signs_of_the_slopes(weights):
 def test_course_of_each_row_is_its_own():
     """The course of a row does not depend on the rows beside it, bit for bit."""
     rows = [MIXED, {"a": Normal(5, 1), "b": Uniform(1, 2), "c": Triangular(0, 8)}]
-    together = course_of(row_model(curved), Inputs.of(rows))
+    together = direction_of(row_model(curved), Inputs.of(rows))
     for place, row in enumerate(rows):
-        alone = course_of(row_model(curved), Inputs.of([row]))
+        alone = direction_of(row_model(curved), Inputs.of([row]))
         assert np.array_equal(together.direction[:, [place]], alone.direction)
         assert np.array_equal(together.order[:, [place]], alone.order)
         taken = together.take(np.array([place]))
@@ -107,13 +107,13 @@ def test_course_of_each_row_is_its_own():
 def test_course_is_0_where_the_output_does_not_change():
     """A constant output has no direction, also where a large constant leaves nothing but rounding."""
     for function in (lambda a, b, c: 0 * (a + b + c) + 7.0, lambda a, b, c: 1e17 + 0.01 * (a + b + c)):
-        assert (course_of(row_model(function), Inputs.of([MIXED])).direction == 0).all()
+        assert (direction_of(row_model(function), Inputs.of([MIXED])).direction == 0).all()
 
 
 def test_most_curved_input_meets_the_net_first():
     """Inputs meet the net from the most curved on, and one in which the output is straight closes the plane."""
     row = {name: Normal(0, 1) for name in "abcd"}
-    course = course_of(row_model(lambda a, b, c, d: d + c + 0.2 * b**2 + b + 0.05 * a**3 + 2 * a), Inputs.of([row]))
+    course = direction_of(row_model(lambda a, b, c, d: d + c + 0.2 * b**2 + b + 0.05 * a**3 + 2 * a), Inputs.of([row]))
     assert course.order[:2, 0].tolist() in ([0, 1], [1, 0])
     assert sorted(course.order[:, 0].tolist()) == [0, 1, 2, 3]
     assert course.order[-1, 0] in (2, 3)
@@ -156,7 +156,7 @@ def test_scores_across_have_the_covariance_of_the_plane(directions):
 def test_scores_across_do_not_depend_on_the_order_of_inputs_in_law():
     """Another order gives other scores, each with the same covariance and in the same plane."""
     course = course_from([1.0, 2.0, -3.0])
-    turned = Course(direction=course.direction, order=course.order[[1, 0, 2]])
+    turned = LineDirection(direction=course.direction, order=course.order[[1, 0, 2]])
     net = np.concatenate([np.eye(2), -np.eye(2)], axis=1) * np.sqrt(2)
     first, second = across(course, net)[:, 0], across(turned, net)[:, 0]
     assert not np.allclose(first, second)

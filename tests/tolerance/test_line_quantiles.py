@@ -10,9 +10,9 @@ from scipy import stats
 from scipy.special import ndtri
 
 from flexlash.tolerance import Normal, Triangular, Uniform
-from flexlash.tolerance.engine.line_direction import Inputs, course_of
+from flexlash.tolerance.engine.line_direction import Inputs, direction_of
 from flexlash.tolerance.engine.line_points import line_net
-from flexlash.tolerance.engine.line_quantiles import crossing_at, moments_of, quantiles_of
+from flexlash.tolerance.engine.line_quantiles import moments_of, quantiles_at, quantiles_of
 from flexlash.tolerance.engine.line_tables import Lines
 
 each_input = pytest.mark.parametrize(("distribution", "reference"), ONE_INPUT.values(), ids=list(ONE_INPUT))
@@ -27,7 +27,7 @@ def lines_of(function, *rows, lines=64, seed=0):
 
     inputs = Inputs.of(rows)
     net = line_net(seed, len(inputs.names) - 1, lines, one_bent=inputs.one_bent)
-    found = Lines(model, inputs, course_of(model, inputs), net)
+    found = Lines(model, inputs, direction_of(model, inputs), net)
     assert (found.faults == 0).all()
     return found
 
@@ -64,7 +64,7 @@ def test_quantiles_of_one_input_are_exact(distribution, reference):
 def test_shares_of_one_input_are_exact(distribution, reference):
     """Shares above values of a single input are exact to 1e-9 of themselves, in both tails."""
     values = reference.ppf(PROBABILITIES)
-    found = crossing_at(lines_of(lambda a: a, {"a": distribution}, lines=8), values[:, None])
+    found = quantiles_at(lines_of(lambda a: a, {"a": distribution}, lines=8), values[:, None])
     assert found.above[:, 0] == pytest.approx(reference.sf(values), rel=1e-9)
 
 
@@ -103,7 +103,7 @@ def test_linear_normal_is_exact(lines):
     quantiles = quantiles_of(found, PROBABILITIES)
     assert quantiles.output[:, 0] == pytest.approx(mean + sd * ndtri(PROBABILITIES), rel=0, abs=1e-9 * sd)
     scores = np.array([-7.0, -3.0, 0.0, 1.0, 4.75, 6.0, 7.0])
-    above = crossing_at(found, mean + sd * scores[:, None]).above[:, 0]
+    above = quantiles_at(found, mean + sd * scores[:, None]).above[:, 0]
     assert above == pytest.approx(stats.norm.sf(scores), rel=1e-9)
 
 
@@ -117,7 +117,7 @@ def test_sums_of_uniforms_against_irwin_and_hall(widths):
     assert (np.abs(off) <= 4 * quantiles.output_error[:, 0]).all()
     assert (quantiles.output_error[:, 0] <= 0.02 * lines.scale[0]).all()
     values = np.array([0.2, 0.5, 0.7, 0.9]) * sum(widths)
-    shares = crossing_at(lines, values[:, None])
+    shares = quantiles_at(lines, values[:, None])
     exact = 1 - np.array([share_below(value, widths) for value in values])
     assert (np.abs(shares.above[:, 0] - exact) <= 4 * shares.above_error[:, 0] + 1e-12).all()
 
@@ -149,7 +149,7 @@ def test_quantiles_and_shares_are_each_others_inverse():
     row = {"a": Normal(10, 0.5), "b": Normal(1.6, 0.03), "c": Uniform(9, 11)}
     lines = lines_of(lambda a, b, c: a * c / b**3, row, lines=256)
     quantiles = quantiles_of(lines, PROBABILITIES)
-    shares = crossing_at(lines, quantiles.output)
+    shares = quantiles_at(lines, quantiles.output)
     assert (np.diff(quantiles.output[:, 0]) > 0).all()
     assert (np.abs(shares.above[:, 0] - (1 - PROBABILITIES)) <= 1e-2 * shares.above_error[:, 0] + 1e-9).all()
     assert shares.density[:, 0] == pytest.approx(quantiles.density[:, 0], rel=1e-2)
@@ -159,15 +159,15 @@ def test_density_is_the_slope_of_the_share():
     """The density at an output is how fast the share above falls there."""
     lines = lines_of(total, uniforms(1, 1, 1), lines=512)
     values = np.array([0.5, 1.0, 1.5, 2.2])
-    ends = [crossing_at(lines, values[:, None] + end).above[:, 0] for end in (-1e-4, 1e-4)]
-    assert crossing_at(lines, values[:, None]).density[:, 0] == pytest.approx((ends[0] - ends[1]) / 2e-4, rel=1e-2)
+    ends = [quantiles_at(lines, values[:, None] + end).above[:, 0] for end in (-1e-4, 1e-4)]
+    assert quantiles_at(lines, values[:, None]).density[:, 0] == pytest.approx((ends[0] - ends[1]) / 2e-4, rel=1e-2)
 
 
 def test_far_tails_keep_their_digits():
     """A share deep in the tail of a sum agrees within four of its standard errors, which stay a small part of it."""
     lines = lines_of(total, uniforms(1, 1, 1), lines=1024)
     values = np.array([2.9, 2.97, 2.99, 2.997])
-    found = crossing_at(lines, values[:, None])
+    found = quantiles_at(lines, values[:, None])
     exact = (3 - values) ** 3 / 6
     assert (np.abs(found.above[:, 0] - exact) <= 4 * found.above_error[:, 0]).all()
     assert (found.above_error[:, 0] <= 0.05 * exact).all()
@@ -176,7 +176,7 @@ def test_far_tails_keep_their_digits():
 def test_outputs_out_of_reach():
     """Beyond what bounded inputs can reach there is no share above, below it no share missing."""
     lines = lines_of(total, uniforms(1, 2), lines=64)
-    found = crossing_at(lines, np.array([[3.0], [3.5], [1e9], [-1e-9], [-1e9]]))
+    found = quantiles_at(lines, np.array([[3.0], [3.5], [1e9], [-1e-9], [-1e9]]))
     assert (found.above[:3] < 1e-15).all()
     assert (found.above[3:] > 1 - 1e-15).all()
     assert (found.above_error <= 1e-15).all()
@@ -199,7 +199,7 @@ def test_table_spacing_leaves_no_bias():
     exact = np.where(scores > 0.83, 0.83 + 1.4 * (scores - 0.83), scores)
     found = quantiles_of(lines, stats.norm.cdf(scores))
     assert found.output[:, 0] == pytest.approx(exact, abs=1e-8)
-    assert crossing_at(lines, exact[:, None]).above[:, 0] == pytest.approx(stats.norm.sf(scores), rel=1e-8)
+    assert quantiles_at(lines, exact[:, None]).above[:, 0] == pytest.approx(stats.norm.sf(scores), rel=1e-8)
 
 
 def test_rows_do_not_depend_on_their_neighbours():
@@ -219,7 +219,7 @@ def test_rows_do_not_depend_on_their_neighbours():
         alone = lines_of(product_of, row)
         pairs = [
             (quantiles_of(together, PROBABILITIES), quantiles_of(alone, PROBABILITIES)),
-            (crossing_at(together, limits[None]), crossing_at(alone, limits[None, place : place + 1])),
+            (quantiles_at(together, limits[None]), quantiles_at(alone, limits[None, place : place + 1])),
         ]
         for several, single in pairs:
             for name, values in vars(single).items():

@@ -14,9 +14,9 @@ from flexlash.tolerance.engine.line_points import LINE_REPLICATES
 from flexlash.tolerance.engine.line_spread import (
     FEWEST_LINES,
     MOST_LINES,
-    OF_PROBABILITY,
-    OF_SD,
+    PROBABILITY_PRECISION,
     RAREST,
+    SD_PRECISION,
     SETTLED,
     LineSpread,
     NoLines,
@@ -50,11 +50,11 @@ def total(**inputs):
 
 def decided(excess, *, lines=FEWEST_LINES, share=None, relative=0.0, limited=None, scale=2.0):
     """Return the lines wanted and the margin of a row whose errors are so many times those wanted."""
-    errors = np.array([[0.3], [1.0], [0.7], [0.0], [0.9]]) * excess * OF_SD * scale
+    errors = np.array([[0.3], [1.0], [0.7], [0.0], [0.9]]) * excess * SD_PRECISION * scale
     settled = SimpleNamespace(output_error=errors)
     over = None
     if share is not None:
-        error = np.array([[relative * OF_PROBABILITY * min(share, 1 - share)]])
+        error = np.array([[relative * PROBABILITY_PRECISION * min(share, 1 - share)]])
         over = SimpleNamespace(above=np.array([[share]]), above_error=error)
     row = SimpleNamespace(lines=lines, scale=np.array([scale]))
     (wanted,), (margin,) = lines_wanted(row, settled, over, limited)
@@ -162,7 +162,7 @@ def test_rows_are_decided_apart():
 def test_unsettled_rows_are_told():
     """A row is unsettled where any of its crossings is off by more than the standard error wanted."""
     lines = SimpleNamespace(scale=np.array([1.0, 1.0, 100.0]))
-    residual = np.array([[0.0, 2 * OF_SD, 2 * OF_SD], [0.5 * OF_SD, 0.0, 0.0]])
+    residual = np.array([[0.0, 2 * SD_PRECISION, 2 * SD_PRECISION], [0.5 * SD_PRECISION, 0.0, 0.0]])
     assert unsettled(lines, SimpleNamespace(residual=residual)).tolist() == [False, True, False]
 
 
@@ -229,16 +229,16 @@ def test_lines_are_added_until_errors_are_small(seed):
     spread = line_spread(total, UNIFORMS, seed=seed)
     assert FEWEST_LINES < spread.size < MOST_LINES
     assert spread.size & (spread.size - 1) == 0
-    assert (spread.standard_error(SETTLED) <= OF_SD * spread.sd * 1.05).all()
+    assert (spread.standard_error(SETTLED) <= SD_PRECISION * spread.sd * 1.05).all()
     fixed = line_spread(total, UNIFORMS, samples=64, seed=seed)
-    assert fixed.standard_error(SETTLED).max() > OF_SD * fixed.sd
+    assert fixed.standard_error(SETTLED).max() > SD_PRECISION * fixed.sd
 
 
 def test_hard_models_stop_at_the_most_lines():
     """A kink across the lines takes all the lines there may be, and its errors still say how far off it is."""
     spread = line_spread(lambda a, b: abs(a) + 0.3 * b, TWO)
     assert spread.size == MOST_LINES
-    assert spread.standard_error(SETTLED).max() > OF_SD * spread.sd
+    assert spread.standard_error(SETTLED).max() > SD_PRECISION * spread.sd
     (note,) = spread.notes
     assert note.startswith("standard errors reach ")
     assert abs(spread.mean - math.sqrt(2 / math.pi)) <= 4 * spread.mean_standard_error

@@ -15,13 +15,13 @@ from flexlash.mechanics import flexspline
 from flexlash.tolerance import propagate
 from flexlash.tolerance.dimension_limits import Limits, distributions
 from flexlash.tolerance.engine.line_spread import MOST_LINES
-from flexlash.tolerance.engine.line_statistics import point_variation
-from flexlash.tolerance.row_spreads import variations_of
-from flexlash.tolerance.spread_statistics import PERCENTILES, Draws
+from flexlash.tolerance.engine.line_statistics import statistics_of
+from flexlash.tolerance.row_batches import batch_statistics
+from flexlash.tolerance.spread_statistics import PERCENTILES, SamplingPlan
 
 thorough = settings(deadline=None, max_examples=25, derandomize=True)
 
-LINES = Draws("line", None, 0)
+LINES = SamplingPlan("line", None, 0)
 cup = partial(flexspline.backlash, "cup")
 CUP = {
     "torque": 800.0,
@@ -63,19 +63,19 @@ def tasks(nominal, count, seed=0):
     return found
 
 
-def told(variation):
-    """Return everything that a variation tells, so that == compares it to the last bit."""
-    statistics = {name: value for name, value in variation.statistics.items() if value is not None}
-    return [statistics, variation.words, variation.shares, variation.totals, variation.swings]
+def told(spread):
+    """Return everything that a spread tells, so that == compares it to the last bit."""
+    statistics = {name: value for name, value in spread.numbers.items() if value is not None}
+    return [statistics, spread.texts, spread.shares, spread.total_shares, spread.swings]
 
 
 SEVEN, FIFTEEN = tasks(CUP, 30), tasks(DETAILED, 12)
 DRAWINGS = {
     "lines as needed": LINES,
-    "64 lines": Draws("line", 64, 1),
-    "1024 lines": Draws("line", 1024, 2, coverage=0.9),
-    "sobol": Draws("sobol", 512, 3),
-    "random": Draws("random", 512, 4),
+    "64 lines": SamplingPlan("line", 64, 1),
+    "1024 lines": SamplingPlan("line", 1024, 2, coverage=0.9),
+    "sobol": SamplingPlan("sobol", 512, 3),
+    "random": SamplingPlan("random", 512, 4),
 }
 
 
@@ -84,13 +84,13 @@ def together(request):
     """Return rows alike, how they are drawn, and what is told of each when they are spread together."""
     rows, name = request.param
     alike, draws = SEVEN if rows == "seven" else FIFTEEN, DRAWINGS[name]
-    return alike, draws, [told(one) for one in variations_of(alike, draws)]
+    return alike, draws, [told(one) for one in batch_statistics(alike, draws)]
 
 
 def test_a_row_alone_has_the_same_bits(together):
     """Every statistic, share, curve and height of a row alone is, to the last bit, that beside other rows."""
     alike, draws, every = together
-    assert [told(variations_of([task], draws)[0]) for task in alike] == every
+    assert [told(batch_statistics([task], draws)[0]) for task in alike] == every
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -98,7 +98,7 @@ def test_shuffled_rows_have_the_same_bits(together, seed):
     """Rows in another order keep every bit."""
     alike, draws, every = together
     order = np.random.default_rng(seed).permutation(len(alike))
-    shuffled = variations_of([alike[place] for place in order], draws)
+    shuffled = batch_statistics([alike[place] for place in order], draws)
     assert [told(one) for one in shuffled] == [every[place] for place in order]
 
 
@@ -108,38 +108,38 @@ def test_rows_in_any_batch_have_the_same_bits(together, size):
     alike, draws, every = together
     found = []
     for start in range(0, len(alike), size):
-        found += variations_of(alike[start : start + size], draws)
+        found += batch_statistics(alike[start : start + size], draws)
     assert [told(one) for one in found] == every
 
 
 @pytest.mark.parametrize("block", [1, 10_000, 1 << 22])
 def test_the_block_of_the_cache_changes_no_bit(monkeypatch, block):
     """However many rows the cache takes at once, every bit stays."""
-    every = [told(one) for one in variations_of(SEVEN, LINES)]
+    every = [told(one) for one in batch_statistics(SEVEN, LINES)]
     monkeypatch.setattr("flexlash.tolerance.engine.line_statistics._BLOCK", block)
-    assert [told(one) for one in variations_of(SEVEN, LINES)] == every
+    assert [told(one) for one in batch_statistics(SEVEN, LINES)] == every
 
 
 def test_the_rows_differ_in_how_many_lines_they_take():
     """The rows above take from few to many lines, so that the claims on bits cover rows drawn again."""
     for alike in (SEVEN, FIFTEEN):
-        numbers = {one.statistics["spread_points"] for one in variations_of(alike, LINES)}
+        numbers = {one.numbers["spread_points"] for one in batch_statistics(alike, LINES)}
         assert len(numbers) >= 4
         assert all(math.log2(number).is_integer() and 64 <= number <= MOST_LINES for number in numbers)
 
 
 def test_every_row_has_the_precision_that_was_wanted():
     """Each row's percentiles are known to 0.001 sd and its share over the limit to 5 %, or a note says what is."""
-    for (*_, limit), one in zip((*SEVEN, *FIFTEEN), (*variations_of(SEVEN, LINES), *variations_of(FIFTEEN, LINES)),
-                                strict=True):  # fmt: skip
-        found = one.statistics
+    every = [*batch_statistics(SEVEN, LINES), *batch_statistics(FIFTEEN, LINES)]
+    for (*_, limit), one in zip((*SEVEN, *FIFTEEN), every, strict=True):
+        found = one.numbers
         reached = max(found[f"{name}_standard_error"] for name in ("p0_135", "p2_5", "p50", "p97_5", "p99_865"))
         if reached > 1.1e-3 * found["sd"]:
             assert found["spread_points"] == MOST_LINES
-            said = float(one.words["spread_note"].split()[3])
+            said = float(one.texts["spread_note"].split()[3])
             assert said == pytest.approx(reached / found["sd"], rel=0.1)
         elif reached < 1e-3 * found["sd"]:
-            assert one.words["spread_note"] is None
+            assert one.texts["spread_note"] is None
         if limit is not None and 1e-9 < found["probability_over_limit"] < 1 - 1e-9:
             rarer = min(found["probability_over_limit"], 1 - found["probability_over_limit"])
             width = found["probability_over_limit_high"] - found["probability_over_limit_low"]
@@ -148,16 +148,16 @@ def test_every_row_has_the_precision_that_was_wanted():
 
 def test_lines_of_many_rows_agree_with_plain_monte_carlo():
     """Each of many rows agrees with plain Monte Carlo in every statistic within 4.5 combined standard errors."""
-    plain = variations_of(SEVEN, Draws("random", 2**16, 7))
-    for (*_, limit), line, other in zip(SEVEN, variations_of(SEVEN, LINES), plain, strict=True):
+    plain = batch_statistics(SEVEN, SamplingPlan("random", 2**16, 7))
+    for (*_, limit), line, other in zip(SEVEN, batch_statistics(SEVEN, LINES), plain, strict=True):
         for name in (*PERCENTILES, "mean", "sd", "skewness"):
-            error = math.hypot(line.statistics[f"{name}_standard_error"], other.statistics[f"{name}_standard_error"])
+            error = math.hypot(line.numbers[f"{name}_standard_error"], other.numbers[f"{name}_standard_error"])
             # One in 50 runs of 300 comparisons has one beyond four.
-            assert abs(line.statistics[name] - other.statistics[name]) <= 4.5 * error
+            assert abs(line.numbers[name] - other.numbers[name]) <= 4.5 * error
         if limit is not None:
-            share = line.statistics["probability_over_limit"]
+            share = line.numbers["probability_over_limit"]
             error = max(math.sqrt(share * (1 - share) / 2**16), 0.5 / 2**16)
-            assert abs(share - other.statistics["probability_over_limit"]) <= 4.5 * error
+            assert abs(share - other.numbers["probability_over_limit"]) <= 4.5 * error
 
 
 NAMES = ("torque", "cylinder_length", "wall_thickness")
@@ -172,13 +172,15 @@ def total(dimensions):
 @pytest.fixture(scope="module", params=["line", "sobol", "random"])
 def of_a_sum(request):
     """Return the spread of a sum of normals and its method."""
-    (found,) = variations_of([(total, dict.fromkeys(NAMES, 0.0), SUM_LIMITS, 16.0)], Draws(request.param, None, 0))
+    (found,) = batch_statistics(
+        [(total, dict.fromkeys(NAMES, 0.0), SUM_LIMITS, 16.0)], SamplingPlan(request.param, None, 0)
+    )
     return found, request.param
 
 
 def test_statistics_of_a_normal_output(of_a_sum):
     """A sum of normals has the percentiles, mean, sd and skewness of a normal within four standard errors."""
-    found = of_a_sum[0].statistics
+    found = of_a_sum[0].numbers
     exact = {name: 10.0 + 3.0 * float(ndtri(share)) for name, share in PERCENTILES.items()}
     for name, value in (exact | {"mean": 10.0, "sd": 3.0, "skewness": 0.0}).items():
         assert abs(found[name] - value) <= 4 * found[f"{name}_standard_error"]
@@ -192,7 +194,7 @@ def test_lines_are_exact_for_a_normal_output(of_a_sum):
     exact = {name: 10.0 + 3.0 * float(ndtri(share)) for name, share in PERCENTILES.items()}
     exact |= {"mean": 10.0, "sd": 3.0, "ppk": 6.0 / (-3.0 * float(ndtri(0.00135))), "ppk_normal": 2.0 / 3.0}
     exact |= {"probability_over_limit": float(ndtr(-2.0))}
-    close = {name: found.statistics[name] == pytest.approx(value, rel=1e-8) for name, value in exact.items()}
+    close = {name: found.numbers[name] == pytest.approx(value, rel=1e-8) for name, value in exact.items()}
     assert all(close.values()) == (method == "line")
 
 
@@ -202,7 +204,7 @@ def test_shares_of_a_sum(of_a_sum):
     allowed = {"line": 1e-9, "sobol": 0.02, "random": 0.1}[method]
     exact = dict(zip(NAMES, (1 / 9, 4 / 9, 4 / 9), strict=True))
     assert found.shares == pytest.approx(exact, abs=allowed)
-    assert found.totals == pytest.approx(exact, abs=allowed)
+    assert found.total_shares == pytest.approx(exact, abs=allowed)
 
 
 def hinged(dimensions):
@@ -252,15 +254,15 @@ FAULTY = {
 def test_a_faulty_row_falls_back_to_sobol_alone(model, faulty):
     """A row that lines do not serve gets Sobol' points and a note; the sound rows around it keep their lines' bits."""
     rows = faulty_among_sound(model, faulty)
-    found = variations_of(rows, LINES)
-    sound = told(variations_of(faulty_among_sound(model, set(), 1), LINES)[0])
+    found = batch_statistics(rows, LINES)
+    sound = told(batch_statistics(faulty_among_sound(model, set(), 1), LINES)[0])
     assert sound[1]["spread_method"] == "line"
     for row, one in enumerate(found):
         if row in faulty:
-            assert one.words["spread_method"] == "sobol"
-            assert one.words["spread_note"] == f"Sobol' points instead of lines: {FAULTY[model]}"
-            assert one.statistics["spread_points"] == 2**15
-            (points,) = variations_of([rows[row]], Draws("sobol", None, 0))
+            assert one.texts["spread_method"] == "sobol"
+            assert one.texts["spread_note"] == f"Sobol' points instead of lines: {FAULTY[model]}"
+            assert one.numbers["spread_points"] == 2**15
+            (points,) = batch_statistics([rows[row]], SamplingPlan("sobol", None, 0))
             assert told(one)[0] == told(points)[0]
             assert told(one)[2:] == told(points)[2:]
         else:
@@ -269,9 +271,9 @@ def test_a_faulty_row_falls_back_to_sobol_alone(model, faulty):
 
 def test_the_fallback_takes_as_many_points_as_were_asked_for_lines():
     """A row that falls back with a number of lines given is answered by the default number of Sobol' points."""
-    (found,) = variations_of(faulty_among_sound(hinged, {0}, 1), Draws("line", 64, 0))
-    assert found.words["spread_method"] == "sobol"
-    assert found.statistics["spread_points"] == 2**15
+    (found,) = batch_statistics(faulty_among_sound(hinged, {0}, 1), SamplingPlan("line", 64, 0))
+    assert found.texts["spread_method"] == "sobol"
+    assert found.numbers["spread_points"] == 2**15
 
 
 def test_many_lines_that_do_not_suffice_are_told():
@@ -282,12 +284,12 @@ def test_many_lines_that_do_not_suffice_are_told():
     def strongly_curved(dimensions):
         return sum(np.exp(1.2 * dimensions[name]) for name in names)
 
-    (found,) = variations_of([(strongly_curved, dict.fromkeys(names, 0.0), limits, None)], LINES)
-    assert found.words["spread_method"] == "line"
-    assert found.statistics["spread_points"] == MOST_LINES
-    assert found.words["spread_note"].endswith(" standard deviations, 0.001 was wanted")
-    (few,) = variations_of([(strongly_curved, dict.fromkeys(names, 0.0), limits, None)], Draws("line", 64, 0))
-    assert few.words["spread_note"] is None
+    (found,) = batch_statistics([(strongly_curved, dict.fromkeys(names, 0.0), limits, None)], LINES)
+    assert found.texts["spread_method"] == "line"
+    assert found.numbers["spread_points"] == MOST_LINES
+    assert found.texts["spread_note"].endswith(" standard deviations, 0.001 was wanted")
+    (few,) = batch_statistics([(strongly_curved, dict.fromkeys(names, 0.0), limits, None)], SamplingPlan("line", 64, 0))
+    assert few.texts["spread_note"] is None
 
 
 @thorough
@@ -295,26 +297,28 @@ def test_many_lines_that_do_not_suffice_are_told():
 def test_an_interval_holds_its_share(limit, seed):
     """The interval of a share over any limit holds that share, below 1 and above 0 at its ends."""
     limits = {name: Limits(low=-3.0, high=3.0, distribution="uniform") for name in NAMES}
-    (found,) = variations_of([(total, dict.fromkeys(NAMES, 0.0), limits, 10.0 + limit)], Draws("line", 64, seed))
-    share = found.statistics["probability_over_limit"]
-    assert 0 <= found.statistics["probability_over_limit_low"] <= share
-    assert share <= found.statistics["probability_over_limit_high"] <= 1
+    (found,) = batch_statistics(
+        [(total, dict.fromkeys(NAMES, 0.0), limits, 10.0 + limit)], SamplingPlan("line", 64, seed)
+    )
+    share = found.numbers["probability_over_limit"]
+    assert 0 <= found.numbers["probability_over_limit_low"] <= share
+    assert share <= found.numbers["probability_over_limit_high"] <= 1
 
 
 def test_statistics_of_points_are_those_of_their_spread():
     """What is told of one row by points is what the engine alone tells of the same points."""
-    (found,) = variations_of([(total, dict.fromkeys(NAMES, 0.0), SUM_LIMITS, 16.0)], Draws("random", 4096, 5))
+    (found,) = batch_statistics([(total, dict.fromkeys(NAMES, 0.0), SUM_LIMITS, 16.0)], SamplingPlan("random", 4096, 5))
     spread = propagate(lambda **varied: total(varied), distributions(SUM_LIMITS), method="random", samples=4096, seed=5)
-    own = point_variation(spread, 16.0, Draws("random", 4096, 5))
-    assert set(own.statistics) <= set(found.statistics)
+    own = statistics_of(spread, 16.0, SamplingPlan("random", 4096, 5))
+    assert set(own.numbers) <= set(found.numbers)
     for name, share in PERCENTILES.items():
-        assert own.statistics[name] == spread.quantile(share)
-        assert own.statistics[f"{name}_standard_error"] == spread.standard_error(share)
+        assert own.numbers[name] == spread.quantile(share)
+        assert own.numbers[f"{name}_standard_error"] == spread.standard_error(share)
     for name in ("mean", "sd", "skewness"):
-        assert own.statistics[name] == getattr(spread, name)
-        assert own.statistics[f"{name}_standard_error"] == getattr(spread, f"{name}_standard_error")
-    assert own.statistics["probability_over_limit"] == spread.probability_above(16.0)
+        assert own.numbers[name] == getattr(spread, name)
+        assert own.numbers[f"{name}_standard_error"] == getattr(spread, f"{name}_standard_error")
+    assert own.numbers["probability_over_limit"] == spread.probability_above(16.0)
     assert own.shares == spread.shares
-    assert own.totals == spread.total_shares
-    assert own.words == {"spread_method": "random", "spread_note": None}
-    assert point_variation(spread, None, LINES, "why").words["spread_note"] == "why"
+    assert own.total_shares == spread.total_shares
+    assert own.texts == {"spread_method": "random", "spread_note": None}
+    assert statistics_of(spread, None, LINES, "why").texts["spread_note"] == "why"

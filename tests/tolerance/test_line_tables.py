@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.special import ndtr, ndtri
 
 from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform
-from flexlash.tolerance.engine.line_direction import Inputs, course_of
+from flexlash.tolerance.engine.line_direction import Inputs, direction_of
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, line_net
 from flexlash.tolerance.engine.line_tables import FAR, FAULTS, NODES, REACH, Lines
 
@@ -33,7 +33,7 @@ def lines_of(function, *rows, lines=64, seed=0):
     model, inputs = row_model(function), Inputs.of(rows)
     with np.errstate(all="ignore"):
         net = line_net(seed, len(inputs.names) - 1, lines, one_bent=inputs.one_bent)
-        return Lines(model, inputs, course_of(model, inputs), net)
+        return Lines(model, inputs, direction_of(model, inputs), net)
 
 
 def linear(a, b, c):
@@ -247,7 +247,7 @@ def test_faults_are_told_row_by_row():
 
     inputs = Inputs.of([TWO] * len(kinds))
     net = line_net(0, 1, 64, one_bent=False)
-    together = Lines(model, inputs, course_of(model, inputs), net)
+    together = Lines(model, inputs, direction_of(model, inputs), net)
     assert [FAULTS[fault] for fault in together.faults] == ["", NO_GRADIENT, NOT_FINITE, NOT_RISING, STEPS, ""]
     for row in (0, 5):
         alone = lines_of(kinds[row], TWO)

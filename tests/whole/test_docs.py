@@ -79,12 +79,12 @@ def test_links_lead_to_files(path):
 def test_the_readme_counts_right():
     """The figures that the README states in words are those of the program."""
     from flexlash.tolerance.engine.line_points import LINE_REPLICATES
-    from flexlash.tolerance.engine.line_spread import OF_SD
+    from flexlash.tolerance.engine.line_spread import SD_PRECISION
 
     words = " ".join(README.split())
     assert LINE_REPLICATES == 8
     assert "Eight independent scrambled Sobol' nets of lines" in words
-    assert OF_SD == 1e-3
+    assert SD_PRECISION == 1e-3
     assert "known to a thousandth of the standard deviation" in words
     assert "39 variants" in (ROOT / "data" / "README.md").read_text(encoding="utf-8")
     assert len(regenerate.catalogue_sizes().variants) == 39

@@ -15,7 +15,7 @@ import flexlash
 from flexlash import workers
 from flexlash.pipeline import Options, check, run
 from flexlash.schema.result_columns import CROSS_CHECK, RESULTS
-from flexlash.tolerance import row_spreads as spreading
+from flexlash.tolerance import row_batches as spreading
 
 SAMPLES = 512
 
@@ -323,7 +323,7 @@ def test_interaction_is_what_the_shares_leave(table, sound):
     """Interaction is what the first-order shares leave to 1, never negative, and next to nothing for a flexspline."""
     outcome = run(table(_variants(sound)))
     for one, row in zip(outcome.computed.values(), outcome.results.iter_rows(named=True), strict=True):
-        left = 1 - math.fsum(one.variation.shares.values())
+        left = 1 - math.fsum(one.spread.shares.values())
         assert row["interaction_share"] == pytest.approx(max(left, 0.0), abs=1e-15)
         assert 0 <= row["interaction_share"] < 0.01
 

@@ -14,7 +14,7 @@ from flexlash.schema.findings import spelled_out
 from flexlash.schema.units import ARCMIN, RPM
 from flexlash.schema.variant import Settings, ToleranceRow, Variant
 from flexlash.tolerance.dimension_limits import Limits, LimitsProblem, limits_of, shape_problems
-from flexlash.tolerance.spread_statistics import Variation
+from flexlash.tolerance.spread_statistics import SpreadStatistics
 from flexlash.validation.blocking_errors import name_waiting
 from flexlash.validation.headers import plain
 from flexlash.validation.ledger import UnitMistake
@@ -50,7 +50,7 @@ class Computed:
     variant: Variant
     limits: dict[str, Limits]
     nominal: Numbers
-    variation: Variation | None = None
+    spread: SpreadStatistics | None = None
 
 
 def assess(validated: Validated, settings: Settings) -> dict[int, Computed]:

@@ -79,20 +79,20 @@ def remedies_of(computed: Mapping[int, Computed], settings: Settings) -> list[Re
 
 def _number(one: Computed, key: str) -> float:
     """Return a number of the spread."""
-    value = one.variation.statistics.get(key) if one.variation else None
+    value = one.spread.numbers.get(key) if one.spread else None
     return float("nan") if value is None else value
 
 
 def _fails(one: Computed) -> bool:
     """Whether a variant has a limit and does not meet it."""
-    over = one.variation.statistics.get("probability_over_limit") if one.variation else None
+    over = one.spread.numbers.get("probability_over_limit") if one.spread else None
     return misses_limit(over)
 
 
 def _can_be_tightened(one: Computed) -> bool:
     """Whether half of the units at least are within the limit and some dimension scatters."""
     limit = one.variant.backlash_limit
-    return limit is not None and _number(one, "p50") <= limit and bool(one.variation and one.variation.shares)
+    return limit is not None and _number(one, "p50") <= limit and bool(one.spread and one.spread.shares)
 
 
 def _badness(one: Computed) -> tuple[float, float]:
@@ -102,7 +102,7 @@ def _badness(one: Computed) -> tuple[float, float]:
 
 def _halvings(one: Computed, settings: Settings) -> Iterable[Halving]:
     """Spread a variant again with half the tolerance of its main contributor, of its main drawing dimension, of all."""
-    shares = one.variation.shares if one.variation else {}
+    shares = one.spread.shares if one.spread else {}
     ranked = sorted(shares, key=lambda name: (-shares[name], name))
     drawing = [name for name in ranked if DIMENSIONS[name].quantity in {"length", "angle"}]
     wanted = dict.fromkeys([(ranked[0],), *((name,) for name in drawing[:1]), tuple(ranked)])

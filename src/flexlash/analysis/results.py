@@ -13,7 +13,7 @@ from flexlash.schema.findings import Finding
 from flexlash.schema.result_columns import result_columns
 from flexlash.schema.units import ARCMIN, RPM, as_entered
 from flexlash.schema.variant import Variant
-from flexlash.tolerance.spread_statistics import Variation
+from flexlash.tolerance.spread_statistics import SpreadStatistics
 from flexlash.validation.blocking_errors import stopped_by
 
 __all__ = ["result_record", "results_frame", "results_of"]
@@ -42,16 +42,16 @@ _ENTERED = frozenset({"backlash_limit_arcmin", "hub_shear_radius_mm"})
 
 
 def result_record(
-    variant: Variant, nominal: Mapping[str, float | str | None], variation: Variation | None
+    variant: Variant, nominal: Mapping[str, float | str | None], spread: SpreadStatistics | None
 ) -> dict[str, Any]:
     """Return the Results of a computed variant in printed units."""
     numbers: dict[str, Any] = dict(nominal)
-    if variation is not None:
-        numbers |= variation.statistics | variation.words
-        if variation.shares:
-            main = max(variation.shares, key=lambda name: variation.shares[name])
-            numbers |= {"main_contributor": main, "main_contributor_share": variation.shares[main]}
-            numbers["interaction_share"] = max(1.0 - math.fsum(variation.shares.values()), 0.0)
+    if spread is not None:
+        numbers |= spread.numbers | spread.texts
+        if spread.shares:
+            main = max(spread.shares, key=lambda name: spread.shares[name])
+            numbers |= {"main_contributor": main, "main_contributor_share": spread.shares[main]}
+            numbers["interaction_share"] = max(1.0 - math.fsum(spread.shares.values()), 0.0)
     numbers["backlash_limit"] = variant.backlash_limit
     record = {}
     for column in _COLUMNS:
@@ -89,7 +89,7 @@ def results_of(outcome: Outcome, *, cross_check: bool = False, elasticity: bool 
         listed = ", ".join(f"{found.code} {found.cell}" for found in mine)
         if one is None and not any(found.level == "error" for found in mine):
             listed = ", ".join(filter(None, [listed, _stopped(stops.get(row, []))]))
-        record = result_record(one.variant, one.nominal, one.variation) if one else {}
+        record = result_record(one.variant, one.nominal, one.spread) if one else {}
         status = "error" if one is None else "warning" if mine else "ok"
         records.append(
             {**record, "variant": name, "status": status, "notes": notes or None, "findings": listed or None}

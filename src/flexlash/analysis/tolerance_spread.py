@@ -11,8 +11,8 @@ from flexlash.analysis.options import Options, Progress
 from flexlash.mechanics.flexspline import backlash
 from flexlash.schema.variant import Settings
 from flexlash.tolerance.distribution_curves import Curve, curves_of
-from flexlash.tolerance.row_spreads import spread_rows
-from flexlash.tolerance.spread_statistics import Draws, Task
+from flexlash.tolerance.row_batches import spread_rows
+from flexlash.tolerance.spread_statistics import SamplingPlan, Task
 
 __all__ = ["drawn_curves", "scattered"]
 
@@ -26,8 +26,8 @@ def scattered(
     rows = list(computed.values())
     found = dict(computed)
     spreads = spread_rows([_task(one) for one in rows], _draws(settings, options), jobs=options.jobs)
-    for done, (place, variation) in enumerate(spreads, start=1):
-        found[rows[place].variant.row] = replace(rows[place], variation=variation)
+    for done, (place, spread) in enumerate(spreads, start=1):
+        found[rows[place].variant.row] = replace(rows[place], spread=spread)
         if progress:
             progress(done, len(rows))
     return found
@@ -35,13 +35,13 @@ def scattered(
 
 def drawn_curves(drawn: Sequence[Computed], settings: Settings, options: Options) -> dict[int, Curve]:
     """Return the curves of variants by row number."""
-    tasks = [(_task(one), one.variation) for one in drawn if one.variation]
+    tasks = [(_task(one), one.spread) for one in drawn if one.spread]
     curves = curves_of(tasks, _draws(settings, options), jobs=options.jobs)
     return dict(zip((one.variant.row for one in drawn), curves, strict=True))
 
 
-def _draws(settings: Settings, options: Options) -> Draws:
-    return Draws(
+def _draws(settings: Settings, options: Options) -> SamplingPlan:
+    return SamplingPlan(
         method=settings.method,
         samples=settings.samples,
         seed=settings.seed,

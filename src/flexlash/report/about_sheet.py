@@ -16,7 +16,7 @@ from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, SETTINGS
 from flexlash.schema.result_columns import result_columns
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES
-from flexlash.tolerance.engine.line_spread import MOST_LINES, OF_PROBABILITY, OF_SD
+from flexlash.tolerance.engine.line_spread import MOST_LINES, PROBABILITY_PRECISION, SD_PRECISION
 from flexlash.tolerance.sampling import REPLICATES
 
 __all__ = ["CHECKSUMS", "ERRATA", "LEFT_OUT", "MODEL", "PROOF", "SHEETS", "TABS", "write_about"]
@@ -105,8 +105,8 @@ _SAMPLING = {
         f"Lines are placed by {LINE_REPLICATES} independent scrambled Sobol' nets, whose scatter gives the standard "
         "errors (widened as Student's t asks for so few).",
         "Unless Settings name a number, lines are added until P0.135, P2.5, P50, P97.5 and P99.865 have standard "
-        f"errors of {OF_SD:g} sd and the probability over the limit of {100 * OF_PROBABILITY:g} % of itself, or there "
-        f"are {MOST_LINES:,}: then the note on the spread says what was reached.",
+        f"errors of {SD_PRECISION:g} sd and the probability over the limit of {100 * PROBABILITY_PRECISION:g} % of "
+        f"itself, or there are {MOST_LINES:,}: then the note on the spread says what was reached.",
         "A row whose backlash does not rise along its lines is answered by Sobol' points; its note says so.",
     ),
     "sobol": (

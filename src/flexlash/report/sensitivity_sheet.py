@@ -15,7 +15,7 @@ from flexlash.report.selection import Drawn
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import shown
 from flexlash.schema.units import ARCMIN
-from flexlash.tolerance.spread_statistics import Variation
+from flexlash.tolerance.spread_statistics import SpreadStatistics
 
 __all__ = ["write_sensitivity"]
 
@@ -35,8 +35,8 @@ def write_sensitivity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> N
     sheet.set_row(0, 28)
     sheet.set_column(0, 0, _NAME_WIDTH)
     sheet.set_column(1, 2 * len(DIMENSIONS) + 2, _WIDTH)
-    rows = [(one.variant.name, one.variation) for one in outcome.computed.values() if one.variation is not None]
-    names = [name for name in DIMENSIONS if any(name in variation.shares for _, variation in rows)]
+    rows = [(one.variant.name, one.spread) for one in outcome.computed.values() if one.spread is not None]
+    names = [name for name in DIMENSIONS if any(name in spread.shares for _, spread in rows)]
     widths = [_NAME_WIDTH, *[_WIDTH] * len(names), _GAP, *[_WIDTH] * len(names)]
     totals = len(names) + 2
     if drawn:
@@ -52,8 +52,8 @@ def write_sensitivity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> N
 
 def _write_tornado(book: Book, sheet: Any, worst: Drawn, width: int) -> None:
     """Write and draw how far each dimension moves the backlash between its limits, the others in the middle."""
-    variation = worst.computed.variation
-    if variation is None or not variation.swings:
+    spread = worst.computed.spread
+    if spread is None or not spread.swings:
         return
     name = shown(worst.row["variant"], longest=_NAME)
     text = f"Worst variant, {name}: backlash [arcmin] with one dimension at its limits, by its share of variance."
@@ -63,13 +63,13 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn, width: int) -> None:
         sheet.write_string(3, place, heading, book.format("header"))
     sheet.set_row(3, 32)
     share = book.format("text", percent_of(SHARE_OF_VARIANCE_ERROR))
-    swings = sorted(variation.swings.items(), key=lambda item: -variation.shares[item[0]])
+    swings = sorted(spread.swings.items(), key=lambda item: -spread.shares[item[0]])
     for row, (dimension, (low, high)) in enumerate(swings, start=4):
         sheet.write_string(row, 0, dimension_words(dimension), book.format("text"))
         sheet.write_number(row, 1, low / ARCMIN, book.format("text", "arcmin"))
         sheet.write_number(row, 2, high / ARCMIN, book.format("text", "arcmin"))
-        sheet.write_number(row, 3, variation.shares[dimension], share)
-        sheet.write_number(row, 4, variation.totals[dimension], share)
+        sheet.write_number(row, 3, spread.shares[dimension], share)
+        sheet.write_number(row, 4, spread.total_shares[dimension], share)
     chart = _tornado(book, name, 3 + len(swings), sum(swings[0][1]) / 2 / ARCMIN)
     size, text = (width, _CHART_HEIGHT), f"Tornado chart of the worst variant, {name}"
     book.insert(sheet, 3, _CHART_PLACE, chart, size=size, text=text)
@@ -97,7 +97,7 @@ def _tornado(book: Book, name: str, last: int, middle: float) -> Any:
     return chart
 
 
-def _write_shares(book: Book, sheet: Any, rows: Sequence[tuple[str, Variation]], names: Sequence[str]) -> None:
+def _write_shares(book: Book, sheet: Any, rows: Sequence[tuple[str, SpreadStatistics]], names: Sequence[str]) -> None:
     """Write the shares of variance of every computed variant, one column per dimension that varies, to be filtered."""
     right = len(names) + 1
     text = (
@@ -111,9 +111,9 @@ def _write_shares(book: Book, sheet: Any, rows: Sequence[tuple[str, Variation]],
         sheet.write_string(_HEADER, place + right, f"{dimension_words(name)}, total", book.format("header"))
     sheet.set_row(_HEADER, 48)
     plain, share = book.format("text"), book.format("text", percent_of(SHARE_OF_VARIANCE_ERROR))
-    for row, (variant, variation) in enumerate(rows, start=_HEADER + 1):
+    for row, (variant, spread) in enumerate(rows, start=_HEADER + 1):
         sheet.write_string(row, 0, variant, plain)
-        for start, indices in ((1, variation.shares), (1 + right, variation.totals)):
+        for start, indices in ((1, spread.shares), (1 + right, spread.total_shares)):
             for place, name in enumerate(names, start=start):
                 if name in indices:
                     sheet.write_number(row, place, round(indices[name], SHARE_DECIMALS), share)

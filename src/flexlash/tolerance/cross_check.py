@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexlash.tolerance.sampled_spread import SampledSpread
-from flexlash.tolerance.spread_statistics import PERCENTILES, Variation
+from flexlash.tolerance.spread_statistics import PERCENTILES, SpreadStatistics
 
 __all__ = ["AGREES", "cross_checked"]
 
@@ -16,7 +16,7 @@ AGREES = 4.0
 """Combined standard errors within which two methods agree: passed by chance once in 16,000 comparisons."""
 
 
-def cross_checked(variation: Variation, plain: SampledSpread, limit: float | None) -> Variation:
+def cross_checked(statistics: SpreadStatistics, plain: SampledSpread, limit: float | None) -> SpreadStatistics:
     """Return a spread with the numbers of plain Monte Carlo beside its own.
 
     `cross_check_deviation` is the greatest difference of mean, sd, percentiles and probability over the limit in
@@ -27,7 +27,7 @@ def cross_checked(variation: Variation, plain: SampledSpread, limit: float | Non
     errors = dict(zip(PERCENTILES, plain.standard_error(shares).tolist(), strict=True))
     values |= {"mean": plain.mean, "sd": plain.sd}
     errors |= {"mean": plain.mean_standard_error, "sd": plain.sd_standard_error}
-    own = {name: value for name, value in variation.statistics.items() if value is not None}
+    own = {name: value for name, value in statistics.numbers.items() if value is not None}
     deviations = [
         _deviation(values[name] - own[name], math.hypot(errors[name], own[f"{name}_standard_error"])) for name in values
     ]
@@ -45,9 +45,9 @@ def cross_checked(variation: Variation, plain: SampledSpread, limit: float | Non
     beside |= {"cross_check_deviation": greatest, "random_points": float(plain.size)}
     agrees = "agrees" if greatest <= AGREES else "differs"
     return replace(
-        variation,
-        statistics=variation.statistics | beside,
-        words=variation.words | {"cross_check": agrees},
+        statistics,
+        numbers=statistics.numbers | beside,
+        texts=statistics.texts | {"cross_check": agrees},
     )
 
 

@@ -12,9 +12,9 @@ from scipy.special import ndtr, ndtri
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.engine.line_spread import LineSpread
-from flexlash.tolerance.row_spreads import RowsAlike
+from flexlash.tolerance.row_batches import RowsAlike
 from flexlash.tolerance.spread import Spread
-from flexlash.tolerance.spread_statistics import Draws, Task, Variation
+from flexlash.tolerance.spread_statistics import SamplingPlan, SpreadStatistics, Task
 from flexlash.workers import mapped
 
 __all__ = ["CURVE_SCORES", "HISTOGRAM_BINS", "Curve", "CurveTask", "curve_of", "curves_of"]
@@ -32,7 +32,7 @@ _HISTOGRAM_CUT = 0.0005
 _WORTH_A_WORKER = 100_000
 """Lines or points per worker below which starting it costs more than it saves."""
 
-CurveTask: TypeAlias = tuple[Task, Variation]
+CurveTask: TypeAlias = tuple[Task, SpreadStatistics]
 """A row and its spread, whose lines or points are to be drawn once more."""
 
 
@@ -51,25 +51,25 @@ class Curve:
     heights: Array
 
 
-def curves_of(tasks: Sequence[CurveTask], draws: Draws, *, jobs: int) -> Iterator[Curve]:
+def curves_of(tasks: Sequence[CurveTask], draws: SamplingPlan, *, jobs: int) -> Iterator[Curve]:
     """Yield each row's curve, from the lines or points that its spread was found by."""
-    sizes = sum(int(variation.statistics.get("spread_points") or 0) for _, variation in tasks)
+    sizes = sum(int(statistics.numbers.get("spread_points") or 0) for _, statistics in tasks)
     # Fresh draws, since these may hold their points already, which are not worth sending.
     of_one = partial(curve_of, draws=replace(draws))
     yield from mapped(of_one, tasks, min(jobs, sizes // _WORTH_A_WORKER))
 
 
-def curve_of(task: CurveTask, draws: Draws) -> Curve:
+def curve_of(task: CurveTask, draws: SamplingPlan) -> Curve:
     """Return one row's curve; where nothing scatters, all of it is one value."""
-    (model, nominal, limits, over), variation = task
+    (model, nominal, limits, over), statistics = task
     row = RowsAlike([(model, nominal, limits, over)])
-    median = variation.statistics["p50"]
+    median = statistics.numbers["p50"]
     if not row.limits or median is None:
         return _level(float(median or 0.0))
-    if variation.words["spread_method"] == "line":
-        size = int(variation.statistics["spread_points"] or 0)
-        return _of_lines(LineSpread(row.of_some, row.scatter[0], samples=size, seed=draws.seed), variation)
-    return _of_points(row.sampled(0, draws.random if variation.words["spread_method"] == "random" else draws.sobol))
+    if statistics.texts["spread_method"] == "line":
+        size = int(statistics.numbers["spread_points"] or 0)
+        return _of_lines(LineSpread(row.of_some, row.scatter[0], samples=size, seed=draws.seed), statistics)
+    return _of_points(row.sampled(0, draws.random if statistics.texts["spread_method"] == "random" else draws.sobol))
 
 
 def _level(value: float) -> Curve:
@@ -86,13 +86,13 @@ def _level(value: float) -> Curve:
     )
 
 
-def _of_lines(spread: Spread, variation: Variation) -> Curve:
+def _of_lines(spread: Spread, statistics: SpreadStatistics) -> Curve:
     """Return the curve that lines give; their errors are widened as those of the row's spread were."""
     scores = np.array(CURVE_SCORES)
     shares = ndtr(scores)
     outputs = spread.quantile(shares)
     alone = spread.standard_error(0.5)
-    told = variation.statistics["p50_standard_error"] or 0.0
+    told = statistics.numbers["p50_standard_error"] or 0.0
     errors = spread.standard_error(shares) * (told / alone if alone > 0 else 1.0)
     low, high = np.interp(ndtri([_HISTOGRAM_CUT, 1 - _HISTOGRAM_CUT]), scores, outputs).tolist()
     edges = np.linspace(low, high, HISTOGRAM_BINS + 1)

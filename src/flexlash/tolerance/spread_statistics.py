@@ -13,7 +13,7 @@ from flexlash.tolerance.dimension_limits import Limits
 from flexlash.tolerance.sampling import UnitPoints
 from flexlash.tolerance.spread import Method
 
-__all__ = ["PERCENTILES", "Draws", "Task", "Variation"]
+__all__ = ["PERCENTILES", "SamplingPlan", "SpreadStatistics", "Task"]
 
 PERCENTILES = {
     "p0_135": 0.00135,
@@ -32,7 +32,7 @@ Task: TypeAlias = tuple[
 
 
 @dataclass(frozen=True)
-class Draws:
+class SamplingPlan:
     """How the spread is sampled; each process draws its points for itself, the same ones.
 
     `cross_check` puts plain Monte Carlo beside the method. `coverage` is the share of units inside the coverage
@@ -61,16 +61,16 @@ class Draws:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Variation:
-    """Spread of one variant [SI]: statistics by result key without unit, shares by dimension.
+class SpreadStatistics:
+    """Spread of one variant [SI]: `numbers` by result key without unit, shares by dimension.
 
-    `words` are what is said in words: by which method, with which note. `totals` are the total indices beside the
+    `texts` are what is said in words: by which method, with which note. `total_shares` are the total indices beside the
     first-order `shares`. `swings` is the backlash with one dimension at its lower and upper limit and the others in the
     middle of theirs.
     """
 
-    statistics: dict[str, float | None]
-    words: dict[str, str | None] = field(default_factory=dict)
+    numbers: dict[str, float | None]
+    texts: dict[str, str | None] = field(default_factory=dict)
     shares: dict[str, float] = field(default_factory=dict)
-    totals: dict[str, float] = field(default_factory=dict)
+    total_shares: dict[str, float] = field(default_factory=dict)
     swings: dict[str, tuple[float, float]] = field(default_factory=dict)

@@ -36,9 +36,9 @@ def causes_of(outcome: Outcome) -> list[Cause]:
     """Return the causes of all computed variants that scatter, in submitted order."""
     main = dict(zip(outcome.results["variant"], outcome.results["main_contributor"], strict=True))
     return [
-        Cause(name=one.variant.name, shares=one.variation.shares, main=main[one.variant.name])
+        Cause(name=one.variant.name, shares=one.spread.shares, main=main[one.variant.name])
         for one in outcome.computed.values()
-        if one.variation is not None and one.variation.shares
+        if one.spread is not None and one.spread.shares
     ]
 
 

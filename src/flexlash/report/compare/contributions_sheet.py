@@ -94,7 +94,7 @@ def _write_heat(book: Book, sheet: Any, causes: Sequence[Cause], drawn: Sequence
         words = dimension_words(name)
         sheet.write_string(row, 0, words[0].upper() + words[1:], book.format("text"))
         for place, one in enumerate(mapped, start=1):
-            shares = one.computed.variation.shares if one.computed.variation else {}
+            shares = one.computed.spread.shares if one.computed.spread else {}
             if name in shares:
                 sheet.write_number(row, place, shares[name], book.format("small figure", "0%"))
         _write_over_all(book, sheet, (row, right), causes, name)

@@ -108,13 +108,13 @@ def _rounded(values: Array, digits: int) -> list[float]:
 
 def _causes(one: Drawn) -> Iterator[tuple[str, str | float | None]]:
     """Yield the dimensions that move the backlash most, by their share of the variance, and how far each does."""
-    variation = one.computed.variation
+    spread = one.computed.spread
     ranked: list[tuple[str, float]] = []
-    if variation is not None:
-        ranked = sorted(variation.shares.items(), key=lambda item: (-item[1], item[0]))[:CAUSES]
+    if spread is not None:
+        ranked = sorted(spread.shares.items(), key=lambda item: (-item[1], item[0]))[:CAUSES]
     for number in range(1, CAUSES + 1):
         name, share = ranked[number - 1] if number <= len(ranked) else ("", None)
-        low, high = variation.swings[name] if variation is not None and name else (None, None)
+        low, high = spread.swings[name] if spread is not None and name else (None, None)
         yield f"Cause {number}", dimension_words(name) if name else None
         yield f"Share {number}", share
         yield f"Low {number}", None if low is None else low / ARCMIN

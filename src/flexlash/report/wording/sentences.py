@@ -72,8 +72,8 @@ def _causes(told: Told) -> Iterator[str]:
         return
     worst = told.rows[0]
     name = told.named(worst["variant"])
-    variation = told.computed[worst["variant"]].variation
-    shares = variation.shares if variation else {}
+    spread = told.computed[worst["variant"]].spread
+    shares = spread.shares if spread else {}
     if not shares:
         yield f"Nothing scatters in {name}: no tolerance applies to its dimensions, so all units are alike."
     ranked = sorted(shares, key=lambda cause: (-shares[cause], cause))

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution, Normal
 
-__all__ = ["Course", "Inputs", "RowModel", "Rows", "across", "course_of"]
+__all__ = ["Inputs", "LineDirection", "RowModel", "Rows", "across", "direction_of"]
 
 _SECANT = np.array([-1.5, -0.75, 0.75, 1.5])
 """Scores between which rise and curvature are taken."""
@@ -63,7 +63,7 @@ class Inputs:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Course:
+class LineDirection:
     """The direction of the lines of each row, a unit vector (inputs, rows), and the order in which inputs meet the net.
 
     `direction` is 0 where the output does not change; `order` (inputs, rows) ends with the input that closes the plane
@@ -73,12 +73,12 @@ class Course:
     direction: Array
     order: Rows
 
-    def take(self, rows: Rows) -> Course:
+    def take(self, rows: Rows) -> LineDirection:
         """Return some of the rows."""
-        return Course(direction=self.direction[:, rows], order=self.order[:, rows])
+        return LineDirection(direction=self.direction[:, rows], order=self.order[:, rows])
 
 
-def course_of(model: RowModel, inputs: Inputs) -> Course:
+def direction_of(model: RowModel, inputs: Inputs) -> LineDirection:
     """Return the course of lines along which the output rises fastest, by secants over the middle of each input.
 
     What lines do not even out is the curvature of the output in the single inputs: the more curved, the earlier an
@@ -103,10 +103,10 @@ def course_of(model: RowModel, inputs: Inputs) -> Course:
     slant = direction * direction
     last = np.argmin(np.where(slant >= _SLANT * slant.max(axis=0), curvature, np.inf), axis=0)
     curvature[last, np.arange(inputs.count)] = -1.0
-    return Course(direction=direction, order=np.argsort(-curvature, axis=0, kind="stable"))
+    return LineDirection(direction=direction, order=np.argsort(-curvature, axis=0, kind="stable"))
 
 
-def across(course: Course, net: Array) -> Array:
+def across(course: LineDirection, net: Array) -> Array:
     """Return scores (inputs, rows, lines) of points in the planes across the directions.
 
     `net` are standard normal scores (inputs − 1, lines). The scores across α have the covariance 1 − ααᵀ; its Cholesky

@@ -17,7 +17,7 @@ from flexlash.schema.arrays import Array
 from flexlash.tolerance.engine.line_tables import FAR, NODES, REACH, STEP, Lines
 from flexlash.tolerance.sampling import standard_error
 
-__all__ = ["Crossing", "Moments", "crossing_at", "moments_of", "normal_density", "quantiles_of"]
+__all__ = ["LineQuantiles", "Moments", "moments_of", "normal_density", "quantiles_at", "quantiles_of"]
 
 LEAST = 1e-15
 """Shares below are not told from none."""
@@ -49,7 +49,7 @@ def normal_density(score: Array) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Crossing:
+class LineQuantiles:
     """Outputs (levels, rows), the share `above` each, its standard error, and the density there.
 
     `residual` is the part of the outputs' error that more lines would not remove.
@@ -66,11 +66,11 @@ class Crossing:
         """Standard errors of the outputs as quantiles: that of the share over the density."""
         return self.above_error / _positive(self.density) + self.residual
 
-    def take(self, levels: int) -> Crossing:
+    def take(self, levels: int) -> LineQuantiles:
         """Return the first levels."""
-        return Crossing(**{name: values[:levels] for name, values in vars(self).items()})
+        return LineQuantiles(**{name: values[:levels] for name, values in vars(self).items()})
 
-    def widened(self, margin: Array) -> Crossing:
+    def widened(self, margin: Array) -> LineQuantiles:
         """Return the same with standard errors times a margin (rows,)."""
         return replace(self, above_error=self.above_error * margin)
 
@@ -167,7 +167,7 @@ def _fine_rule(breaks: tuple[float, ...], count: int) -> tuple[Array, Array]:
     return places, shares / shares.sum()
 
 
-def quantiles_of(lines: Lines, probability: Array) -> Crossing:
+def quantiles_of(lines: Lines, probability: Array) -> LineQuantiles:
     """Return the outputs that these shares (levels,) of each row stay below."""
     level = ndtri(np.clip(probability, LEAST, 1 - LEAST))[:, None]
     scaled = (level - NODES[0]) / STEP
@@ -201,7 +201,7 @@ def _in_table(lines: Lines, output: Array, level: Array) -> tuple[Array, Array, 
     return np.clip(moved, *lines.bounds), corrected, slope
 
 
-def crossing_at(lines: Lines, output: Array) -> Crossing:
+def quantiles_at(lines: Lines, output: Array) -> LineQuantiles:
     """Return the shares above outputs (levels, rows)."""
     low, high = lines.bounds
     # An output out of reach is crossed as one just beyond it.
@@ -212,7 +212,7 @@ def crossing_at(lines: Lines, output: Array) -> Crossing:
     return replace(found, above=told)
 
 
-def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Array | None) -> Crossing:
+def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Array | None) -> LineQuantiles:
     """Return the crossings of outputs, which move to the wanted level of Φ if there is one.
 
     Each pair of level and row stops by itself, so that its numbers do not depend on its neighbours.
@@ -252,7 +252,7 @@ def _settle(lines: Lines, output: Array, place: Array, slope: Array, level: Arra
         # What cannot be followed on the model stays what the table says.
         residual = np.where(lost, np.maximum(residual, np.abs(output - start)), residual)
         output = np.where(lost, start, output)
-    return Crossing(
+    return LineQuantiles(
         output=output,
         above=lines.mean_over_lines(above),
         above_error=_error(lines, above),

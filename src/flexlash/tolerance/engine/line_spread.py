@@ -11,15 +11,15 @@ from scipy.special import ndtr, ndtri
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution
-from flexlash.tolerance.engine.line_direction import Course, Inputs, RowModel, Rows, course_of
+from flexlash.tolerance.engine.line_direction import Inputs, LineDirection, RowModel, Rows, direction_of
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, line_net, mirrored_net
 from flexlash.tolerance.engine.line_quantiles import (
     LEAST,
-    Crossing,
+    LineQuantiles,
     Moments,
-    crossing_at,
     moments_of,
     normal_density,
+    quantiles_at,
     quantiles_of,
 )
 from flexlash.tolerance.engine.line_shares import variance_shares
@@ -29,9 +29,9 @@ from flexlash.tolerance.spread import Spread
 __all__ = [
     "FEWEST_LINES",
     "MOST_LINES",
-    "OF_PROBABILITY",
-    "OF_SD",
+    "PROBABILITY_PRECISION",
     "RAREST",
+    "SD_PRECISION",
     "SETTLED",
     "LineSpread",
     "NoLines",
@@ -48,10 +48,10 @@ MOST_LINES = 1 << 14
 SETTLED = (0.00135, 0.025, 0.5, 0.975, 0.99865)
 """Probabilities whose quantiles decide how many lines are enough."""
 
-OF_SD = 1e-3
+SD_PRECISION = 1e-3
 """Standard error wanted of those quantiles, in standard deviations of the output."""
 
-OF_PROBABILITY = 0.05
+PROBABILITY_PRECISION = 0.05
 """Standard error wanted of the share over a limit, as a part of itself, down to `RAREST`."""
 
 RAREST = 1e-9
@@ -82,7 +82,7 @@ def first_lines(inputs: int, samples: int | None) -> int:
 
 
 def lines_wanted(
-    lines: Lines, settled: Crossing, over: Crossing | None = None, limited: Bools | None = None
+    lines: Lines, settled: LineQuantiles, over: LineQuantiles | None = None, limited: Bools | None = None
 ) -> tuple[Rows, Array]:
     """Return how many lines the precision of each row takes, those it has where they are enough, and a margin.
 
@@ -90,11 +90,11 @@ def lines_wanted(
     multiplied by the margin. `settled` are the quantiles at `SETTLED`; `over` the crossings (1, rows) at the limits of
     the rows `limited`.
     """
-    excess = (settled.output_error / np.where(lines.scale > 0, lines.scale, 1.0)).max(axis=0) / OF_SD
+    excess = (settled.output_error / np.where(lines.scale > 0, lines.scale, 1.0)).max(axis=0) / SD_PRECISION
     if over is not None:
         rarer = np.minimum(over.above, 1 - over.above)[0]
         told = (rarer >= RAREST) & (True if limited is None else limited)
-        relative = over.above_error[0] / np.where(told, rarer, 1.0) / OF_PROBABILITY
+        relative = over.above_error[0] / np.where(told, rarer, 1.0) / PROBABILITY_PRECISION
         excess = np.maximum(excess, np.where(told, relative, 0.0))
     margin = 1 + _STOPPED * np.minimum(excess, 1) ** 2
     excess = excess * margin
@@ -103,16 +103,18 @@ def lines_wanted(
     return wanted.astype(np.intp), margin
 
 
-def unsettled(lines: Lines, settled: Crossing) -> Bools:
+def unsettled(lines: Lines, settled: LineQuantiles) -> Bools:
     """Return of which rows (rows,) the crossings could not be found, since the output has steps or dips."""
-    return np.asarray((settled.residual > OF_SD * lines.scale).any(axis=0))
+    return np.asarray((settled.residual > SD_PRECISION * lines.scale).any(axis=0))
 
 
-def missed(settled: Crossing, sd: Array) -> list[str]:
+def missed(settled: LineQuantiles, sd: Array) -> list[str]:
     """Return for each row the note that its precision was not reached, empty where it was."""
     reached = (settled.output_error / np.where(sd > 0, sd, 1.0)).max(axis=0).tolist()
     return [
-        "" if one <= OF_SD else f"standard errors reach {one:.2g} standard deviations, {OF_SD:g} was wanted"
+        ""
+        if one <= SD_PRECISION
+        else f"standard errors reach {one:.2g} standard deviations, {SD_PRECISION:g} was wanted"
         for one in reached
     ]
 
@@ -139,7 +141,7 @@ class LineSpread(Spread):
         self._inputs = Inputs.of([inputs])
         self._seed = seed
         with np.errstate(all="ignore"):
-            course = course_of(model, self._inputs)
+            course = direction_of(model, self._inputs)
             self.notes = ()
             self.size = first_lines(len(inputs), samples)
             self._lines = self._drawn(course)
@@ -156,7 +158,7 @@ class LineSpread(Spread):
                 self.size = int(wanted)
                 self._lines = self._drawn(course)
 
-    def _drawn(self, course: Course) -> Lines:
+    def _drawn(self, course: LineDirection) -> Lines:
         """Return the lines, or raise NoLines."""
         net = line_net(self._seed, len(self._inputs.names) - 1, self.size, one_bent=self._inputs.one_bent)
         lines = Lines(self._model, self._inputs, course, net)
@@ -168,7 +170,7 @@ class LineSpread(Spread):
         """Raise NoLines where quantiles cannot be followed on the model."""
         self._refuse(quantiles_of(self._lines, probability))
 
-    def _refuse(self, settled: Crossing) -> None:
+    def _refuse(self, settled: LineQuantiles) -> None:
         if unsettled(self._lines, settled)[0]:
             raise NoLines(FAULTS[STEPS])
 
@@ -214,17 +216,17 @@ class LineSpread(Spread):
         return self._crossed(probability).output_error[:, 0]
 
     @np.errstate(all="ignore")
-    def _crossed(self, probability: Array) -> Crossing:
+    def _crossed(self, probability: Array) -> LineQuantiles:
         return quantiles_of(self._lines, probability).widened(self._margin)
 
     @np.errstate(all="ignore")
     def _shares_above(self, value: Array) -> Array:
-        return crossing_at(self._lines, value[:, None]).above[:, 0]
+        return quantiles_at(self._lines, value[:, None]).above[:, 0]
 
     @np.errstate(all="ignore")
     def _interval(self, value: float, confidence: float) -> tuple[float, float]:
         """Return an interval of the share above a value, even on the normal scale."""
-        crossing = crossing_at(self._lines, np.array([[value]])).widened(self._margin)
+        crossing = quantiles_at(self._lines, np.array([[value]])).widened(self._margin)
         low, high = share_interval(crossing.above, crossing.above_error, float(ndtri((1 + confidence) / 2)))
         return float(low[0, 0]), float(high[0, 0])
 

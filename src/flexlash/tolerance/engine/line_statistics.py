@@ -12,9 +12,9 @@ import numpy as np
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.capability import ppk_normal, ppk_upper
-from flexlash.tolerance.engine.line_direction import Inputs, RowModel, Rows, course_of
+from flexlash.tolerance.engine.line_direction import Inputs, RowModel, Rows, direction_of
 from flexlash.tolerance.engine.line_points import line_net, mirrored_net
-from flexlash.tolerance.engine.line_quantiles import crossing_at, moments_of, quantiles_of
+from flexlash.tolerance.engine.line_quantiles import moments_of, quantiles_at, quantiles_of
 from flexlash.tolerance.engine.line_shares import variance_shares
 from flexlash.tolerance.engine.line_spread import (
     SETTLED,
@@ -26,9 +26,9 @@ from flexlash.tolerance.engine.line_spread import (
 )
 from flexlash.tolerance.engine.line_tables import FAULTS, NODES, STEPS, Lines
 from flexlash.tolerance.spread import Spread
-from flexlash.tolerance.spread_statistics import PERCENTILES, Draws, Variation
+from flexlash.tolerance.spread_statistics import PERCENTILES, SamplingPlan, SpreadStatistics
 
-__all__ = ["line_variations", "point_variation"]
+__all__ = ["line_statistics", "statistics_of"]
 
 _BLOCK = 1 << 16
 """Numbers of an array that leave room in the cache for a few others."""
@@ -48,11 +48,11 @@ class _Levels:
 class _Drawing:
     """Lines drawn through some of the rows at a time."""
 
-    def __init__(self, model: RowModel, inputs: Inputs, draws: Draws) -> None:
+    def __init__(self, model: RowModel, inputs: Inputs, draws: SamplingPlan) -> None:
         self._model = model
         self._inputs = inputs
         self._seed = draws.seed
-        self._course = course_of(model, inputs)
+        self._course = direction_of(model, inputs)
 
     def model(self, rows: Rows) -> RowModel:
         """Return the model of some rows."""
@@ -64,9 +64,9 @@ class _Drawing:
         return Lines(self.model(rows), self._inputs.take(rows), self._course.take(rows), net)
 
 
-def line_variations(
-    model: RowModel, inputs: Inputs, limit: Array, draws: Draws
-) -> Iterator[tuple[int, Variation | str]]:
+def line_statistics(
+    model: RowModel, inputs: Inputs, limit: Array, draws: SamplingPlan
+) -> Iterator[tuple[int, SpreadStatistics | str]]:
     """Yield each row's place with its spread, or with what keeps lines from serving it.
 
     Rows whose precision takes more lines are drawn again with as many; what a row gets does not depend on others.
@@ -97,7 +97,7 @@ def line_variations(
                 done = np.flatnonzero(settled & ~lost)
                 if len(done):
                     found = rows[block[done]]
-                    yield from zip(found.tolist(), reading.variations(done, drawing.model(found), draws), strict=True)
+                    yield from zip(found.tolist(), reading.statistics(done, drawing.model(found), draws), strict=True)
             further = wanted[wanted != number]
             pending += [(int(larger), rows[wanted == larger]) for larger in np.unique(further)[::-1]]
 
@@ -119,7 +119,7 @@ class _Reading:
         self._limited = np.isfinite(limit)
         self._quantiles = quantiles_of(lines, levels.probabilities)
         median = self._quantiles.output[levels.places["p50"]]
-        self._over = crossing_at(lines, np.where(self._limited, limit, median)[None]) if self._limited.any() else None
+        self._over = quantiles_at(lines, np.where(self._limited, limit, median)[None]) if self._limited.any() else None
         self.settled = self._quantiles.take(len(SETTLED))
         self._margin = np.ones(lines.rows)
 
@@ -131,7 +131,7 @@ class _Reading:
         self._over = self._over.widened(margin) if self._over else None
         return wanted
 
-    def variations(self, rows: Rows, model: RowModel, draws: Draws) -> list[Variation]:
+    def statistics(self, rows: Rows, model: RowModel, draws: SamplingPlan) -> list[SpreadStatistics]:
         """Return the spreads of some of the rows, whose model this is."""
         inputs = self._lines.inputs.take(rows)
         moments = moments_of(self._lines).widened(self._margin)
@@ -149,11 +149,11 @@ class _Reading:
         notes = missed(self.settled, moments.sd) if draws.samples is None else [""] * self._lines.rows
         columns = {name: values[rows].tolist() for name, values in numbers.items()}
         return [
-            Variation(
-                statistics=_finished(dict(zip(columns, values, strict=True)), self._lines.lines),
-                words=_words("line", notes[rows[place]]),
+            SpreadStatistics(
+                numbers=_finished(dict(zip(columns, values, strict=True)), self._lines.lines),
+                texts=_words("line", notes[rows[place]]),
                 shares=dict(zip(inputs.names, first[:, place].tolist(), strict=True)),
-                totals=dict(zip(inputs.names, total[:, place].tolist(), strict=True)),
+                total_shares=dict(zip(inputs.names, total[:, place].tolist(), strict=True)),
             )
             for place, values in enumerate(zip(*columns.values(), strict=True))
         ]
@@ -177,7 +177,7 @@ class _Reading:
         }
 
 
-def point_variation(spread: Spread, limit: float | None, draws: Draws, note: str = "") -> Variation:
+def statistics_of(spread: Spread, limit: float | None, draws: SamplingPlan, note: str = "") -> SpreadStatistics:
     """Return the statistics of one row's spread."""
     levels = _Levels(draws.coverage)
     names, shares = list(levels.named), np.array(list(levels.named.values()))
@@ -194,11 +194,11 @@ def point_variation(spread: Spread, limit: float | None, draws: Draws, note: str
             "probability_over_limit_low": low,
             "probability_over_limit_high": high,
         }
-    return Variation(
-        statistics=_finished(numbers, spread.size),
-        words=_words(spread.method, note),
+    return SpreadStatistics(
+        numbers=_finished(numbers, spread.size),
+        texts=_words(spread.method, note),
         shares=spread.shares,
-        totals=spread.total_shares,
+        total_shares=spread.total_shares,
     )
 
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Normal
-from flexlash.tolerance.engine.line_direction import Course, Inputs, RowModel, Rows, across
+from flexlash.tolerance.engine.line_direction import Inputs, LineDirection, RowModel, Rows, across
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, Net
 
 __all__ = ["FAR", "FAULTS", "NODES", "REACH", "STEP", "STEPS", "Lines"]
@@ -85,7 +85,7 @@ class Lines:
     `FAULTS` of what keeps line sampling from a row; what else is read of the lines holds for the other rows.
     """
 
-    def __init__(self, model: RowModel, inputs: Inputs, course: Course, net: Net) -> None:
+    def __init__(self, model: RowModel, inputs: Inputs, course: LineDirection, net: Net) -> None:
         self._model = model
         self.inputs = inputs
         self.rows = inputs.count

@@ -8,10 +8,10 @@ from b3_160 import CUP, NOMINAL, TUBE
 from worker_tasks import fail
 
 from flexlash import workers
-from flexlash.tolerance import row_spreads as spreading
+from flexlash.tolerance import row_batches as spreading
 from flexlash.tolerance.dimension_limits import Limits
-from flexlash.tolerance.row_spreads import spread_batch, spread_rows, variations_of
-from flexlash.tolerance.spread_statistics import Draws
+from flexlash.tolerance.row_batches import batch_statistics, spread_batch, spread_rows
+from flexlash.tolerance.spread_statistics import SamplingPlan
 
 ALIKE = {
     "wall_thickness": Limits(low=0.00155, high=0.00165),
@@ -22,7 +22,7 @@ BARE = {name: one for name, one in ALIKE.items() if name != "disk_inner_radius"}
 WIDE_CUT = {"wall_thickness": Limits(low=0.00155, high=0.00165, distribution="truncated normal")}
 NARROW_CUT = {"wall_thickness": Limits(low=0.00155, high=0.00165, distribution="truncated normal", sigma=2.0)}
 SHIFTED = {"disk_inner_radius": Limits(low=0.0402, high=0.0402)}
-LINES = Draws("line", None, 3)
+LINES = SamplingPlan("line", None, 3)
 
 
 def _row(model, limits, number=0, limit=None):
@@ -38,10 +38,10 @@ TASKS = [
 ORDERS = [list(range(len(TASKS))), list(range(len(TASKS)))[::-1], [*range(1, len(TASKS), 2), *range(0, len(TASKS), 2)]]
 
 
-def told(variation):
-    """Return everything that a variation tells, so that == compares it to the last bit."""
-    statistics = {name: value for name, value in variation.statistics.items() if value is not None}
-    return [statistics, variation.words, variation.shares, variation.totals, variation.swings]
+def told(spread):
+    """Return everything that a spread tells, so that == compares it to the last bit."""
+    statistics = {name: value for name, value in spread.numbers.items() if value is not None}
+    return [statistics, spread.texts, spread.shares, spread.total_shares, spread.swings]
 
 
 def _spread(tasks, draws=LINES, *, jobs=1):
@@ -62,14 +62,14 @@ def test_every_place_is_yielded_once_with_its_own_row(here):
     places = [place for place, _ in spread_rows(TASKS, LINES, jobs=1)]
     assert sorted(places) == list(range(len(TASKS)))
     for place, task in enumerate(TASKS):
-        assert here[place] == told(variations_of([task], LINES)[0])
+        assert here[place] == told(batch_statistics([task], LINES)[0])
 
 
 @pytest.mark.parametrize("method", ["line", "sobol", "random"])
 @pytest.mark.parametrize("order", ORDERS[1:])
 def test_the_order_of_rows_changes_no_bit(method, order):
     """Rows in another order, and so in other batches, keep every bit of their spread."""
-    draws = Draws(method, 256, 3, cross_check=method == "line")
+    draws = SamplingPlan(method, 256, 3, cross_check=method == "line")
     before, after = _spread(TASKS, draws), _spread([TASKS[place] for place in order], draws)
     assert after == [before[place] for place in order]
 
@@ -105,7 +105,9 @@ def test_one_job_starts_no_worker(here, monkeypatch):
     assert _spread(TASKS, jobs=1) == here
 
 
-@pytest.mark.parametrize("draws", [LINES, Draws("sobol", 256, 3), Draws("line", 64, 3, 0.9, cross_check=True)])
+@pytest.mark.parametrize(
+    "draws", [LINES, SamplingPlan("sobol", 256, 3), SamplingPlan("line", 64, 3, 0.9, cross_check=True)]
+)
 def test_worker_processes_give_the_same_bits(monkeypatch, draws):
     """Two worker processes give every row the bits that it has here."""
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
@@ -120,10 +122,10 @@ def test_worker_processes_give_the_same_bits(monkeypatch, draws):
 def test_a_batch_is_what_its_rows_are(here):
     """A worker's batch gives each row the bits that it has here, and draws its points once."""
     spreading._DRAWN.clear()
-    draws = Draws("sobol", 256, 3)
+    draws = SamplingPlan("sobol", 256, 3)
     first = spread_batch(TASKS[:7], draws)
     points = spreading._DRAWN[draws].sobol
-    again = spread_batch(TASKS[7:9], Draws("sobol", 256, 3))
+    again = spread_batch(TASKS[7:9], SamplingPlan("sobol", 256, 3))
     assert spreading._DRAWN[draws].sobol is points
     assert [told(one) for one in (*first, *again)] == _spread(TASKS, draws)[:9]
     assert [told(one) for one in spread_batch(TASKS[:7], LINES)] == here[:7]
@@ -140,7 +142,7 @@ def test_workers_are_no_more_than_are_worth_it(monkeypatch):
     monkeypatch.setattr(workers, "started", refuse)
     monkeypatch.setattr(spreading, "WORTH_A_WORKER", 7)
     for jobs in (2, 3, 8):
-        list(spread_rows(TASKS, Draws("sobol", 16, 0), jobs=jobs))
+        list(spread_rows(TASKS, SamplingPlan("sobol", 16, 0), jobs=jobs))
     assert asked == [2, 3, 3]
 
 

@@ -14,26 +14,26 @@ from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.cross_check import cross_checked
 from flexlash.tolerance.dimension_limits import distributions
 from flexlash.tolerance.engine.line_direction import Inputs, Rows
-from flexlash.tolerance.engine.line_statistics import line_variations, point_variation
+from flexlash.tolerance.engine.line_statistics import line_statistics, statistics_of
 from flexlash.tolerance.propagate import NOT_LINES
 from flexlash.tolerance.sampled_spread import SampledSpread
 from flexlash.tolerance.sampling import UnitPoints
 from flexlash.tolerance.sensitivity import first_order_sd, first_order_valid, worst_case
-from flexlash.tolerance.spread_statistics import PERCENTILES, Draws, Task, Variation
+from flexlash.tolerance.spread_statistics import PERCENTILES, SamplingPlan, SpreadStatistics, Task
 from flexlash.workers import mapped
 
-__all__ = ["RowsAlike", "spread_rows", "variations_of"]
+__all__ = ["RowsAlike", "batch_statistics", "spread_rows"]
 
 WORTH_A_WORKER = 1000
 """Rows per worker below which starting it costs more than it saves."""
 
 _ROWS_PER_BATCH = 200
 
-_DRAWN: dict[Draws, Draws] = {}
+_DRAWN: dict[SamplingPlan, SamplingPlan] = {}
 """Of this process: the draws that hold their points already."""
 
 
-def spread_rows(tasks: Sequence[Task], draws: Draws, *, jobs: int) -> Iterator[tuple[int, Variation]]:
+def spread_rows(tasks: Sequence[Task], draws: SamplingPlan, *, jobs: int) -> Iterator[tuple[int, SpreadStatistics]]:
     """Yield each row's place and spread, rows alike together, by up to `jobs` processes where there are rows enough."""
     batches = list(_batches(tasks))
     rows = [[tasks[place] for place in places] for places in batches]
@@ -54,30 +54,30 @@ def _batches(tasks: Sequence[Task]) -> Iterator[list[int]]:
             yield places[start : start + _ROWS_PER_BATCH]
 
 
-def spread_batch(tasks: Sequence[Task], draws: Draws) -> list[Variation]:
+def spread_batch(tasks: Sequence[Task], draws: SamplingPlan) -> list[SpreadStatistics]:
     """Return the spreads of a batch; a process draws its points once."""
-    return variations_of(tasks, _DRAWN.setdefault(draws, draws))
+    return batch_statistics(tasks, _DRAWN.setdefault(draws, draws))
 
 
-def variations_of(tasks: Sequence[Task], draws: Draws) -> list[Variation]:
+def batch_statistics(tasks: Sequence[Task], draws: SamplingPlan) -> list[SpreadStatistics]:
     """Return the spreads of rows that have the same model, dimensions and shapes of distribution."""
     rows = RowsAlike(tasks)
     if not rows.limits:
         values = np.broadcast_to(rows.backlash(rows.centre), len(tasks))
         return [_exact(float(value), limit) for value, limit in zip(values, rows.over, strict=True)]
-    found: dict[int, Variation] = {}
+    found: dict[int, SpreadStatistics] = {}
     notes = dict.fromkeys(range(len(tasks)), "")
     if draws.method == "line":
         limit = np.array([np.nan if one is None else one for one in rows.over])
-        for row, result in line_variations(rows.of_some, Inputs.of(rows.scatter), limit, draws):
-            if isinstance(result, Variation):
+        for row, result in line_statistics(rows.of_some, Inputs.of(rows.scatter), limit, draws):
+            if isinstance(result, SpreadStatistics):
                 found[row] = result
             else:
                 notes[row] = f"{NOT_LINES}: {result}"
     for row, note in notes.items():
         if row not in found:
             points = draws.random if draws.method == "random" else draws.sobol
-            found[row] = point_variation(rows.sampled(row, points), rows.over[row], draws, note)
+            found[row] = statistics_of(rows.sampled(row, points), rows.over[row], draws, note)
         if draws.cross_check and draws.method != "random":
             found[row] = cross_checked(found[row], rows.sampled(row, draws.random), rows.over[row])
     return rows.beside([found[row] for row in notes], draws.coverage)
@@ -113,7 +113,7 @@ class RowsAlike:
 
         return SampledSpread(model=of_row, inputs=self.scatter[row], points=points)
 
-    def beside(self, spreads: Sequence[Variation], coverage: float) -> list[Variation]:
+    def beside(self, spreads: Sequence[SpreadStatistics], coverage: float) -> list[SpreadStatistics]:
         """Return the spreads with what limits and first derivatives say beside them."""
 
         def of_all(**varying: Array) -> Array:
@@ -127,7 +127,7 @@ class RowsAlike:
         sds = {name: np.array([one[name].standard_deviation for one in self.scatter]) for name in self.limits}
         first_order = first_order_sd(of_all, {name: self.centre[name] for name in self.limits}, sds)
         low, high = (
-            np.array([one.statistics[f"coverage_{end}"] for one in spreads], dtype=float) for end in ("low", "high")
+            np.array([one.numbers[f"coverage_{end}"] for one in spreads], dtype=float) for end in ("low", "high")
         )
         interval = low / ARCMIN, high / ARCMIN
         valid = first_order_valid(self.backlash(self.centre) / ARCMIN, first_order / ARCMIN, interval, coverage)
@@ -136,8 +136,8 @@ class RowsAlike:
         return [
             replace(
                 one,
-                statistics=one.statistics | dict(zip(_BESIDE, numbers[row], strict=True)),
-                words=one.words | {"first_order_valid": "yes" if valid[row] else "no"},
+                numbers=one.numbers | dict(zip(_BESIDE, numbers[row], strict=True)),
+                texts=one.texts | {"first_order_valid": "yes" if valid[row] else "no"},
                 swings={name: tuple(pairs[row]) for name, pairs in swings.items()},
             )
             for row, one in enumerate(spreads)
@@ -147,7 +147,7 @@ class RowsAlike:
 _BESIDE = ("worst_case_low", "worst_case_high", "first_order_sd")
 
 
-def _exact(value: float, limit: float | None) -> Variation:
+def _exact(value: float, limit: float | None) -> SpreadStatistics:
     """Return the spread of a variant none of whose dimensions scatters."""
     same = (*PERCENTILES, "mean", "coverage_low", "coverage_high", "worst_case_low", "worst_case_high")
     none = ("sd", "skewness", *(f"{name}_standard_error" for name in (*same[:10], "sd", "skewness")))
@@ -156,4 +156,4 @@ def _exact(value: float, limit: float | None) -> Variation:
     if limit is not None:
         over = float(value > limit)
         statistics |= dict.fromkeys((f"probability_over_limit{side}" for side in ("", "_low", "_high")), over)
-    return Variation(statistics=statistics, words={"first_order_valid": "yes"})
+    return SpreadStatistics(numbers=statistics, texts={"first_order_valid": "yes"})
