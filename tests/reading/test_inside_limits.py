@@ -1,7 +1,9 @@
 """The limited process from inside: what it gives, and what it is forbidden."""
 
 import os
+import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -34,6 +36,30 @@ def test_a_process_that_was_not_prepared_says_why(monkeypatch):
     """A library that cannot be loaded is named by every answer, instead of a file."""
     monkeypatch.setattr(limited_module._State, "fault", Fault.of(ImportError("no polars")))
     assert "no polars" in carried_out(len, ReadingLimits(), ("",)).trace
+
+
+def test_the_warm_up_loads_all_that_a_file_needs(tmp_path):
+    """After the warm-up a workbook is read and validated without loading anything more, in a folder that has gone."""
+    (gone := tmp_path / "gone").mkdir()
+    code = (
+        "import os, sys; from pathlib import Path\n"
+        "from flexlash.reading.inside_limits import _warm_up\n"
+        "from flexlash.reading.read import Source, submission_of\n"
+        "from flexlash.reading.reading_limits import ReadingLimits\n"
+        "from flexlash.validation.validate import validate\n"
+        "limits = ReadingLimits()\n"
+        "source = Source.at(Path(sys.argv[1]), limits)\n"
+        "_warm_up()\n"
+        "if os.name != 'nt': os.rmdir(os.getcwd())\n"
+        "loaded = set(sys.modules)\n"
+        "validate(submission_of(source, limits), limits)\n"
+        "print(*{name for name in set(sys.modules) - loaded if not name.startswith('encodings')})"
+    )
+    study = Path(__file__).resolve().parents[2] / "data" / "b3-160-study.xlsx"
+    ran = subprocess.run(
+        [sys.executable, "-c", code, str(study)], cwd=gone, check=False, capture_output=True, text=True
+    )
+    assert (ran.stdout.strip(), ran.stderr) == ("", "")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="this system cannot limit a process")
