@@ -11,7 +11,8 @@ import xlsxwriter
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flexlash.report.formula.live import Live, fill, is_error, joined, live, put, when
+from flexlash.report.formula.functions import CONCATENATE, IF
+from flexlash.report.formula.live import Live, fill, is_error, live, put
 
 NUMBERS = st.one_of(st.integers(-9, 9).map(float), st.sampled_from([0.1, 2.5, -0.3, 1e-7, 3e20]))
 SIGNS = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
@@ -76,10 +77,10 @@ def test_parentheses_only_where_they_matter(found, text):
         (live(2.0) >= 2.0, True),
         (live(2.0) < 2.0, False),
         (live(2.0) <= 1.0, False),
-        (when(live(1.0) > 0.0, "yes", live(1.0) / 0.0), "yes"),
-        (when(live(1.0) / 0.0, "yes", "no"), "#DIV/0!"),
-        (joined("a ", live("b"), ""), "a b"),
-        (joined("a ", Live("$A$1", "#N/A")), "#N/A"),
+        (IF(live(1.0) > 0.0, "yes", live(1.0) / 0.0), "yes"),
+        (IF(live(1.0) / 0.0, "yes", "no"), "#DIV/0!"),
+        (CONCATENATE("a ", live("b"), ""), "a b"),
+        (CONCATENATE("a ", Live("$A$1", "#N/A")), "#N/A"),
     ],
 )
 def test_errors_texts_and_comparisons_are_those_of_excel(found, value):
@@ -104,7 +105,7 @@ def test_cells_hold_formula_and_value():
         blank = fill(sheet, 1, 0, "", None)
         text = fill(sheet, 2, 0, '=say "hi"', None)
         found = put(sheet, 3, 0, entry * 4.0, None)
-        put(sheet, 4, 0, joined(text, "!"), None)
+        put(sheet, 4, 0, CONCATENATE(text, "!"), None)
     assert (entry.text, blank.text, found.text) == ("$A$1", "$A$2", "$A$4")
     assert (entry.value, blank.value, found.value) == (2.5, "", 10.0)
     for data_only, column in ((True, [2.5, None, '=say "hi"', 10, '=say "hi"!']), (False, [2.5, None, '=say "hi"'])):

@@ -9,8 +9,8 @@ from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_summary import dimension_words, share_words
-from flexlash.report.formula.functions import greatest, is_number, place_of_name
-from flexlash.report.formula.live import Live, fill, put, when
+from flexlash.report.formula.functions import IF, ISNUMBER, MAX, match_exactly
+from flexlash.report.formula.live import Live, fill, put
 from flexlash.report.formula.stored import Row, Stored
 from flexlash.report.layout.links import result_rows, write_link
 from flexlash.report.layout.styles import Book, decimals_of
@@ -118,26 +118,26 @@ def _write_headings(book: Book, sheet: Any) -> None:
 
 def _write_base(book: Book, sheet: Any, compared: Stored, first: int) -> dict[str, Live]:
     """Write the drop-down and what the picked base variant has; return its cells by heading."""
-    names = [str(row["Variant"]) for row in compared.rows]
+    names = compared.cells("Variant")
     sheet.write_string(BASE_ROW, 0, "Base ►", book.format("label"))
-    picked = fill(sheet, BASE_ROW, 1, names[first], book.format("input"))
+    picked = fill(sheet, BASE_ROW, 1, str(names.values[first]), book.format("input"))
     sheet.data_validation(BASE_ROW, 1, BASE_ROW, 1, {
         "validate": "list",
-        "source": f"={compared.cells('Variant')}",
+        "source": f"={names.text}",
         "input_title": "Base variant",
         "input_message": "All differences are to this variant.",
         "error_title": "Base variant",
         "error_message": "Pick a variant of the list.",
     })  # fmt: skip
-    place = place_of_name(picked, compared.cells("Variant"), names)
+    place = match_exactly(picked, names)
     place = put(sheet, BASE_ROW, 2, place, book.format("quiet"))
     known = place > 0.0
-    told = when(known, "◄ its rank", "◄ not in the list: pick one")
+    told = IF(known, "◄ its rank", "◄ not in the list: pick one")
     put(sheet, BASE_ROW, 3, told, book.format("quiet"))
 
     def write(heading: str, column: int, number: str) -> Live:
-        figure = compared.pick(greatest(place, 1.0), heading)
-        return put(sheet, BASE_ROW, column, when(known, figure, ""), book.format("base", number))
+        figure = compared.pick(MAX(place, 1.0), heading)
+        return put(sheet, BASE_ROW, column, IF(known, figure, ""), book.format("base", number))
 
     write("Disk share", _SHAPE, "0%")
     write("l/r", _SHAPE + 1, "0.00")
@@ -195,11 +195,11 @@ def _write_differences(book: Book, sheet: Any, rank: int, of: tuple[Drawn, Store
     row = FIRST_ROW + rank
     for number, heading in enumerate(DIFFERENCES):
         place = _FIRST_DIFFERENCE + 2 * number
-        is_known = is_number(base[heading])
-        difference = when(is_known, _own(row, heading, compared.rows[rank]) - base[heading], "")
+        is_known = ISNUMBER(base[heading])
+        difference = IF(is_known, _own(row, heading, compared.rows[rank]) - base[heading], "")
         put(sheet, row, place, difference, book.format("text", _signed(_decimals(one, heading))))
         relative = Live(xl_rowcol_to_cell(row, place), difference.value) / base[heading]
-        share = when(is_known, when(base[heading] > 0.0, relative, ""), "")
+        share = IF(is_known, IF(base[heading] > 0.0, relative, ""), "")
         put(sheet, row, place + 1, share, book.format("text", _SIGNED_PERCENT))
 
 

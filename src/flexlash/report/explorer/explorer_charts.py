@@ -7,8 +7,8 @@ from typing import Any
 from flexlash.report.explorer.curves_sheet import CAUSES, SEGMENTS
 from flexlash.report.explorer.explorer_choice import Choice
 from flexlash.report.explorer.explorer_working import COLUMN, CURVE_ROW, Working
-from flexlash.report.formula.functions import all_of, decimal_logarithm, fixed, greatest, least, whole
-from flexlash.report.formula.live import Live, joined, live, put, when
+from flexlash.report.formula.functions import AND, CONCATENATE, FIXED, IF, INT, LOG10, MAX, MIN
+from flexlash.report.formula.live import Live, live, put
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS
 
@@ -48,9 +48,9 @@ def _write_notes(book: Book, sheet: Any, choice: Choice, working: Working, limit
     Titles do not follow in all programs, so that they name no unit.
     """
     quiet, none = book.format("quiet"), limit.equals("")
-    put(sheet, _FIRST_CHART - 1, 0, when(choice.known, joined("Charts in ", choice.unit), "Nothing to draw"), quiet)
-    beyond = joined("The limit ", fixed(when(none, 0.0, limit), 2), " lies outside the pictures.")
-    put(sheet, _FIRST_CHART - 1, 4, when(none, "", when(_in_picture(working, limit), "", beyond)), quiet)
+    put(sheet, _FIRST_CHART - 1, 0, IF(choice.known, CONCATENATE("Charts in ", choice.unit), "Nothing to draw"), quiet)
+    beyond = CONCATENATE("The limit ", FIXED(IF(none, 0.0, limit), 2), " lies outside the pictures.")
+    put(sheet, _FIRST_CHART - 1, 4, IF(none, "", IF(_in_picture(working, limit), "", beyond)), quiet)
 
 
 def _drawn(working: Working) -> tuple[int, int]:
@@ -61,7 +61,7 @@ def _drawn(working: Working) -> tuple[int, int]:
 
 def _in_picture(working: Working, limit: Live) -> Live:
     """Return whether the limit lies not much farther out than the drawn curve."""
-    return all_of(limit >= working.backlash[0], limit <= working.backlash[-1])
+    return AND(limit >= working.backlash[0], limit <= working.backlash[-1])
 
 
 def _density(book: Book, sheet: Any, choice: Choice, limit: Live) -> Any:
@@ -70,16 +70,16 @@ def _density(book: Book, sheet: Any, choice: Choice, limit: Live) -> Any:
     for offset, text in enumerate(("bin middle", "within", "over the limit", "bin begins")):
         sheet.write_string(_BAR_ROW - 1, _BINS + offset, text, quiet)
     width = put(sheet, _BAR_ROW - 2, _BINS + 3, choice.angle("Bin width"), plain)
-    labelled = when(width > 0.0, width * float(_BINS_PER_LABEL), 1.0)
-    decimals = put(sheet, _BAR_ROW - 2, _BINS, greatest(live(1.0) - whole(decimal_logarithm(labelled)), 0.0), plain)
+    labelled = IF(width > 0.0, width * float(_BINS_PER_LABEL), 1.0)
+    decimals = put(sheet, _BAR_ROW - 2, _BINS, MAX(live(1.0) - INT(LOG10(labelled)), 0.0), plain)
     begins = choice.angle("Bin start")
     for number in range(HISTOGRAM_BINS):
         row = _BAR_ROW + number
         begins = put(sheet, row, _BINS + 3, begins + width if number else begins, plain)
-        put(sheet, row, _BINS, fixed(begins + width / 2, decimals), plain)
-        height = when(choice.known, choice.text(f"Bin {number + 1}"), 0.0)
-        inside = when(width > 0.0, least(greatest((limit - begins) / width, 0.0), 1.0), 1.0)
-        within = put(sheet, row, _BINS + 1, when(limit.equals(""), height, height * inside), plain)
+        put(sheet, row, _BINS, FIXED(begins + width / 2, decimals), plain)
+        height = IF(choice.known, choice.text(f"Bin {number + 1}"), 0.0)
+        inside = IF(width > 0.0, MIN(MAX((limit - begins) / width, 0.0), 1.0), 1.0)
+        within = put(sheet, row, _BINS + 1, IF(limit.equals(""), height, height * inside), plain)
         put(sheet, row, _BINS + 2, height - within, plain)
     last = _BAR_ROW + HISTOGRAM_BINS - 1
     chart = book.chart("column", "Density of the backlash", subtype="stacked")
@@ -107,8 +107,8 @@ def _cumulative(book: Book, sheet: Any, working: Working, limit: Live) -> Any:
     none, inside = limit.equals(""), _in_picture(working, limit)
     middle = working.backlash[len(working.backlash) // 2]
     for row, share in ((_BAR_ROW, 0.0), (_BAR_ROW + 1, 1.0)):
-        put(sheet, row, column, when(none, middle, when(inside, limit, middle)), plain)
-        put(sheet, row, column + 1, when(none, 0.0, when(inside, share, 0.0)), plain)
+        put(sheet, row, column, IF(none, middle, IF(inside, limit, middle)), plain)
+        put(sheet, row, column + 1, IF(none, 0.0, IF(inside, share, 0.0)), plain)
     first, last = (CURVE_ROW + place for place in _drawn(working))
     chart = book.chart("scatter", "Share of units below a backlash", subtype="straight")
     for name, rows, columns, line in (
@@ -133,18 +133,18 @@ def _tornado(book: Book, sheet: Any, choice: Choice) -> Any:
     quiet, plain = book.format("quiet"), book.format("text", "general")
     for offset, text in enumerate(("dimension (share of variance)", "at lower limit", "at upper limit")):
         sheet.write_string(_CAUSE_ROW - 1, _BINS + offset, text, quiet)
-    shown = when(choice.known, 1.0, 0.0)
+    shown = IF(choice.known, 1.0, 0.0)
     for number in range(1, CAUSES + 1):
         row = _CAUSE_ROW + number - 1
         name = choice.text(f"Cause {number}")
         low, high = choice.angle(f"Low {number}"), choice.angle(f"High {number}")
         share = choice.text(f"Share {number}")
         given = name.equals("")
-        percent = fixed(when(given, 0.0, share * 100.0), 0)
-        put(sheet, row, _BINS, when(given, "", joined(name, " (", percent, " %)")), plain)
+        percent = FIXED(IF(given, 0.0, share * 100.0), 0)
+        put(sheet, row, _BINS, IF(given, "", CONCATENATE(name, " (", percent, " %)")), plain)
         half = (high - low) / 2
-        put(sheet, row, _BINS + 1, when(given, 0.0, live(0.0) - half * shown), plain)
-        put(sheet, row, _BINS + 2, when(given, 0.0, half * shown), plain)
+        put(sheet, row, _BINS + 1, IF(given, 0.0, live(0.0) - half * shown), plain)
+        put(sheet, row, _BINS + 2, IF(given, 0.0, half * shown), plain)
     last = _CAUSE_ROW + CAUSES - 1
     chart = book.chart("bar", "Tornado: change between a dimension's limits")
     for offset, label, colour in ((1, "at its lower limit", "sky"), (2, "at its upper limit", "blue")):
@@ -167,8 +167,8 @@ def _segments(book: Book, sheet: Any, choice: Choice) -> Any:
     chart = book.chart("bar", "Where the nominal backlash arises", subtype="stacked")
     sheet.write_string(_SEGMENT_ROW, _BINS, "nominal", quiet)
     for offset, (segment, colour) in enumerate(zip(SEGMENTS.values(), _COLOURS, strict=True), start=1):
-        value = put(sheet, _SEGMENT_ROW, _BINS + offset, when(choice.known, choice.angle(segment), 0.0), plain)
-        put(sheet, _SEGMENT_ROW - 1, _BINS + offset, joined(f"{segment} ", fixed(value, 2)), quiet)
+        value = put(sheet, _SEGMENT_ROW, _BINS + offset, IF(choice.known, choice.angle(segment), 0.0), plain)
+        put(sheet, _SEGMENT_ROW - 1, _BINS + offset, CONCATENATE(f"{segment} ", FIXED(value, 2)), quiet)
         chart.add_series({
             "name": ["Explorer", _SEGMENT_ROW - 1, _BINS + offset],
             "categories": ["Explorer", _SEGMENT_ROW, _BINS, _SEGMENT_ROW, _BINS],

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from flexlash.report.formula.functions import all_of, greatest, is_number, place_of_name
-from flexlash.report.formula.live import Live, fill, joined, live, put, when
+from flexlash.report.formula.functions import AND, CONCATENATE, IF, ISNUMBER, MAX, match_exactly
+from flexlash.report.formula.live import Live, fill, live, put
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
 from flexlash.report.wording.verdict import BOUNDS
@@ -34,38 +34,37 @@ class Choice:
         self._curves = curves
         entry, hint = book.format("input"), book.format("hint")
         names = curves.cells("Variant")
-        all_names = [str(row["Variant"]) for row in curves.rows]
         for row, label in enumerate(_LABELS, start=_FIRST_ROW):
             sheet.write_string(row, 0, label, book.format("label"))
-        self.name = fill(sheet, _FIRST_ROW, 1, all_names[0], entry)
+        self.name = fill(sheet, _FIRST_ROW, 1, str(names.values[0]), entry)
         unit = fill(sheet, _FIRST_ROW + 1, 1, "arcmin", entry)
         typed = fill(sheet, _FIRST_ROW + 2, 1, "", book.format("input", "general"))
         wanted = fill(sheet, _FIRST_ROW + 3, 1, USUAL_SHARE, book.format("input", "0.0000##%"))
-        _list(sheet, _FIRST_ROW, f"={names}", "Variant", "Everything on this sheet follows.")
+        _list(sheet, _FIRST_ROW, f"={names.text}", "Variant", "Everything on this sheet follows.")
         _list(sheet, _FIRST_ROW + 1, ["arcmin", "arcsec"], "Angle unit", "The limit below is read in it, too.")
         _number(sheet, _FIRST_ROW + 2, (0, 1e9), "Any limit", "Blank: the limit of the variant.")
         _number(sheet, _FIRST_ROW + 3, (_RAREST, _COMMONEST), "Wanted share", "From 0.0001 % (1 ppm) to 99.9999 %.")
-        words = f'"◄ number "0" of {len(all_names)}";;"◄ not in the list: pick one"'
-        place = put(sheet, _FIRST_ROW, 2, place_of_name(self.name, names, all_names), book.format("hint", words))
+        words = f'"◄ number "0" of {len(names.values)}";;"◄ not in the list: pick one"'
+        place = put(sheet, _FIRST_ROW, 2, match_exactly(self.name, names), book.format("hint", words))
         words = '"◄ arcmin or arcsec (1 arcmin = "0")";;"◄ arcmin or arcsec, nothing else"'
-        factor = when(unit.equals("arcsec"), _SECONDS, when(unit.equals("arcmin"), 1.0, 0.0))
+        factor = IF(unit.equals("arcsec"), _SECONDS, IF(unit.equals("arcmin"), 1.0, 0.0))
         factor = put(sheet, _FIRST_ROW + 1, 2, factor, book.format("hint", words))
-        self.known = all_of(place > 0.0, factor > 0.0)
-        self._place, self._factor = greatest(place, 1.0), greatest(factor, 1.0)
-        self.unit = when(factor > 0.0, unit, live(""))
+        self.known = AND(place > 0.0, factor > 0.0)
+        self._place, self._factor = MAX(place, 1.0), MAX(factor, 1.0)
+        self.unit = IF(factor > 0.0, unit, live(""))
         self._write_limit(sheet, hint, typed)
-        sound = when(is_number(wanted), all_of(wanted >= _RAREST, wanted <= _COMMONEST), Live("FALSE", value=False))
-        told = when(sound, "◄ gives the limit for it, below", "◄ a share from 0.0001 % to 99.9999 %")
+        sound = IF(ISNUMBER(wanted), AND(wanted >= _RAREST, wanted <= _COMMONEST), Live("FALSE", value=False))
+        told = IF(sound, "◄ gives the limit for it, below", "◄ a share from 0.0001 % to 99.9999 %")
         put(sheet, _FIRST_ROW + 3, 2, told, hint)
-        self.wants = all_of(self.known, sound)
-        self.wanted = when(sound, wanted, USUAL_SHARE)
+        self.wants = AND(self.known, sound)
+        self.wanted = IF(sound, wanted, USUAL_SHARE)
 
     def _write_limit(self, sheet: Any, hint: Any, typed: Live) -> None:
         """Say in which unit the typed limit is read, or that it is none."""
-        sound = when(is_number(typed), typed > 0.0, Live("FALSE", value=False))
-        told = when(sound, joined("◄ read in ", self.unit), "◄ not a number above 0: not used")
-        put(sheet, _FIRST_ROW + 2, 2, when(typed.equals(""), "◄ blank: its own", told), hint)
-        self.other = when(sound, typed, "")
+        sound = IF(ISNUMBER(typed), typed > 0.0, Live("FALSE", value=False))
+        told = IF(sound, CONCATENATE("◄ read in ", self.unit), "◄ not a number above 0: not used")
+        put(sheet, _FIRST_ROW + 2, 2, IF(typed.equals(""), "◄ blank: its own", told), hint)
+        self.other = IF(sound, typed, "")
         self.is_blank = typed.equals("")
 
     def text(self, heading: str) -> Live:
@@ -78,7 +77,7 @@ class Choice:
 
     def told(self, what: Live) -> Live:
         """Return a figure, or that there is none where variant or unit are not of their lists."""
-        return when(self.known, what, NONE)
+        return IF(self.known, what, NONE)
 
 
 def _list(sheet: Any, row: int, source: str | Sequence[str], title: str, message: str) -> None:

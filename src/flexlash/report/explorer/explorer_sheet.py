@@ -13,17 +13,19 @@ from flexlash.report.explorer.explorer_charts import write_charts
 from flexlash.report.explorer.explorer_choice import NONE, USUAL_SHARE, Choice
 from flexlash.report.explorer.explorer_working import Read, Working
 from flexlash.report.formula.functions import (
-    all_of,
+    AND,
+    CONCATENATE,
+    FIXED,
+    IF,
+    ISNUMBER,
+    MAX,
+    MIN,
+    NORM_S_DIST,
+    NORM_S_INV,
+    SQRT,
     decimals_to,
-    fixed,
-    greatest,
-    is_number,
-    least,
-    normal_score,
-    normal_share,
-    root,
 )
-from flexlash.report.formula.live import Live, joined, live, put, when
+from flexlash.report.formula.live import Live, live, put
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
 from flexlash.report.wording.verdict import BOUNDS
@@ -110,15 +112,15 @@ def _write_answers(book: Book, sheet: Any, choice: Choice, working: Working) -> 
     """Write what the curve says of the limit and of the wanted share; return the limit, an empty text for none."""
     for row, words in enumerate(_ANSWERS, start=_FIRST_ANSWER):
         sheet.write_string(row, 0, words, book.format("text" if words.startswith(" ") else "label"))
-    used = when(choice.known, when(choice.is_blank, choice.angle("Limit"), choice.other), "")
+    used = IF(choice.known, IF(choice.is_blank, choice.angle("Limit"), choice.other), "")
     limit = working.cell("limit that counts", used)
-    put(sheet, 8, 1, when(limit.equals(""), NONE, limit), book.format("figure", "arcmin"))
-    read = working.read_share(when(limit.equals(""), choice.angle("P50"), limit))
+    put(sheet, 8, 1, IF(limit.equals(""), NONE, limit), book.format("figure", "arcmin"))
+    read = working.read_share(IF(limit.equals(""), choice.angle("P50"), limit))
     _write_share(book, sheet, choice, (working, read), limit)
-    found, error = working.read_output(live(0.0) - normal_score(choice.wanted))
+    found, error = working.read_output(live(0.0) - NORM_S_INV(choice.wanted))
     decimals = working.cell("its decimals", decimals_to(error, _USUAL))
-    put(sheet, 14, 1, when(choice.wants, fixed(found, decimals), NONE), book.format("figure"))
-    put(sheet, 15, 1, when(choice.wants, fixed(error * INTERVAL, decimals), NONE), book.format("figure"))
+    put(sheet, 14, 1, IF(choice.wants, FIXED(found, decimals), NONE), book.format("figure"))
+    put(sheet, 15, 1, IF(choice.wants, FIXED(error * INTERVAL, decimals), NONE), book.format("figure"))
     for row in (8, 14, 15):
         put(sheet, row, 2, choice.unit, book.format("quiet"))
     return limit
@@ -130,26 +132,26 @@ def _write_share(book: Book, sheet: Any, choice: Choice, reading: tuple[Working,
     quiet, figure = book.format("quiet"), book.format("figure")
     none = limit.equals("")
     rarest = working.cell("rarest share told", choice.text("Rarest share"))
-    told = working.cell("share told", least(greatest(read.share, rarest), live(1.0) - rarest))
+    told = working.cell("share told", MIN(MAX(read.share, rarest), live(1.0) - rarest))
     few, many = read.share < rarest * _NEARLY, read.share > live(1.0) - rarest * _NEARLY
-    bound = when(few, "at most: rarer than computed", when(many, "at least: rarer than computed", ""))
-    put(sheet, 9, 2, when(none, "◄ no limit: type one above", when(working.is_level, "", bound)), quiet)
+    bound = IF(few, "at most: rarer than computed", IF(many, "at least: rarer than computed", ""))
+    put(sheet, 9, 2, IF(none, "◄ no limit: type one above", IF(working.is_level, "", bound)), quiet)
     ends = []
-    for sign, beyond in ((1.0, when(few, 0.0, told)), (-1.0, when(many, 1.0, told))):
-        end = normal_share(live(0.0) - (read.score + read.error * (sign * INTERVAL)))
-        kept = (least if sign > 0 else greatest)(end, beyond)
-        ends.append(working.cell("end of its interval", when(working.is_level, told, kept)))
+    for sign, beyond in ((1.0, IF(few, 0.0, told)), (-1.0, IF(many, 1.0, told))):
+        end = NORM_S_DIST(live(0.0) - (read.score + read.error * (sign * INTERVAL)))
+        kept = (MIN if sign > 0 else MAX)(end, beyond)
+        ends.append(working.cell("end of its interval", IF(working.is_level, told, kept)))
     error = working.cell("its standard error in %", (ends[1] - ends[0]) * (50 / INTERVAL))
-    finest = working.cell("least of it that is told", least(told, 1 - told) * (100 * _FINEST))
-    decimals = working.cell("decimals of per cent", decimals_to(greatest(error, finest), _USUAL, most=_MOST))
+    finest = working.cell("least of it that is told", MIN(told, 1 - told) * (100 * _FINEST))
+    decimals = working.cell("decimals of per cent", decimals_to(MAX(error, finest), _USUAL, most=_MOST))
     narrow = working.cell("interval inside the last digit", decimals_to(error, 0.0, most=2 * _MOST) > decimals)
     for row, share in ((9, told), (10, ends[0]), (11, ends[1])):
-        words = joined(fixed(share * 100, decimals), " %")
-        put(sheet, row, 1, when(none, NONE, when(narrow, "–", words) if row > 9 else words), figure)  # noqa: PLR2004
-    put(sheet, 10, 2, when(narrow, "narrower than the last digit", "from the spread's standard errors"), quiet)
-    put(sheet, 12, 1, when(none, NONE, fixed(told * 1e6, decimals - _PPM_DECIMALS)), figure)
-    put(sheet, 13, 1, when(none, "–", _verdict(read.share, *ends)), figure)
-    told = when(none, _RULE, when(_settled(read.share, *ends), _RULE, "◄ the interval reaches another"))
+        words = CONCATENATE(FIXED(share * 100, decimals), " %")
+        put(sheet, row, 1, IF(none, NONE, IF(narrow, "–", words) if row > 9 else words), figure)  # noqa: PLR2004
+    put(sheet, 10, 2, IF(narrow, "narrower than the last digit", "from the spread's standard errors"), quiet)
+    put(sheet, 12, 1, IF(none, NONE, FIXED(told * 1e6, decimals - _PPM_DECIMALS)), figure)
+    put(sheet, 13, 1, IF(none, "–", _verdict(read.share, *ends)), figure)
+    told = IF(none, _RULE, IF(_settled(read.share, *ends), _RULE, "◄ the interval reaches another"))
     put(sheet, 13, 2, told, quiet)
     for word, style in (("green", "ok"), ("amber", "warning"), ("red", "error")):
         rule = {"type": "text", "criteria": "begins with", "value": word, "format": book.format(style)}
@@ -158,14 +160,14 @@ def _write_share(book: Book, sheet: Any, choice: Choice, reading: tuple[Working,
 
 def _verdict(share: Live, low: Live, high: Live) -> Live:
     """Return the verdict on a share, with a question mark where its interval reaches another one."""
-    word = when(share <= USUAL_SHARE, "green", when(share <= _AMBER, "amber", "red"))
-    return joined(word, when(_settled(share, low, high), "", "?"))
+    word = IF(share <= USUAL_SHARE, "green", IF(share <= _AMBER, "amber", "red"))
+    return CONCATENATE(word, IF(_settled(share, low, high), "", "?"))
 
 
 def _settled(share: Live, low: Live, high: Live) -> Live:
     """Return whether the whole interval of a share has the same verdict."""
-    amber = all_of(low > USUAL_SHARE, high <= _AMBER)
-    return when(share <= USUAL_SHARE, high <= USUAL_SHARE, when(share <= _AMBER, amber, low > _AMBER))
+    amber = AND(low > USUAL_SHARE, high <= _AMBER)
+    return IF(share <= USUAL_SHARE, high <= USUAL_SHARE, IF(share <= _AMBER, amber, low > _AMBER))
 
 
 def _write_figures(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:
@@ -176,7 +178,7 @@ def _write_figures(book: Book, sheet: Any, choice: Choice, working: Working, lim
         value, shown = choice.angle(heading), figure
         if heading in FIGURE_ERRORS:
             decimals = decimals_to(choice.angle(FIGURE_ERRORS[heading][0]), _USUAL, most=_USUAL)
-            value, shown = fixed(value, decimals), book.format("figure")
+            value, shown = FIXED(value, decimals), book.format("figure")
         put(sheet, row, 5, choice.told(value), shown)
         put(sheet, row, 6, choice.unit, quiet)
     _write_capability(book, sheet, choice, working, limit)
@@ -188,11 +190,11 @@ def _write_capability(book: Book, sheet: Any, choice: Choice, working: Working, 
     sheet.write_string(row, 4, "Ppk upper at this limit", book.format("label"))
     median = choice.angle("P50")
     reach = working.cell("P99.865 - P50", choice.angle("P99.865") - median)
-    has = all_of(is_number(limit), reach > 0.0)
-    capability = working.cell("Ppk upper", when(has, (limit - median) / reach, 0.0))
+    has = AND(ISNUMBER(limit), reach > 0.0)
+    capability = working.cell("Ppk upper", IF(has, (limit - median) / reach, 0.0))
     of_median, of_tail = (choice.angle(FIGURE_ERRORS[heading][0]) for heading in ("P50", "P99.865"))
     squares = ((capability - 1) * of_median) ** 2 + (capability * of_tail) ** 2
-    error = working.cell("its standard error", when(has, root(squares) / reach, 0.0))
-    told = fixed(capability, decimals_to(error, _PPK_DECIMALS, most=_PPK_DECIMALS))
-    put(sheet, row, 5, when(has, told, NONE), book.format("figure"))
+    error = working.cell("its standard error", IF(has, SQRT(squares) / reach, 0.0))
+    told = FIXED(capability, decimals_to(error, _PPK_DECIMALS, most=_PPK_DECIMALS))
+    put(sheet, row, 5, IF(has, told, NONE), book.format("figure"))
     sheet.write_string(row, 6, "ISO 22514-2", quiet)

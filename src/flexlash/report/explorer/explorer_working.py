@@ -13,8 +13,8 @@ from xlsxwriter.utility import xl_col_to_name
 
 from flexlash.report.explorer.curves_sheet import error_heading, score_heading
 from flexlash.report.explorer.explorer_choice import Choice
-from flexlash.report.formula.functions import count_up_to, entry_of, greatest, least, middle, normal_share
-from flexlash.report.formula.live import Live, fill, put, when
+from flexlash.report.formula.functions import IF, IFERROR, INDEX, MATCH, MAX, MEDIAN, MIN, NORM_S_DIST
+from flexlash.report.formula.live import Live, Range, fill, put
 from flexlash.report.layout.styles import Book
 from flexlash.tolerance.distribution_curves import CURVE_SCORES
 
@@ -55,7 +55,7 @@ class Working:
         self.errors: list[Live] = []
         for row, score in enumerate(CURVE_SCORES, start=CURVE_ROW):
             at = fill(sheet, row, COLUMN, score, self._plain)
-            put(sheet, row, COLUMN + 1, when(choice.known, normal_share(at), 0.0), self._plain)
+            put(sheet, row, COLUMN + 1, IF(choice.known, NORM_S_DIST(at), 0.0), self._plain)
             self.backlash.append(put(sheet, row, COLUMN + 2, choice.angle(score_heading(score)), self._plain))
             self.errors.append(put(sheet, row, COLUMN + 3, choice.text(error_heading(score)), self._plain))
         self.is_level = self.cell("nothing scatters", self.backlash[-1] <= self.backlash[0])
@@ -69,38 +69,39 @@ class Working:
     def read_share(self, limit: Live) -> Read:
         """Return what the curve says of the units over a limit."""
         asked = self.cell("limit asked", limit)
-        outputs = [one.number for one in self.backlash]
-        below = self.cell("percentiles up to it", count_up_to(asked, self._cells(2), outputs))
-        start = self.cell("first of the four", least(greatest(below, 2.0), float(_LAST - 2)) - 1)
-        nodes = self._four(start, 2, outputs)
-        inside = self.cell("limit within the curve", middle(self.backlash[0], asked, self.backlash[-1]))
-        cubic = self._cubic(inside, nodes, self._four(start, 0, CURVE_SCORES))
-        left = self.cell("percentile before it", least(greatest(below, 1.0), float(_LAST - 1)))
-        before, after = (entry_of(self._cells(0), place, CURVE_SCORES) for place in (left, left + 1))
-        held = middle(before, cubic, after)
+        below = self.cell("percentiles up to it", IFERROR(MATCH(asked, self._column(2), 1), 0.0))
+        start = self.cell("first of the four", MIN(MAX(below, 2.0), float(_LAST - 2)) - 1)
+        nodes = self._four(start, 2)
+        inside = self.cell("limit within the curve", MEDIAN(self.backlash[0], asked, self.backlash[-1]))
+        cubic = self._cubic(inside, nodes, self._four(start, 0))
+        left = self.cell("percentile before it", MIN(MAX(below, 1.0), float(_LAST - 1)))
+        before, after = (INDEX(self._column(0), number) for number in (left, left + 1))
+        held = MEDIAN(before, cubic, after)
         first, last = self.backlash[0], self.backlash[-1]
-        beyond = when(asked <= first, CURVE_SCORES[0], when(asked >= last, CURVE_SCORES[-1], held))
-        score = self.cell("score of the limit", when(self.is_level, 0.0, beyond))
+        beyond = IF(asked <= first, CURVE_SCORES[0], IF(asked >= last, CURVE_SCORES[-1], held))
+        score = self.cell("score of the limit", IF(self.is_level, 0.0, beyond))
         error = self.cell("its standard error", self._error_at(score, left))
-        over = when(self.is_level, when(asked < first, 1.0, 0.0), normal_share(-score))
+        over = IF(self.is_level, IF(asked < first, 1.0, 0.0), NORM_S_DIST(-score))
         return Read(score=score, error=error, share=self.cell("share over it", over))
 
     def read_output(self, wanted: Live) -> tuple[Live, Live]:
         """Return the backlash at a score, and its standard error."""
-        score = self.cell("score asked", middle(CURVE_SCORES[0], wanted, CURVE_SCORES[-1]))
-        below = count_up_to(score, self._cells(0), CURVE_SCORES)
-        left = self.cell("percentile before it", least(greatest(below, 1.0), float(_LAST - 1)))
-        start = self.cell("first of the four", least(greatest(left, 2.0), float(_LAST - 2)) - 1)
-        outputs = [one.number for one in self.backlash]
-        found = self._cubic(score, self._four(start, 0, CURVE_SCORES), self._four(start, 2, outputs))
-        rise = self._difference(2, left, outputs) / self._difference(0, left, CURVE_SCORES)
+        score = self.cell("score asked", MEDIAN(CURVE_SCORES[0], wanted, CURVE_SCORES[-1]))
+        below = IFERROR(MATCH(score, self._column(0), 1), 0.0)
+        left = self.cell("percentile before it", MIN(MAX(below, 1.0), float(_LAST - 1)))
+        start = self.cell("first of the four", MIN(MAX(left, 2.0), float(_LAST - 2)) - 1)
+        found = self._cubic(score, self._four(start, 0), self._four(start, 2))
+        rise = self._difference(2, left) / self._difference(0, left)
         return self.cell("backlash there", found), self.cell("its standard error", self._error_at(score, left) * rise)
 
-    def _cells(self, offset: int) -> str:
+    def _column(self, offset: int) -> Range:
+        """Return a column of the curve: 0 scores, 2 backlash, 3 standard errors of the scores."""
         letter = xl_col_to_name(COLUMN + offset)
-        return f"${letter}${CURVE_ROW + 1}:${letter}${CURVE_ROW + _LAST}"
+        cells = {2: self.backlash, 3: self.errors}.get(offset)
+        values = CURVE_SCORES if cells is None else [cell.number for cell in cells]
+        return Range(f"${letter}${CURVE_ROW + 1}:${letter}${CURVE_ROW + _LAST}", values)
 
-    def _four(self, start: Live, offset: int, values: Sequence[float]) -> list[Live]:
+    def _four(self, start: Live, offset: int) -> list[Live]:
         """Write four neighbours of a column, side by side, and return the references."""
         label = "backlash of the four" if offset else "scores of the four"
         self._sheet.write_string(self._next_row, _BLOCK, label, self._quiet)
@@ -110,7 +111,7 @@ class Working:
                 self._sheet,
                 self._next_row - 1,
                 _BLOCK + 1 + step,
-                entry_of(self._cells(offset), start + step if step else start, values),
+                INDEX(self._column(offset), start + step if step else start),
                 self._plain,
             )
             for step in range(4)
@@ -127,16 +128,14 @@ class Working:
             total = weight if total is None else total + weight
         if total is None:
             raise ValueError("a cubic needs points")
-        return self.cell("cubic through them", when(self.is_level, values[0], total))
+        return self.cell("cubic through them", IF(self.is_level, values[0], total))
 
     def _error_at(self, score: Live, left: Live) -> Live:
         """Return the standard error of a score, in a straight line between percentiles."""
-        errors = [one.number for one in self.errors]
-        before = entry_of(self._cells(0), left, CURVE_SCORES)
-        part = (score - before) / self._difference(0, left, CURVE_SCORES)
-        return entry_of(self._cells(3), left, errors) + part * self._difference(3, left, errors)
+        part = (score - INDEX(self._column(0), left)) / self._difference(0, left)
+        return INDEX(self._column(3), left) + part * self._difference(3, left)
 
-    def _difference(self, offset: int, left: Live, values: Sequence[float]) -> Live:
-        """Return by how much a column rises from one place to the next."""
-        cells = self._cells(offset)
-        return entry_of(cells, left + 1, values) - entry_of(cells, left, values)
+    def _difference(self, offset: int, left: Live) -> Live:
+        """Return by how much a column rises from one row to the next."""
+        column = self._column(offset)
+        return INDEX(column, left + 1) - INDEX(column, left)

@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
-__all__ = ["Live", "Operand", "Value", "call", "fill", "is_error", "joined", "live", "put", "when"]
+__all__ = ["Live", "Operand", "Range", "Value", "call", "fill", "is_error", "live", "put"]
 
 Value: TypeAlias = float | str | bool
 Operand: TypeAlias = "Live | float | str"
@@ -76,12 +76,24 @@ class Live:
         """Return whether both are the same, as Excel compares them: letter case does not count."""
         return _both(self, "=", other, _COMPARISON, operator.eq)
 
+    def followed_by(self, other: Operand) -> Live:
+        """Return the text of both, joined by Excel's sign &."""
+        return _both(self, "&", other, _TEXT, lambda text, end: f"{text}{end}")
+
     @property
     def number(self) -> float:
         """The value of an expression that is a number; raise TypeError for others."""
         if isinstance(self.value, bool) or not isinstance(self.value, int | float):
             raise TypeError(f"{self.text} is {self.value!r}, not a number")
         return float(self.value)
+
+
+@dataclass(frozen=True)
+class Range:
+    """A range of cells as a formula writes it, and what they hold; "" is a blank."""
+
+    text: str
+    values: Sequence[Value]
 
 
 def live(operand: Operand) -> Live:
@@ -111,6 +123,8 @@ def _both(one: Live, sign: str, other: Operand, kind: int, work: Callable[[Any, 
         value = failed[0]
     elif kind == _COMPARISON:
         value = work(*map(_rank, values))
+    elif kind == _TEXT:
+        value = work(*values)
     else:
         value = "#VALUE!" if any(isinstance(value, str) for value in values) else work(*values)
     # Programs differ in which power of several comes first.
@@ -150,21 +164,6 @@ def _power(one: float, two: float) -> Value:
 def call(name: str, arguments: Sequence[Operand], value: Value) -> Live:
     """Return a worksheet function of expressions with the value it has."""
     return Live(f"{name}({','.join(live(one).text for one in arguments)})", value)
-
-
-def joined(*texts: Live | str) -> Live:
-    """Return texts one after the other; `fixed` makes a text of a number."""
-    parts = [live(one) for one in texts]
-    failed = next((one.value for one in parts if is_error(one.value)), None)
-    value = "".join(str(one.value) for one in parts) if failed is None else failed
-    return Live("&".join(_within(one, _SUM) for one in parts), value, _TEXT)
-
-
-def when(condition: Live, then: Operand, otherwise: Operand) -> Live:
-    """Return one of two expressions."""
-    one, two = live(then), live(otherwise)
-    value = condition.value if is_error(condition.value) else (one if condition.value else two).value
-    return call("IF", [condition, one, two], value)
 
 
 def put(sheet: Any, row: int, column: int, what: Live, style: Any) -> Live:

@@ -7,7 +7,8 @@ from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
 
-from flexlash.report.formula.live import Live, when
+from flexlash.report.formula.functions import IF, INDEX
+from flexlash.report.formula.live import Live, Range
 from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of, merged_width
 
@@ -46,10 +47,11 @@ class Stored:
         """Return the place of a column, from 0."""
         return self._places[heading]
 
-    def cells(self, heading: str) -> str:
+    def cells(self, heading: str) -> Range:
         """Return the range of a column, the variants alone."""
         letter = xl_col_to_name(self._places[heading])
-        return f"{self.name}!${letter}${FIRST_ROW + 1}:${letter}${FIRST_ROW + len(self.rows)}"
+        values = ["" if (value := row[heading]) is None else value for row in self.rows]
+        return Range(f"{self.name}!${letter}${FIRST_ROW + 1}:${letter}${FIRST_ROW + len(self.rows)}", values)
 
     def series(self, heading: str, count: int | None = None) -> list[Any]:
         """Return a column's range as charts want it, of all variants or the first few."""
@@ -59,12 +61,10 @@ class Stored:
 
     def pick(self, place: Live, heading: str, times: Live | None = None) -> Live:
         """Return what a column holds for the variant at a place, from 1, times a factor; a blank is an empty text."""
-        value = self.rows[int(place.number) - 1][heading]
-        found = Live(f"INDEX({self.cells(heading)},{place.text})", "" if value is None else value)
-        scaled = found if times is None else found * times
-        if all(row[heading] is not None for row in self.rows):
-            return scaled
-        return when(found.equals(""), "", scaled)
+        cells = self.cells(heading)
+        entry = INDEX(cells, place)
+        scaled = entry if times is None else entry * times
+        return IF(entry.equals(""), "", scaled) if "" in cells.values else scaled
 
     def write(self, book: Book, note: str) -> None:
         """Write the sheet."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from xlsxwriter.utility import xl_rowcol_to_cell
+from xlsxwriter.utility import xl_range_abs
 
-from flexlash.report.formula.functions import elsewhere
-from flexlash.report.formula.live import Live, fill, put
+from flexlash.report.formula.functions import on_sheet
+from flexlash.report.formula.live import Live, Range, Value, fill, put
 from flexlash.report.layout.styles import Book
 from flexlash.report.trace.trace_page import SHEET, Page
 
@@ -22,13 +22,14 @@ class Block:
 
     def __init__(self, page: Page, sheet: Any, *, left: int, row: int, heads: tuple[str, str]) -> None:
         self.page, self.sheet, self.left, self.row = page, sheet, left, row + 1
+        self._table: dict[int, list[Value]] = {}
         self.book: Book = page.book
         sheet.write_string(row, left, heads[0], self.book.format("label"))
         sheet.write_string(row + 1, left, heads[1], self.book.format("quiet"))
 
     def links(self, **keys: str) -> list[Live]:
         """Write inputs, each linked to its line of Trace."""
-        return [self.entry(name, elsewhere(SHEET, self.page[key])) for name, key in keys.items()]
+        return [self.entry(name, on_sheet(SHEET, self.page[key])) for name, key in keys.items()]
 
     def entry(self, name: str, value: Live) -> Live:
         """Write a named number and return the reference to it."""
@@ -39,20 +40,24 @@ class Block:
     def heads(self, *headings: str) -> None:
         """Begin a table."""
         self.row += 1
-        for place, heading in enumerate(headings):
-            self.sheet.write_string(self.row, self.left + place, heading, self.book.format("header"))
+        self._table = {}
+        for column, heading in enumerate(headings):
+            self.sheet.write_string(self.row, self.left + column, heading, self.book.format("header"))
 
-    def cell(self, place: int, value: Live | float) -> Live:
+    def cell(self, column: int, value: Live | float) -> Live:
         """Write a cell of the current row of a table and return the reference to it."""
         if isinstance(value, Live):
-            return self._put(place, value)
-        return fill(self.sheet, self.row, self.left + place, value, self.book.format("text", "general"))
+            cell = self._put(column, value)
+        else:
+            cell = fill(self.sheet, self.row, self.left + column, value, self.book.format("text", "general"))
+        self._table.setdefault(column, []).append(cell.value)
+        return cell
 
-    def column(self, place: int, count: int) -> str:
-        """Return the range of the last rows of a table."""
-        ends = (self.row - count + 1, self.row)
-        return ":".join(xl_rowcol_to_cell(row, self.left + place, row_abs=True, col_abs=True) for row in ends)
+    def column(self, column: int) -> Range:
+        """Return a column of the table, which ends with the current row."""
+        values, place = self._table[column], self.left + column
+        return Range(xl_range_abs(self.row - len(values) + 1, place, self.row, place), values)
 
-    def _put(self, place: int, value: Live) -> Live:
+    def _put(self, column: int, value: Live) -> Live:
         style = self.book.format("text", "general")
-        return put(self.sheet, self.row, self.left + place, self.page.of_part(value, sheet=SHEET), style)
+        return put(self.sheet, self.row, self.left + column, self.page.of_part(value, sheet=SHEET), style)

@@ -12,16 +12,19 @@ from typing import Any
 from xlsxwriter.utility import xl_range_abs
 
 from flexlash.report.formula.functions import (
-    all_of,
-    any_of,
-    elsewhere,
-    entry_of,
-    is_number,
-    negation,
-    number_in,
-    place_of_first,
+    AND,
+    CONCATENATE,
+    IF,
+    IFERROR,
+    INDEX,
+    ISNUMBER,
+    MATCH,
+    NOT,
+    OR,
+    N,
+    on_sheet,
 )
-from flexlash.report.formula.live import Live, fill, joined, live, put, when
+from flexlash.report.formula.live import Live, Range, Value, fill, live, put
 from flexlash.report.trace.inputs import ENTERED
 from flexlash.report.trace.trace_page import LEFT_OUT, SHEET, Page
 from flexlash.schema.columns import VARIANTS, Column
@@ -64,25 +67,25 @@ class _Inputs:
 
     def __getitem__(self, name: str) -> Live:
         """Return the value used, 0 for none."""
-        return number_in(elsewhere(SHEET, self._page[name]))
+        return N(on_sheet(SHEET, self._page[name]))
 
     def change(self, name: str) -> Live:
         """Return the cell for a change."""
-        return elsewhere(SHEET, self._page.entries[name][1])
+        return on_sheet(SHEET, self._page.entries[name][1])
 
     def is_given(self, name: str) -> Live:
         """Return whether a number was typed or, without a change, submitted."""
-        submitted, change = (elsewhere(SHEET, cell) for cell in self._page.entries[name])
-        return any_of(is_number(change), all_of(change.equals(""), is_number(submitted)))
+        submitted, change = (on_sheet(SHEET, cell) for cell in self._page.entries[name])
+        return OR(ISNUMBER(change), AND(change.equals(""), ISNUMBER(submitted)))
 
     def is_blank(self, name: str) -> Live:
         """Return whether there is no number."""
-        return negation(self.is_given(name))
+        return NOT(self.is_given(name))
 
     def is_type(self, *names: str) -> Live:
         """Return whether the flexspline is of one of these types."""
-        used = elsewhere(SHEET, self._page["flexspline_type"])
-        return any_of(*(used.equals(name) for name in names))
+        used = on_sheet(SHEET, self._page["flexspline_type"])
+        return OR(*(used.equals(name) for name in names))
 
 
 def write_rules(page: Page, sheet: Any, top: int) -> tuple[Live, int]:
@@ -95,44 +98,45 @@ def write_rules(page: Page, sheet: Any, top: int) -> tuple[Live, int]:
     style, so = page.book.format("text"), page.book.format("figure", '"yes";;"no"')
     for row, rule in enumerate(rules, start=top + 1):
         fill(sheet, row, 0, rule.words, style)
-        put(sheet, row, 1, when(rule.broken, 1.0, 0.0), so)
+        put(sheet, row, 1, IF(rule.broken, 1.0, 0.0), so)
         put(sheet, row, 2, rule.code, page.book.format("figure"))
     last = top + len(rules)
-    cells = [xl_range_abs(top + 1, column, last, column) for column in range(RULES_WIDTH)]
+    entries: tuple[Sequence[Value], ...] = (
+        [rule.words for rule in rules],
+        [float(bool(rule.broken.value)) for rule in rules],
+        [rule.code.value for rule in rules],
+    )
+    columns = [Range(xl_range_abs(top + 1, column, last, column), values) for column, values in enumerate(entries)]
     sheet.write_string(last + 1, 0, "The first of these lines that is so; 0 for none", page.book.format("label"))
-    first = put(sheet, last + 1, 1, place_of_first(1.0, cells[1], _are_broken(rules)), page.book.format("figure"))
-    words = entry_of(cells[0], first, [rule.words for rule in rules])
-    code = entry_of(cells[2], first, [rule.code.value for rule in rules])
-    fault = put(sheet, last + 2, 0, when(first > 0, joined(words, " (", code, ")"), ""), style)
+    first = put(sheet, last + 1, 1, IFERROR(MATCH(1.0, columns[1], 0), 0.0), page.book.format("figure"))
+    words = INDEX(columns[0], first)
+    code = INDEX(columns[2], first)
+    fault = put(sheet, last + 2, 0, IF(first > 0, CONCATENATE(words, " (", code, ")"), ""), style)
     return fault, last + 2
-
-
-def _are_broken(rules: Sequence[_Rule]) -> list[float]:
-    return [float(bool(rule.broken.value)) for rule in rules]
 
 
 def _rule(code: str, words: str, *broken: Live) -> _Rule:
     """Return a rule that is broken when all conditions hold."""
-    return _Rule(words=words, broken=all_of(*broken), code=live(code))
+    return _Rule(words=words, broken=AND(*broken), code=live(code))
 
 
 def _entries(inputs: _Inputs) -> Iterator[_Rule]:
     """Yield that a change is an entry of the list, or a number within the bounds of its column."""
     change = inputs.change("flexspline_type")
-    known = any_of(*(change.equals(word) for word in ("", *TYPES)))
-    yield _rule("E209", "the type is not one of its list", negation(known))
+    known = OR(*(change.equals(word) for word in ("", *TYPES)))
+    yield _rule("E209", "the type is not one of its list", NOT(known))
     for name in inputs.names:
         column, change = ENTERED[name], inputs.change(name)
         least = column.minimum or 0.0
         below = change <= least if column.exclusive_minimum else change < least
-        wrong = below if column.maximum is None else any_of(below, change > column.maximum)
-        size = "E207" if column.maximum is None else when(below, "E207", "E208")
+        wrong = below if column.maximum is None else OR(below, change > column.maximum)
+        size = "E207" if column.maximum is None else IF(below, "E207", "E208")
         left_out = change.equals(LEFT_OUT)
-        blank = change.equals("") if name in ALWAYS else any_of(change.equals(""), left_out)
+        blank = change.equals("") if name in ALWAYS else OR(change.equals(""), left_out)
         yield _Rule(
             words=f"{_word(column)} is not {_bounds(column)}",
-            broken=all_of(negation(blank), any_of(negation(is_number(change)), wrong)),
-            code=when(is_number(change), size, when(left_out, "E201", "E202") if name in ALWAYS else "E202"),
+            broken=AND(NOT(blank), OR(NOT(ISNUMBER(change)), wrong)),
+            code=IF(ISNUMBER(change), size, IF(left_out, "E201", "E202") if name in ALWAYS else "E202"),
         )
 
 
@@ -165,11 +169,11 @@ def _belonging(inputs: _Inputs) -> Iterator[_Rule]:
 
 def _missing(inputs: _Inputs) -> Iterator[_Rule]:
     """Yield that what is needed is given, once."""
-    constants = any_of(inputs.is_blank("youngs_modulus"), inputs.is_blank("poisson_ratio"))
+    constants = OR(inputs.is_blank("youngs_modulus"), inputs.is_blank("poisson_ratio"))
     yield _rule("E322", "neither E with ν nor G is given", inputs.is_blank("shear_modulus"), constants)
     blank = inputs.is_blank("mean_radius"), inputs.is_blank("bore_diameter")
     yield _rule("E301", "neither mean radius nor bore diameter is given", *blank)
-    typed = is_number(inputs.change("mean_radius")), is_number(inputs.change("bore_diameter"))
+    typed = ISNUMBER(inputs.change("mean_radius")), ISNUMBER(inputs.change("bore_diameter"))
     yield _rule("E302", "mean radius and bore diameter are both typed", *typed)
     is_cup, is_hat = inputs.is_type("cup"), inputs.is_type("hat")
     yield _rule("E311", "a cup without a disk inner radius", is_cup, inputs.is_blank("disk_inner_radius"))

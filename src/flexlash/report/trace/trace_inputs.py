@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
-from flexlash.report.formula.functions import all_of, any_of, is_number
-from flexlash.report.formula.live import Live, Operand, fill, put, when
+from flexlash.report.formula.functions import AND, IF, ISNUMBER, OR
+from flexlash.report.formula.live import Live, Operand, Range, fill, put
 from flexlash.report.trace.inputs import ENTERED
 from flexlash.report.trace.part_rules import ALWAYS, TYPES
 from flexlash.report.trace.trace_page import CHANGE, LEFT_OUT, SUBMITTED, Page
@@ -48,7 +48,7 @@ _NAMES = {
 }
 
 
-def write_inputs(page: Page) -> str:
+def write_inputs(page: Page) -> Range:
     """Write the inputs; return the range of the cells for changes."""
     page.section("1  Inputs")
     first = page.row + 1
@@ -64,13 +64,13 @@ def write_inputs(page: Page) -> str:
         elif name == "mean_radius" and bore is not None:
             # A bore that the reader types takes the place of a submitted mean radius.
             from_bore = _otherwise(page, name)
-            given = when(any_of(submitted.equals(""), is_number(bore)), from_bore, submitted)
-            value = when(change.equals(""), given, when(change.equals(LEFT_OUT), from_bore, change))
+            given = IF(OR(submitted.equals(""), ISNUMBER(bore)), from_bore, submitted)
+            value = IF(change.equals(""), given, IF(change.equals(LEFT_OUT), from_bore, change))
         unit = column.unit if column.unit != "-" else ""
         look = _LOOKS.get(name, "size")
         page.line(name, value, (_NAMES.get(name, column.plain_name), symbol, unit, equation), look)
     change_cells = [xl_rowcol_to_cell(row, CHANGE, row_abs=True, col_abs=True) for row in (first, page.row)]
-    return ":".join(change_cells)
+    return Range(":".join(change_cells), [])
 
 
 def _write_words(page: Page) -> None:
@@ -86,7 +86,7 @@ def _write_words(page: Page) -> None:
     material = put(page.sheet, page.row + 1, SUBMITTED, page.submitted("Material"), style)
     page.line(
         "material",
-        when(material.equals(""), LEFT_OUT, material),
+        IF(material.equals(""), LEFT_OUT, material),
         ("Material", "", "", "its constants stand below"),
         "plain",
     )
@@ -122,24 +122,24 @@ def _used(page: Page, name: str, submitted: Live, change: Live) -> Live:
     if name in ALWAYS:
         return _counting(submitted, change)
     other = _otherwise(page, name)
-    entered = when(submitted.equals(""), other, submitted)
-    return when(change.equals(""), entered, when(change.equals(LEFT_OUT), other, change))
+    entered = IF(submitted.equals(""), other, submitted)
+    return IF(change.equals(""), entered, IF(change.equals(LEFT_OUT), other, change))
 
 
 def _counting(submitted: Live, change: Live) -> Live:
     """Return the change, else what was submitted, which is missing where no variant is picked."""
-    return when(change.equals(""), when(submitted.equals(""), LEFT_OUT, submitted), change)
+    return IF(change.equals(""), IF(submitted.equals(""), LEFT_OUT, submitted), change)
 
 
 def _otherwise(page: Page, name: str) -> Operand:
     """Return what a blank input stands for."""
     if name == "mean_radius":
         bore, wall = page["bore_diameter"], page["wall_thickness"]
-        has_bore = all_of(is_number(bore), bore > 0, is_number(wall))
-        return when(has_bore, (bore + wall) / 2, LEFT_OUT)
+        has_bore = AND(ISNUMBER(bore), bore > 0, ISNUMBER(wall))
+        return IF(has_bore, (bore + wall) / 2, LEFT_OUT)
     if name == "shear_modulus":
         modulus, ratio = page["youngs_modulus"], page["poisson_ratio"]
-        return when(all_of(is_number(modulus), is_number(ratio), ratio > -1), modulus / (2 * (1 + ratio)), LEFT_OUT)
+        return IF(AND(ISNUMBER(modulus), ISNUMBER(ratio), ratio > -1), modulus / (2 * (1 + ratio)), LEFT_OUT)
     same_as = {
         "disk_thickness": "wall_thickness",
         "disk_inner_radius": "mean_radius",
@@ -148,5 +148,5 @@ def _otherwise(page: Page, name: str) -> Operand:
     if name in same_as:
         return page[same_as[name]]
     if name == "disk_cone_angle":
-        return when(page.place > 0, 90.0, LEFT_OUT)
+        return IF(page.place > 0, 90.0, LEFT_OUT)
     return LEFT_OUT if name in _MAY_BE_ZERO else 0.0

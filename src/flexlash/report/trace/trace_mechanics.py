@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from flexlash.report.formula.functions import PI, all_of, is_number, logarithm, sine
-from flexlash.report.formula.live import Live, when
+from flexlash.report.formula.functions import AND, IF, ISNUMBER, LN, PI, SIN
+from flexlash.report.formula.live import Live
 from flexlash.report.trace.trace_page import Page
 from flexlash.report.trace.trace_steps import Steps, thickness_at
 
@@ -15,12 +15,12 @@ _ARCMIN = PI / 10800
 
 def only(condition: Live, value: Live) -> Live:
     """Return a number where it has a meaning, else 0, which a line shows as none."""
-    return when(condition, value, 0.0)
+    return IF(condition, value, 0.0)
 
 
 def in_disk(page: Page, value: Live) -> Live:
     """Return a number of the disk, else 0 where there is none."""
-    return when(page["profile"].equals("none"), 0.0, value)
+    return IF(page["profile"].equals("none"), 0.0, value)
 
 
 def write_shape(page: Page) -> None:
@@ -32,16 +32,16 @@ def write_shape(page: Page) -> None:
     page.line(
         "torque_over_modulus", power, ("Torque over modulus", "T/(2πG)", "mm³", "T / (2π G); N·m over GPa is mm³")
     )
-    has_power = all_of(is_number(exponent), hub > 0)
-    shaped = when(has_power, "power law", when(hub > 0, "straight taper", "even"))
+    has_power = AND(ISNUMBER(exponent), hub > 0)
+    shaped = IF(has_power, "power law", IF(hub > 0, "straight taper", "even"))
     profile = page.line(
         "profile",
-        when(page["flexspline_type"].equals("cylinder"), "none", shaped),
+        IF(page["flexspline_type"].equals("cylinder"), "none", shaped),
         ("Disk profile", "", "", "even, straight taper or power law, from t_h and n"),
         "plain",
     )
     page.line(
-        "hub_thickness", when(hub > 0, hub, edge), ("Disk thickness at r_ci", "t_1", "mm", "t_h where given, else t")
+        "hub_thickness", IF(hub > 0, hub, edge), ("Disk thickness at r_ci", "t_1", "mm", "t_h where given, else t")
     )
     straight = (edge - page["hub_thickness"]) / (outer - inner)
     words = ("Change of thickness", "k", "mm/mm", "straight taper: (t − t_h) / (r_co − r_ci)")
@@ -82,7 +82,7 @@ def write_integrals(page: Page, steps: Steps) -> None:
     _integral(page, "even", only(profile.equals("even"), _even(start, outer, thickness)), words)
     words = ("Straight taper: integral", "I_t", "∫ v dv/t with v = 1/r, see Trace steps")
     _integral(page, "taper", only(profile.equals("straight taper"), steps.taper()), words)
-    ratio = logarithm(outer / start)
+    ratio = LN(outer / start)
     growth = ("Power law: exponent of growth", "z", "", "(n − 2) ln(r_co/r_s)")
     is_power = profile.equals("power law")
     page.line("power_law_growth", only(is_power, (page["thinning_exponent"] - 2) * ratio), growth)
@@ -90,7 +90,7 @@ def write_integrals(page: Page, steps: Steps) -> None:
     _integral(page, "power_law", only(is_power, ratio * steps.growth() / (thickness * start**2)), words)
     flat = page["even_integral"] + page["taper_integral"] + page["power_law_integral"]
     words = ("Disk with its cone: integral", "I_d", "(I_e + I_t + I_p) / sin α")
-    _integral(page, "disk_body", flat / sine(page["disk_cone_angle"] * _DEGREE), words)
+    _integral(page, "disk_body", flat / SIN(page["disk_cone_angle"] * _DEGREE), words)
     hub = in_disk(page, only(page["hub_fillet_radius"] > 0, steps.hub_fillet()))
     _integral(page, "hub_fillet", hub, ("Hub fillet: integral", "I_h", points))
 

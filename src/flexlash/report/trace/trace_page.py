@@ -6,8 +6,8 @@ from typing import Any
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
-from flexlash.report.formula.functions import PI, all_of, elsewhere
-from flexlash.report.formula.live import Live, Value, put, when
+from flexlash.report.formula.functions import AND, IF, PI, on_sheet
+from flexlash.report.formula.live import Live, Value, put
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
 from flexlash.report.trace.inputs import PROGRAM
@@ -76,18 +76,18 @@ class Page:
 
     def judge(self, fault: Live) -> None:
         """Let all that follows say none where a variant is missing or the inputs have this fault; "" is none."""
-        found = when(all_of(self.place > 0, fault.equals("")), 1.0, 0.0)
+        found = IF(AND(self.place > 0, fault.equals("")), 1.0, 0.0)
         self._is_part = put(self.sheet, HEADER - 1, CHANGE, found, self.book.format("quiet", _PART_LOOK))
 
     def of_part(self, value: Live, instead: str = LEFT_OUT, sheet: str = "") -> Live:
         """Return a number, or another text where the inputs make no part; as this or another sheet writes it."""
         if self._is_part is None:
             return value
-        return when(elsewhere(SHEET, self._is_part) if sheet else self._is_part, value, instead)
+        return IF(on_sheet(SHEET, self._is_part) if sheet else self._is_part, value, instead)
 
     def submitted(self, heading: str) -> Live:
         """Return what was submitted, an empty text where that is blank or no variant is picked."""
-        return when(self.place > 0, self.stored.pick(self.place, heading), "")
+        return IF(self.place > 0, self.stored.pick(self.place, heading), "")
 
     def section(self, title: str) -> None:
         """Begin a section."""
@@ -128,9 +128,9 @@ class Page:
         """Write what the program found and how far the traced value is from it."""
         submitted = self.of_part(self.stored.pick(self.place, heading))
         found = put(self.sheet, self.row, SUBMITTED, submitted, style)
-        off = when(traced.equals(found), 0.0, 1.0) if is_word else traced / found - 1
+        off = IF(traced.equals(found), 0.0, 1.0) if is_word else traced / found - 1
         nothing = "none" if is_word else 0.0
-        difference = when(found.equals(""), when(traced.equals(nothing), "", 1.0), off)
+        difference = IF(found.equals(""), IF(traced.equals(nothing), "", 1.0), off)
         shown = put(
             self.sheet, self.row, CHANGE, self.of_part(difference, ""), self.book.format("figure", _LOOKS["difference"])
         )

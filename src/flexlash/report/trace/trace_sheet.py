@@ -11,8 +11,8 @@ from typing import Any
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
-from flexlash.report.formula.functions import PI, any_of, filled, fixed, greatest, greatest_in, least_in, place_of_name
-from flexlash.report.formula.live import Live, fill, joined, put, when
+from flexlash.report.formula.functions import CONCATENATE, COUNTA, FIXED, IF, MAX, MIN, OR, PI, match_exactly
+from flexlash.report.formula.live import Live, Range, fill, put
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.trace.trace_inputs import write_inputs
@@ -79,20 +79,19 @@ def write_trace(book: Book, sheet: Any, inputs: Stored, total: int, picked: int 
 def _pick(book: Book, sheet: Any, inputs: Stored, picked: int) -> Live:
     """Write the drop-down and return the reference to the place of the variant."""
     names = inputs.cells("Variant")
-    all_names = [str(row["Variant"]) for row in inputs.rows]
     sheet.write_string(2, 0, "Variant", book.format("label"))
     style = book.format("input")
     sheet.merge_range(2, _PICK, 2, _EQUATION - 1, "", style)
-    name = fill(sheet, 2, _PICK, all_names[picked], style)
+    name = fill(sheet, 2, _PICK, str(names.values[picked]), style)
     sheet.data_validation(2, _PICK, 2, _PICK, {
         "validate": "list",
-        "source": f"={names}",
+        "source": f"={names.text}",
         "input_title": "Variant",
         "input_message": "The whole sheet follows.",
         "error_title": "Variant",
         "error_message": "Pick a variant of the list.",
     })  # fmt: skip
-    return put(sheet, HEADER - 1, _PLACE, place_of_name(name, names, all_names), book.format("quiet", '"number "0'))
+    return put(sheet, HEADER - 1, _PLACE, match_exactly(name, names), book.format("quiet", '"number "0'))
 
 
 def _hide_unreal(page: Page) -> None:
@@ -104,19 +103,20 @@ def _hide_unreal(page: Page) -> None:
         page.sheet.conditional_format(page.row + 1, column, page.row + _LINES_BELOW, column, rule)
 
 
-def _write_verdict(page: Page, changes: str) -> Live:
+def _write_verdict(page: Page, changes: Range) -> Live:
     """Write how far the trace is from the program; return it in words."""
     page.section("7  Agreement with the program")
     first, last = min(page.rows[key] for key in page.rows if key.endswith("_windup")), page.row
     cells = ":".join(xl_rowcol_to_cell(row, CHANGE, row_abs=True, col_abs=True) for row in (first, last))
     differences = [value for value in page.differences if isinstance(value, float)]
-    off = greatest(greatest_in(cells, differences), -least_in(cells, differences))
+    beside = Range(cells, differences)
+    off = MAX(MAX(beside), -MIN(beside))
     words = ("Greatest relative difference", "", "", "of the lines that have a value of the program")
     largest = page.line("difference", off, words, "difference")
-    verdict = when(largest <= AGREEMENT, AGREES, _DIFFERS)
+    verdict = IF(largest <= AGREEMENT, AGREES, _DIFFERS)
     return page.line(
         "verdict",
-        when(filled(changes, []) > 0, CHANGED, verdict),
+        IF(COUNTA(changes) > 0, CHANGED, verdict),
         ("Verdict", "", "", "traced numbers beside the program's"),
         "plain",
     )
@@ -125,8 +125,8 @@ def _write_verdict(page: Page, changes: str) -> Live:
 def _write_headline(page: Page, fault: Live, verdict: Live) -> None:
     """Write the backlash beside the drop-down, or why there is none."""
     backlash = page["backlash"]
-    found = joined("◄ backlash ", fixed(backlash / (PI / 10800), 4), "′, ", verdict)
-    is_unreal = any_of(backlash <= _LEAST, backlash >= _MOST)
-    told = when(fault.equals(""), when(is_unreal, UNREAL, found), joined(NO_PART, fault))
-    said = when(page.place.equals(0.0), NOT_LISTED, told)
+    found = CONCATENATE("◄ backlash ", FIXED(backlash / (PI / 10800), 4), "′, ", verdict)
+    is_unreal = OR(backlash <= _LEAST, backlash >= _MOST)
+    told = IF(fault.equals(""), IF(is_unreal, UNREAL, found), CONCATENATE(NO_PART, fault))
+    said = IF(page.place.equals(0.0), NOT_LISTED, told)
     put(page.sheet, HEADER - 2, _EQUATION, said, page.book.format("label"))

@@ -8,23 +8,23 @@ from flexlash.mechanics.fillets import ARC_RULE, GRADED_RULE, JUNCTION_RULE, UNL
 from flexlash.mechanics.strength import PASSES, STATIONS
 from flexlash.mechanics.windup import NEARLY, TAPER_PLACES, TAPER_WEIGHTS
 from flexlash.report.formula.functions import (
+    ABS,
+    COS,
+    EXP,
+    IF,
+    INDEX,
+    LN,
+    MATCH,
+    MAX,
+    MIN,
+    OR,
     PI,
-    any_of,
-    cosine,
-    elsewhere,
-    entry_of,
-    exponential,
-    greatest,
-    greatest_in,
-    least,
-    logarithm,
-    magnitude,
-    place_of_greatest,
-    root,
-    sine,
-    total,
+    SIN,
+    SQRT,
+    SUM,
+    on_sheet,
 )
-from flexlash.report.formula.live import Live, Operand, live, when
+from flexlash.report.formula.live import Live, Operand, live
 from flexlash.report.trace.blocks import Block
 from flexlash.report.trace.part_rules import RULES_WIDTH, write_rules
 from flexlash.report.trace.trace_page import Page
@@ -63,7 +63,7 @@ class Steps:
         """Write what the inputs must be to make a part; return the first that they are not, else an empty text."""
         said, last = write_rules(self.page, self.sheet, _TITLE_ROW)
         self.sheet.print_area(0, 0, last, RULES_WIDTH - 1)
-        return elsewhere(STEPS, said)
+        return on_sheet(STEPS, said)
 
     def _block(self, left: int, title: str, formula: str, row: int = _TITLE_ROW) -> Block:
         return Block(self.page, self.sheet, left=left, row=row, heads=(title, formula))
@@ -77,25 +77,22 @@ class Steps:
         )
         radius, wall, fillet = block.links(r_m="mean_radius", Δ="wall_thickness", R_j="junction_fillet_radius")
         block.heads("cos p", "weight w", "a", "r", "w cos p/(r³ t)")
-        summands = []
         for _, cosine_, weight_ in JUNCTION_RULE:
             block.row += 1
             turn, weight = block.cell(0, cosine_), block.cell(1, weight_)
             added = block.cell(2, fillet * (1 - turn))
             middle = block.cell(3, radius - added / 2)
-            summands.append(block.cell(4, weight * turn / (middle**3 * (wall + added))).number)
-        usual = block.entry(
-            f"{len(summands)} points: R × sum", fillet * total(block.column(4, len(summands)), summands)
-        )
+            block.cell(4, weight * turn / (middle**3 * (wall + added)))
+        usual = block.entry(f"{len(JUNCTION_RULE)} points: R × sum", fillet * SUM(block.column(4)))
 
         def height_at(along: Live, _: Live) -> Live:
             added = block.cell(3, added_by(fillet, along))
             return 1 / ((radius - added / 2) ** 3 * (wall + added))
 
-        thin = block.entry("Thin end: width of m", root(wall / (wall + 2 * fillet)))
+        thin = block.entry("Thin end: width of m", SQRT(wall / (wall + 2 * fillet)))
         ends = graded(block, (thin, live(1.0)), ("a",), height_at)
-        taken = when(fillet > WIDE * wall, fillet * (ends[0] + ends[1]), usual)
-        return elsewhere(STEPS, block.entry(f"Taken (graded if R > {WIDE:g} Δ)", taken))
+        taken = IF(fillet > WIDE * wall, fillet * (ends[0] + ends[1]), usual)
+        return on_sheet(STEPS, block.entry(f"Taken (graded if R > {WIDE:g} Δ)", taken))
 
     def hub_fillet(self) -> Live:
         """Return the integral of the hub fillet [1/mm³]."""
@@ -106,16 +103,13 @@ class Steps:
         )
         fillet, inner, *profile = block.links(R_h="hub_fillet_radius", **_PROFILE)
         block.heads("sin q", "cos q", "weight w", "r", "t", "w sin q/(r³ t)")
-        summands = []
         for sine_, cosine_, weight_ in ARC_RULE:
             block.row += 1
             rise, turn, weight = (block.cell(place, one) for place, one in enumerate((sine_, cosine_, weight_)))
             radius = block.cell(3, inner + fillet * (1 - turn))
             thickness = block.cell(4, thickness_at(radius, inner, *profile) + fillet * (1 - rise))
-            summands.append(block.cell(5, weight * rise / (radius**3 * thickness)).number)
-        usual = block.entry(
-            f"{len(summands)} points: R × sum", fillet * total(block.column(5, len(summands)), summands)
-        )
+            block.cell(5, weight * rise / (radius**3 * thickness))
+        usual = block.entry(f"{len(ARC_RULE)} points: R × sum", fillet * SUM(block.column(5)))
         last = block.entry("t_e = t at r_ci + R", thickness_at(inner + fillet, inner, *profile))
 
         def height_at(along: Live, back: Live) -> Live:
@@ -125,10 +119,10 @@ class Steps:
 
         ends = graded(block, _hub_widths(block, fillet, inner, profile, last), ("r", "t"), height_at)
         first = profile[0]
-        unlike = any_of(fillet > UNLIKE * inner, greatest(first, last) > UNLIKE * least(first, last))
-        steep = any_of(fillet > WIDE * least(first, last), unlike)
+        unlike = OR(fillet > UNLIKE * inner, MAX(first, last) > UNLIKE * MIN(first, last))
+        steep = OR(fillet > WIDE * MIN(first, last), unlike)
         words = f"Taken (graded if R > {WIDE:g} t or {UNLIKE:g} r_ci, or t_1, t_e unlike)"
-        return elsewhere(STEPS, block.entry(words, when(steep, fillet * (ends[0] + ends[1]), usual)))
+        return on_sheet(STEPS, block.entry(words, IF(steep, fillet * (ends[0] + ends[1]), usual)))
 
     def taper(self) -> Live:
         """Return the integral of a disk that thins in a straight line [1/mm³]."""
@@ -140,36 +134,34 @@ class Steps:
         reach = block.entry("v_s − v_o", high - low)
         first, last = block.entry("t_o v_o", low * outer_thickness), block.entry("t_s v_s", high * inner_thickness)
         growth = block.entry("t_s v_s − t_o v_o", last - first)
-        nearly = magnitude(growth) < NEARLY * first
-        intercept = block.entry("a (1: not used)", when(nearly, 1.0, growth / reach))
+        nearly = ABS(growth) < NEARLY * first
+        intercept = block.entry("a (1: not used)", IF(nearly, 1.0, growth / reach))
         slope = block.entry("b/a", (inner_thickness - intercept) / (start * intercept))
-        bracket = reach * ((high + low) / 2 - slope) + slope**2 * logarithm(last / first)
+        bracket = reach * ((high + low) / 2 - slope) + slope**2 * LN(last / first)
         closed = block.entry("Closed form", bracket / intercept)
-        summands = []
         block.heads("place u", "weight w", "v", "w v²/(v t)")
         for place_, weight_ in zip(TAPER_PLACES.tolist(), TAPER_WEIGHTS.tolist(), strict=True):
             block.row += 1
             place, weight = block.cell(0, place_), block.cell(1, weight_)
             curvature = block.cell(2, low + reach * place)
-            summands.append(block.cell(3, weight * curvature**2 / (first + growth * place)).number)
-        points = block.entry("By points", reach * total(block.column(3, len(summands)), summands))
+            block.cell(3, weight * curvature**2 / (first + growth * place))
+        points = block.entry("By points", reach * SUM(block.column(3)))
         self._below = block.row + 3
-        return elsewhere(STEPS, block.entry("Taken (points: t ~ r)", when(nearly, points, closed)))
+        return on_sheet(STEPS, block.entry("Taken (points: t ~ r)", IF(nearly, points, closed)))
 
     def growth(self) -> Live:
         """Return (e^z − 1)/z, by which a disk that thins with a power of the radius differs from n = 2 [-]."""
         block = self._block(_DISK, "Power law: (e^z − 1)/z", "∫ e^(z u) du, u from 0 to 1", self._below)
         (exponent,) = block.links(z="power_law_growth")
-        summands = []
         block.heads("place u", "weight w", "w e^(z u)")
         for place_, weight_ in zip(TAPER_PLACES.tolist(), TAPER_WEIGHTS.tolist(), strict=True):
             block.row += 1
             place, weight = block.cell(0, place_), block.cell(1, weight_)
-            summands.append(block.cell(2, weight * exponential(exponent * place)).number)
-        points = block.entry("By points", total(block.column(2, len(summands)), summands))
-        closed = (exponential(exponent) - 1) / exponent
-        taken = when(magnitude(exponent) < _STEEP, points, closed)
-        return elsewhere(STEPS, block.entry("Taken (points: |z| < 1)", taken))
+            block.cell(2, weight * EXP(exponent * place))
+        points = block.entry("By points", SUM(block.column(2)))
+        closed = (EXP(exponent) - 1) / exponent
+        taken = IF(ABS(exponent) < _STEEP, points, closed)
+        return on_sheet(STEPS, block.entry("Taken (points: |z| < 1)", taken))
 
     def hub_fillet_shear(self) -> tuple[Live, Live]:
         """Return the greatest shear stress in the hub fillet [MPa] and the radius where it acts [mm]."""
@@ -181,41 +173,39 @@ class Steps:
         torque, fillet_radius, outer, inner, *profile = block.links(
             T="torque", R_h="hub_fillet_radius", r_co="disk_outer_radius", **_PROFILE
         )
-        fillet = block.entry("R = R_h, at most r_co − r_ci", least(fillet_radius, outer - inner))
+        fillet = block.entry("R = R_h, at most r_co − r_ci", MIN(fillet_radius, outer - inner))
         low, high = block.entry("from place", live(0.0)), block.entry("to place", live(1.0))
         for number in range(1, PASSES + 1):
-            places, radii, stresses = [], [], []
             block.heads("place 2q/π", "r", "t", "T/(2π r² t)")
             for station in range(STATIONS):
                 block.row += 1
-                places.append(block.cell(0, low + (high - low) * (station / live(STATIONS - 1.0))))
-                angle = places[-1] * PI / 2
-                radii.append(block.cell(1, inner + fillet * (1 - cosine(angle))))
-                thickness = block.cell(2, thickness_at(radii[-1], inner, *profile) + fillet * (1 - sine(angle)))
-                stresses.append(block.cell(3, shear(torque, radii[-1], thickness)))
-            cells = [block.column(place, STATIONS) for place in range(4)]
-            values = [one.number for one in stresses]
-            best = block.entry(f"best of pass {number}", place_of_greatest(cells[3], values))
+                fraction = block.cell(0, low + (high - low) * (station / live(STATIONS - 1.0)))
+                angle = fraction * PI / 2
+                radius = block.cell(1, inner + fillet * (1 - COS(angle)))
+                thickness = block.cell(2, thickness_at(radius, inner, *profile) + fillet * (1 - SIN(angle)))
+                block.cell(3, shear(torque, radius, thickness))
+            fractions, radii, _, stresses = (block.column(column) for column in range(4))
+            best = block.entry(f"best of pass {number}", MATCH(MAX(stresses), stresses, 0))
             if number < PASSES:
-                centre, step = entry_of(cells[0], best, [one.value for one in places]), (high - low) / (STATIONS - 1)
+                centre, step = INDEX(fractions, best), (high - low) / (STATIONS - 1)
                 low, high = (
-                    block.entry("from place", greatest(centre - step, 0.0)),
-                    block.entry("to place", least(centre + step, 1.0)),
+                    block.entry("from place", MAX(centre - step, 0.0)),
+                    block.entry("to place", MIN(centre + step, 1.0)),
                 )
-        found = block.entry("Greatest shear", greatest_in(cells[3], values))
-        radius = block.entry("at radius", entry_of(cells[1], best, [one.value for one in radii]))
-        return elsewhere(STEPS, found), elsewhere(STEPS, radius)
+        found = block.entry("Greatest shear", MAX(stresses))
+        radius = block.entry("at radius", INDEX(radii, best))
+        return on_sheet(STEPS, found), on_sheet(STEPS, radius)
 
 
 def _hub_widths(block: Block, fillet: Live, inner: Live, profile: Sequence[Live], last: Live) -> tuple[Live, Live]:
     """Write over which widths of m the hub fillet's integrand changes, at its thin end and at its steep one."""
-    even = block.entry("Thin end: w_1 of an even disk", root(last / (last + 2 * fillet)))
+    even = block.entry("Thin end: w_1 of an even disk", SQRT(last / (last + 2 * fillet)))
     radius = inner + fillet * (1 - even / 2) ** 2 / (1 + (even / 2) ** 2)
-    rise = block.entry("(t − t_e)/w_1 at m = w_1/2", greatest(thickness_at(radius, inner, *profile) - last, 0.0) / even)
-    thin = block.entry("Thin end: width of m", last / (last + rise + root(rise**2 + 2 * fillet * last)))
+    rise = block.entry("(t − t_e)/w_1 at m = w_1/2", MAX(thickness_at(radius, inner, *profile) - last, 0.0) / even)
+    thin = block.entry("Thin end: width of m", last / (last + rise + SQRT(rise**2 + 2 * fillet * last)))
     whole = profile[0] + fillet
-    share = least(inner / (inner + fillet / 2), whole / (whole + magnitude(last - profile[0]) / 2))
-    return thin, block.entry("Steep end: width of 1 − m", root(share))
+    share = MIN(inner / (inner + fillet / 2), whole / (whole + ABS(last - profile[0]) / 2))
+    return thin, block.entry("Steep end: width of 1 − m", SQRT(share))
 
 
 def graded(
@@ -225,21 +215,19 @@ def graded(
     sums = []
     for end, width in zip(("m", "1 − m"), widths, strict=True):
         half = 0.5 / width
-        reach = block.entry(f"v at {end} = 1/2, {end} = width sinh v", logarithm(half + root(half**2 + 1)))
+        reach = block.entry(f"v at {end} = 1/2, {end} = width sinh v", LN(half + SQRT(half**2 + 1)))
         block.heads("place u", "weight w", end, *heads, "summand")
-        summands = []
         for place_, weight_ in GRADED_RULE:
             block.row += 1
             place, weight = block.cell(0, place_), block.cell(1, weight_)
-            growth, decay = exponential(reach * place), exponential(-(reach * place))
+            growth, decay = EXP(reach * place), EXP(-(reach * place))
             near = block.cell(2, width * (growth - decay) / 2)
             along, back = (near, 1 - near) if end == "m" else (1 - near, near)
             height = height_at(along, back)
             pace = weight * reach * width * (growth + decay) / 2
             arc = 2 * back * (1 + along) / (1 + along**2) ** 2
-            summands.append(block.cell(3 + len(heads), pace * arc * height).number)
-        cells = block.column(3 + len(heads), len(summands))
-        sums.append(block.entry(f"Sum up to {end} = 1/2", total(cells, summands)))
+            block.cell(3 + len(heads), pace * arc * height)
+        sums.append(block.entry(f"Sum up to {end} = 1/2", SUM(block.column(3 + len(heads)))))
     return sums[0], sums[1]
 
 
