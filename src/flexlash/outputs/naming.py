@@ -1,4 +1,4 @@
-"""What outputs are called: a place in the plan for each submission's report, marked copy and mended file."""
+"""Submissions and OUT → the planned output of each: its report, its marked copy or its fixed copy."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def template_output(output: Path | None, old: Path | None, *, force: bool) -> Ou
         raise ValueError(f"A template is a workbook: -o must end in .xlsx, not {target.name}.")
     claimed = plan.claim(target, named=True, forced=True)
     if claimed.path != target:
-        raise ValueError(f"{target} cannot be written: {plan.in_the_way(target, named=True)}. Choose another -o.")
+        raise ValueError(f"{target} cannot be written: {plan.obstacle(target, named=True)}. Choose another -o.")
     if os.path.lexists(target) and not force:
         raise ValueError(f"{target} exists and may be filled; choose another -o, or --force.")
     return claimed
@@ -134,11 +134,11 @@ def _claims(plan: Plan, submissions: Sequence[Path], folder: Path | None, name: 
     What seems to be of our own making comes last: as a rule it is skipped, and it takes no name from a submission.
     """
     claimed: dict[int, Output] = {}
-    for place in sorted(range(len(submissions)), key=lambda place: is_made_by_name(submissions[place])):
-        path = submissions[place]
+    for index in sorted(range(len(submissions)), key=lambda index: is_made_by_name(submissions[index])):
+        path = submissions[index]
         # Not with_name: `.` and `/` have no name; reading them says that they are folders.
-        claimed[place] = plan.claim((path.parent if folder is None else folder) / name(path))
-    return [claimed[place] for place in range(len(submissions))]
+        claimed[index] = plan.claim((path.parent if folder is None else folder) / name(path))
+    return [claimed[index] for index in range(len(submissions))]
 
 
 def _require_name(output: Path) -> None:

@@ -1,8 +1,9 @@
-"""Where files go, once for all: planned before anything is computed, numbered, stamped, written whole or not at all.
+"""Where files go: planned before anything is computed, numbered, stamped, written whole or not at all.
 
-Nothing of the user's is overwritten. A file at the place of an output is replaced only if flexlash wrote it and nobody
-has changed it since, which its stamp says (`stamps.py`); whatever else stands there is left alone, never followed,
-opened for writing or waited for, and the output gets ` (2)`. What a command is given to read is never an output.
+Nothing of the user's is overwritten. A file that has the name of an output is replaced only if flexlash wrote it and
+nobody has changed it since, which its stamp says (`stamps.py`); whatever else has that name is left alone, never
+followed, opened for writing or waited for, and the output gets ` (2)`. What a command is given to read is never an
+output.
 """
 
 from __future__ import annotations
@@ -12,19 +13,24 @@ import csv
 import errno
 import os
 import stat
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import chain, islice
 from pathlib import Path
 
 from flexlash.outputs.writing import put_new, remove_leftovers, replace, temporary
 from flexlash.reading.products import is_replaced, results_header
 from flexlash.schema.findings import shown
 from flexlash.schema.stamps import stamp_at, stamped
+from flexlash.schema.unused_names import numbered_names
 
 __all__ = ["Output", "Plan", "Written"]
 
 _KINDS = {stat.S_IFLNK: "it is a link", stat.S_IFDIR: "it is a folder", stat.S_IFIFO: "it is a pipe"}
-_COPIES = 10_000
+_INPUT = "it is one of the files given to flexlash"
+_COPIES = 9_999
+"""Files of one name, numbered, beyond which none is written."""
+
 _TRIES = 3
 _LONGEST_HEADER = 2**16
 """How much of a table is read to see whether its header row is one of ours [bytes]."""
@@ -43,7 +49,7 @@ class Written:
 
 @dataclass(kw_only=True)
 class Plan:
-    """The files that a command is given, `inputs`, and those that it will write; none takes the place of another.
+    """The files that a command is given, `inputs`, and those that it will write; none replaces another.
 
     `submissions` are those of the inputs that are skipped where flexlash itself wrote them; a skipped file may be
     replaced by its successor.
@@ -57,11 +63,9 @@ class Plan:
     cleaned: set[Path] = field(default_factory=set)
 
     known: dict[Identity, set[Path]] = field(init=False)
-    skippable: dict[Identity, set[Path]] = field(init=False)
 
     def __post_init__(self) -> None:
         self.known = _by_identity(self.inputs)
-        self.skippable = _by_identity(self.submissions)
 
     def claim(self, wanted: Path, *, named: bool = False, forced: bool = False) -> Output:
         """Return where an output goes that should be called so; `named` says that the user has chosen this name.
@@ -76,11 +80,11 @@ class Plan:
             raise ValueError(f"{wanted} cannot hold two outputs; give each a name of its own.")
         try:
             self._prepare(wanted.parent)
-            place = next(self._places(wanted, named=named, forced=forced))
+            path = next(path for path in self.unclaimed(wanted) if not self.obstacle(path, named=named, forced=forced))
         except OSError as fault:
             return Output(plan=self, wanted=wanted, path=wanted, fault=_of_output(fault, wanted))
-        self.claimed.add(_full(place))
-        return Output(plan=self, wanted=wanted, path=place, named=named, forced=forced)
+        self.claimed.add(_full(path))
+        return Output(plan=self, wanted=wanted, path=path, named=named, forced=forced)
 
     def refuse_input(self, wanted: Path) -> None:
         """Raise ValueError when a path that the user names leads to one of the inputs."""
@@ -94,35 +98,26 @@ class Plan:
             remove_leftovers(folder)
             self.cleaned.add(folder)
 
-    def _places(self, wanted: Path, *, named: bool, forced: bool) -> Iterator[Path]:
-        """Yield the places, numbered from the wanted one on, at which an output of this name may stand."""
-        for place in _numbered(wanted):
-            if _full(place) in self.claimed or self.is_input(place):
-                continue
-            if not self.in_the_way(place, named=named, forced=forced):
-                yield place
+    def unclaimed(self, wanted: Path) -> Iterator[Path]:
+        """Yield the paths that no output of this plan has, numbered from the wanted one on.
 
-    def is_input(self, place: Path) -> bool:
-        """Whether a place is that of an input, by whatever name, unless that is a file of ours that will be skipped."""
-        mine = _identities(place)
-        inputs, skippable = (_of(known, mine) for known in (self.known, self.skippable))
-        if not inputs:
-            return False
-        if inputs - skippable:
-            return True
-        others = [path for path in self.submissions if path not in skippable]
-        with contextlib.suppress(OSError):
-            role = stamp_at(place)
-            return not is_replaced(role, min(skippable), others, marked_copies=self.marked_copies)
-        return True
+        Raises FileExistsError after ten thousand.
+        """
+        stem, ending = wanted.stem, wanted.suffix
+        names = numbered_names(wanted.name, numbered=lambda number: f"{stem} ({number}){ending}")
+        paths = (wanted.with_name(name) for name in islice(names, _COPIES))
+        yield from (path for path in paths if _full(path) not in self.claimed)
+        raise FileExistsError(errno.EEXIST, "too many files of this name", str(wanted))
 
-    def in_the_way(self, place: Path, *, named: bool, forced: bool = False, data: bytes | None = None) -> str:
-        """Return why what stands at a place is left alone, an empty text where nothing is or flexlash may replace it.
+    def obstacle(self, path: Path, *, named: bool, forced: bool = False, data: bytes | None = None) -> str:
+        """Return why what has a path is left alone, an empty text where nothing has it or flexlash may replace it.
 
         `data` is what is to be written there; without it, a table that may be the same is no obstacle yet.
         """
+        if self._is_input(path):
+            return _INPUT
         try:
-            status = place.lstat()
+            status = path.lstat()
         except FileNotFoundError:
             return ""
         if not stat.S_ISREG(status.st_mode):
@@ -130,15 +125,27 @@ class Plan:
         if (status.st_dev, status.st_ino) in self.written:
             return "it was written a moment ago"
         try:
-            may_go = forced or _is_ours(place, data, named=named)
+            may_go = forced or _is_ours(path, data, named=named)
         except OSError:
             return "it cannot be read"
         return "" if may_go else "flexlash did not write it, or somebody has changed it"
 
+    def _is_input(self, path: Path) -> bool:
+        """Whether a path is that of an input, by whatever name, unless that is a file of ours that will be skipped."""
+        inputs = {given for identity in _identities(path) for given in self.known.get(identity, ())}
+        if not inputs:
+            return False
+        if not inputs <= {*self.submissions}:
+            return True
+        others = [given for given in self.submissions if given not in inputs]
+        with contextlib.suppress(OSError):
+            return not is_replaced(stamp_at(path), min(inputs), others, marked_copies=self.marked_copies)
+        return True
+
 
 @dataclass(frozen=True, kw_only=True)
 class Output:
-    """A planned output: the name that it should have, and the place that it gets."""
+    """A planned output: the name that it should have, and the path that it gets."""
 
     plan: Plan
     wanted: Path
@@ -175,79 +182,58 @@ class Output:
         raise AssertionError
 
     def _write(self, data: bytes) -> Written:
-        why = self._obstacle()
+        reason = self._known_obstacle()
         with temporary(self.path.parent, data) as file:
-            for place in self._candidates():
-                obstacle = self._put(file, place, data)
-                if not obstacle:
-                    status = place.stat()
-                    self.plan.written.add((status.st_dev, status.st_ino))
-                    return Written(path=place, remark=self._remark(why, place))
-                why = why or obstacle
-        raise FileExistsError(errno.EEXIST, "too many files of this name", str(self.wanted))
+            # The planned path first, then those that are free should something have come in its way.
+            paths = chain([self.path], self.plan.unclaimed(self.wanted))
+            while obstacle := self._put(file, path := next(paths), data):
+                reason = reason or obstacle
+            status = path.stat()
+        self.plan.written.add((status.st_dev, status.st_ino))
+        return Written(path=path, remark=self._remark(reason, path))
 
-    def _obstacle(self) -> str:
+    def _known_obstacle(self) -> str:
         """Return why the output does not get the name that it should have, where a file is the reason."""
         if self.path == self.wanted or _full(self.wanted) in self.plan.claimed:
             return ""
-        if self.plan.is_input(self.wanted):
-            return "it is one of the files given to flexlash"
-        return self.plan.in_the_way(self.wanted, named=self.named)
+        return self.plan.obstacle(self.wanted, named=self.named)
 
-    def _candidates(self) -> Iterator[Path]:
-        """Yield the planned place, then those that are free should something have come in its way."""
-        yield self.path
-        yield from (place for place in _numbered(self.wanted) if _full(place) not in self.plan.claimed)
-
-    def _put(self, file: Path, place: Path, data: bytes) -> str:
-        """Put the file in a place; return what is in the way, an empty text when it was put there."""
-        if put_new(file, place):
+    def _put(self, file: Path, path: Path, data: bytes) -> str:
+        """Give a temporary file its path; return what is in the way, an empty text when it was put there."""
+        if put_new(file, path):
             return ""
-        before = place.lstat()
-        if self.plan.is_input(place):
-            return "it is one of the files given to flexlash"
-        named = self.named and place == self.wanted
-        if obstacle := self.plan.in_the_way(place, named=named, forced=self.forced, data=data):
+        before = path.lstat()
+        named = self.named and path == self.wanted
+        if obstacle := self.plan.obstacle(path, named=named, forced=self.forced, data=data):
             return obstacle
-        return "" if replace(file, place, before) else "another program holds it open"
+        return "" if replace(file, path, before) else "another program holds it open"
 
-    def _remark(self, why: str, place: Path) -> str:
-        if not why:
+    def _remark(self, reason: str, path: Path) -> str:
+        if not reason:
             return ""
-        return f"{shown(self.wanted, 4096)} was left alone: {why}. Written instead: {shown(place.name, 255)}"
-
-
-def _numbered(wanted: Path) -> Iterator[Path]:
-    """Yield a path, then the same with ` (2)`, ` (3)` behind its name."""
-    yield wanted
-    yield from (wanted.with_name(f"{wanted.stem} ({copy}){wanted.suffix}") for copy in range(2, _COPIES))
-    raise FileExistsError(errno.EEXIST, "too many files of this name", str(wanted))
+        return f"{shown(self.wanted, 4096)} was left alone: {reason}. Written instead: {shown(path.name, 255)}"
 
 
 def _full(path: Path) -> str:
-    """Return the whole path of a place, links among its folders resolved, one at the place itself not."""
+    """Return the whole path of a file, links among its folders resolved, the file itself not if it is one."""
     return os.path.normcase(os.path.join(os.path.realpath(path.parent), path.name))  # noqa: PTH118
 
 
 def _identities(path: Path) -> set[Identity]:
     """Return what tells a file from others, whatever it is called: its whole path and, where it exists, its number."""
-    found: set[Identity] = {_full(path), os.path.normcase(os.path.realpath(path))}
+    identities: set[Identity] = {_full(path), os.path.normcase(os.path.realpath(path))}
     with contextlib.suppress(OSError, ValueError):
         status = path.stat()
-        found |= {(status.st_dev, status.st_ino)} if status.st_ino else set()
-    return found
+        identities |= {(status.st_dev, status.st_ino)} if status.st_ino else set()
+    return identities
 
 
 def _by_identity(paths: Iterable[Path]) -> dict[Identity, set[Path]]:
-    found: dict[Identity, set[Path]] = {}
+    known: dict[Identity, set[Path]] = {}
     for path in paths:
         for identity in _identities(path):
-            found.setdefault(identity, set()).add(path)
-    return found
-
-
-def _of(known: Mapping[Identity, set[Path]], mine: Iterable[Identity]) -> set[Path]:
-    return {path for identity in mine for path in known.get(identity, ())}
+            known.setdefault(identity, set()).add(path)
+    return known
 
 
 def _require_folder(folder: Path) -> None:
@@ -277,18 +263,18 @@ def _of_output(fault: OSError, path: Path) -> OSError:
     return OSError(fault.errno or errno.EIO, words, str(path))
 
 
-def _is_ours(place: Path, data: bytes | None, *, named: bool) -> bool:
+def _is_ours(path: Path, data: bytes | None, *, named: bool) -> bool:
     """Whether flexlash wrote a file and nobody has changed it; of a table, whether it is of our making or the same.
 
     Raises OSError when it cannot be read.
     """
-    if place.suffix.lower() != ".csv":
-        return bool(stamp_at(place))
+    if path.suffix.lower() != ".csv":
+        return bool(stamp_at(path))
     if data is None:
         return True
-    with place.open("rb") as file:
+    with path.open("rb") as file:
         beginning = file.read(_LONGEST_HEADER)
-        same = data is not None and place.lstat().st_size == len(data) and beginning + file.read() == data
+        same = path.lstat().st_size == len(data) and beginning + file.read() == data
     return same or (named and _has_our_header(beginning))
 
 

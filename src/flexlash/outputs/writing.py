@@ -1,4 +1,4 @@
-"""A file put in its place whole or not at all, by way of a temporary one beside it; and what killed runs left behind.
+"""Bytes → a file, whole or not at all, by way of a temporary file beside it; and what killed runs left is removed.
 
 While its writer lives, a temporary file is locked (`flock`); a later run removes those that nobody holds. Windows has
 no such lock, but does not let go of a file that is open.
@@ -34,7 +34,7 @@ _TRIES = 100
 
 @contextlib.contextmanager
 def temporary(folder: Path, data: bytes) -> Iterator[Path]:
-    """Yield a temporary file with these bytes, safe on the disk, to be put in its place; what is left is removed."""
+    """Yield a temporary file with these bytes, safe on the disk, to be given its path; what is left is removed."""
     path, handle = _created(folder)
     try:
         with os.fdopen(handle, "wb", closefd=False) as file:
@@ -104,47 +104,47 @@ def _remove_unheld(path: Path) -> None:
         os.close(handle)
 
 
-def put_new(temporary_file: Path, place: Path) -> bool:
-    """Put a temporary file in a place where nothing stands; return False, and do nothing, where something does."""
+def put_new(temporary_file: Path, path: Path) -> bool:
+    """Give a temporary file a path that nothing has; return False, and do nothing, where something has it."""
     try:
         if _HOLDS_OPEN_FILES:
-            temporary_file.rename(place)
+            temporary_file.rename(path)
         else:
-            _link(temporary_file, place)
+            _link(temporary_file, path)
     except FileExistsError:
         return False
-    _sync_folder(place.parent)
+    _sync_folder(path.parent)
     return True
 
 
-def _link(temporary_file: Path, place: Path) -> None:
+def _link(temporary_file: Path, path: Path) -> None:
     """Give the file its name, which fails where the name is taken; the temporary name goes later."""
     try:
-        place.hardlink_to(temporary_file)
+        path.hardlink_to(temporary_file)
     except OSError as fault:
         if fault.errno not in _NO_LINKS or isinstance(fault, FileExistsError):
             raise
-        # An empty file holds the place until the whole one takes it.
-        os.close(os.open(place, os.O_CREAT | os.O_EXCL | os.O_WRONLY | _OPENED, 0o666))
+        # An empty file holds the name until the whole one takes it.
+        os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY | _OPENED, 0o666))
         try:
-            temporary_file.replace(place)
+            temporary_file.replace(path)
         except OSError:
-            place.unlink(missing_ok=True)
+            path.unlink(missing_ok=True)
             raise
 
 
-def replace(temporary_file: Path, place: Path, known: os.stat_result) -> bool:
-    """Put a temporary file in the place of a known file; return False where another program has it in use."""
-    now = place.lstat()
+def replace(temporary_file: Path, path: Path, known: os.stat_result) -> bool:
+    """Let a temporary file replace a known file; return False where another program has that in use."""
+    now = path.lstat()
     if (now.st_ino, now.st_size, now.st_mtime_ns) != (known.st_ino, known.st_size, known.st_mtime_ns):
         return False
     try:
-        temporary_file.replace(place)
+        temporary_file.replace(path)
     except PermissionError:
         if not _HOLDS_OPEN_FILES:
             raise
         return False
-    _sync_folder(place.parent)
+    _sync_folder(path.parent)
     return True
 
 
@@ -159,6 +159,6 @@ def _sync_folder(folder: Path) -> None:
         finally:
             os.close(handle)
     except OSError as fault:
-        # Some network drives and folders without permission to list them cannot; the file is in its place all the same.
+        # Some network drives and folders without permission to list them cannot; the file has its name all the same.
         if fault.errno not in {errno.EINVAL, errno.EACCES, errno.EPERM, errno.ENOTSUP}:
             raise

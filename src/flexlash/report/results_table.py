@@ -5,18 +5,16 @@ from __future__ import annotations
 import datetime
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 
 import polars as pl
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Percentage, RawValue
 from flexlash.schema.result_columns import result_columns
+from flexlash.schema.unused_names import unused_name
 
 __all__ = ["csv_text", "results_table"]
-
-_AS_SUBMITTED = "as submitted"
-"""What follows the header of an own column in brackets where another column has that name."""
 
 _NUMBER = re.compile(r"-?(?:0|[1-9]\d*)(?:\.\d+)?(?:[eE][+-]\d{1,3})?", re.ASCII)
 """A text of a CSV file that is a number and no part number such as 007 or 12E5."""
@@ -44,13 +42,17 @@ def results_table(outcome: Outcome) -> pl.DataFrame:
     own: list[pl.Series] = []
     taken = {column.key for column in result_columns(cross_check=True, elasticity=True)}
     for header, values in _own_columns(outcome):
-        name, copy = header, 1
-        while name in taken:
-            name = f"{header} ({_AS_SUBMITTED}{f' {copy}' if copy > 1 else ''})"
-            copy += 1
+        name = _own_name(header, taken)
         taken.add(name)
         own.append(_typed(name, values))
     return outcome.results.with_columns(own)
+
+
+def _own_name(header: str, taken: Container[str]) -> str:
+    """Return the name of an own column, which says that it is `as submitted` where another column has that name."""
+    return unused_name(
+        taken, header, f"{header} (as submitted)", numbered=lambda number: f"{header} (as submitted {number})"
+    )
 
 
 def _own_columns(outcome: Outcome) -> Iterator[tuple[str, list[RawValue | None]]]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from itertools import count
+from collections.abc import Sequence
+from functools import partial
 
 from flexlash.schema.findings import shown
+from flexlash.schema.unused_names import unused_name
 
 __all__ = ["distinct_labels"]
 
@@ -27,11 +28,12 @@ def distinct_labels(names: Sequence[str], longest: int) -> list[str]:
     labels = [
         start if often[start] == 1 else _both_ends(name, longest) for name, start in zip(names, starts, strict=True)
     ]
-    wanted, given = Counter(labels), set[str]()
-    for place, label in enumerate(labels):
-        if wanted[label] > 1 and label in given:
-            labels[place] = next(one for one in _numbered(label, longest) if one not in given and one not in wanted)
-        given.add(labels[place])
+    seen, taken = set[str](), set(labels)
+    for index, label in enumerate(labels):
+        if label in seen:
+            labels[index] = unused_name(taken, numbered=partial(_numbered, label, longest))
+            taken.add(labels[index])
+        seen.add(label)
     return labels
 
 
@@ -44,8 +46,7 @@ def _both_ends(name: str, longest: int) -> str:
     return f"{text[: longest - 1 - end]}…{text[-end:]}"
 
 
-def _numbered(label: str, longest: int) -> Iterator[str]:
-    """Yield a label with a number from 2 at its end."""
-    for number in count(2):
-        mark = f"…{number}"
-        yield f"{label[: longest - len(mark)].removesuffix('…')}{mark}"
+def _numbered(label: str, longest: int, number: int) -> str:
+    """Return a label with a number at its end."""
+    ending = f"…{number}"
+    return f"{label[: longest - len(ending)].removesuffix('…')}{ending}"
