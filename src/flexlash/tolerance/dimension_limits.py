@@ -10,6 +10,7 @@ from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.tolerance_grades import deviations
 from flexlash.schema.variant import ToleranceRow, Variant
 from flexlash.tolerance.distributions import Distribution, Normal, Triangular, TruncatedNormal, Uniform
+from flexlash.tolerance.gaps import Gap, gaps
 
 __all__ = ["Limits", "LimitsProblem", "distributions", "limits_of", "shape_problems"]
 
@@ -124,9 +125,11 @@ def shape_problems(
             problems.append(LimitsProblem(kind="cut", dimension=name, detail="0"))
         else:
             kept[name] = limit
-    for gap in _gaps(variant):
-        problems.extend(_keep_open(variant, kept, gap))
-    problems.extend(_overlaps(variant, limits))
+    every = list(gaps(variant))
+    for gap in every:
+        if gap.reached.kind == "impossible":
+            problems.extend(_keep_open(variant, kept, gap))
+    problems.extend(_overlaps(variant, limits, (gap for gap in every if gap.reached.kind == "overlap")))
     once = {(problem.kind, problem.dimension): problem for problem in problems}
     return kept, tuple(once.values())
 
@@ -162,73 +165,21 @@ def _ends(variant: Variant, limits: Mapping[str, Limits], name: str) -> tuple[fl
     return variant.dimensions[name], variant.dimensions[name]
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Gap:
-    """What must stay above 0, or at it where `may_close`: a sum of dimensions, each with its factor.
-
-    A part whose limits close the gap is impossible: the first dimension then reaches what `barrier` names.
-    """
-
-    factors: Mapping[str, float]
-    barrier: str
-    may_close: bool = False
+def _closes(variant: Variant, limits: Mapping[str, Limits], gap: Gap) -> tuple[bool, float]:
+    """Return whether the limits close a gap, and the room between those that face each other."""
+    ends = [factor * _ends(variant, limits, name)[factor < 0] for name, factor in gap.factors.items()]
+    room, slack = sum(ends), _ROUNDING * sum(map(abs, ends))
+    return room < -slack or (room <= slack and not gap.may_close), room
 
 
-def _mean_radius(variant: Variant) -> dict[str, float]:
-    """Return what makes up the mean radius, each dimension with its factor."""
-    if "bore_diameter" in variant.dimensions:
-        return {"bore_diameter": 0.5, "wall_thickness": 0.5}
-    return {"mean_radius": 1.0}
-
-
-def _bore(variant: Variant) -> dict[str, float]:
-    """Return what makes up the bore's radius, each dimension with its factor."""
-    factors = _mean_radius(variant)
-    factors["wall_thickness"] = factors.get("wall_thickness", 0.0) - 0.5
-    return {name: factor for name, factor in factors.items() if factor}
-
-
-def _difference(one: Mapping[str, float], other: Mapping[str, float], first: str) -> dict[str, float]:
-    """Return one sum less another; the dimension `first` stands first."""
-    factors = {first: 0.0, **one}
-    for name, factor in other.items():
-        factors[name] = factors.get(name, 0.0) - factor
-    factors[first] = one.get(first, 0.0) - other.get(first, 0.0)
-    return {name: factor for name, factor in factors.items() if factor}
-
-
-def _gaps(variant: Variant) -> Iterator[_Gap]:
-    """Yield what a part needs to have an inside: a bore, and a disk or flange between its two radii."""
-    bore = _bore(variant)
-    if "bore_diameter" not in variant.dimensions:
-        yield _Gap(factors=_difference(bore, {}, "wall_thickness"), barrier="the axis: no bore is left")
-    if variant.flexspline_type == "cylinder":
-        return
-    inner, outer = _disk_sides(variant)
-    yield _Gap(factors=_difference(outer, inner, next(iter(inner))), barrier="the other radius of the disk")
-    if "junction_fillet_radius" in variant.dimensions:
-        fillet = {"junction_fillet_radius": 1.0}
-        factors = _difference(bore, fillet, "junction_fillet_radius")
-        yield _Gap(factors=factors, barrier="beyond the axis", may_close=True)
-
-
-def _disk_sides(variant: Variant) -> tuple[dict[str, float], dict[str, float]]:
-    """Return what makes up inner and outer radius of the disk, each dimension with its factor."""
-    mean_radius = _mean_radius(variant)
-    inner = {"disk_inner_radius": 1.0} if "disk_inner_radius" in variant.dimensions else mean_radius
-    outer = {"disk_outer_radius": 1.0} if "disk_outer_radius" in variant.dimensions else mean_radius
-    return inner, outer
-
-
-def _keep_open(variant: Variant, limits: dict[str, Limits], gap: _Gap) -> Iterator[LimitsProblem]:
+def _keep_open(variant: Variant, limits: dict[str, Limits], gap: Gap) -> Iterator[LimitsProblem]:
     """Yield whether limits close a gap; cut the far tails that would.
 
     Each normal keeps as much of its tail as its share in the gap between the facing limits.
     """
-    ends = [factor * _ends(variant, limits, name)[factor < 0] for name, factor in gap.factors.items()]
-    room, slack = sum(ends), _ROUNDING * sum(map(abs, ends))
-    if room < -slack or (room <= slack and not gap.may_close):
-        yield LimitsProblem(kind="impossible", dimension=next(iter(gap.factors)), detail=gap.barrier)
+    is_closed, room = _closes(variant, limits, gap)
+    if is_closed:
+        yield LimitsProblem(kind="impossible", dimension=gap.dimension, detail=gap.reached.words)
         return
     tails = {}
     for name, factor in gap.factors.items():
@@ -246,25 +197,16 @@ def _keep_open(variant: Variant, limits: dict[str, Limits], gap: _Gap) -> Iterat
         kept = tail * max(room, 0.0) / total
         cut = (low, min(high, limit.high + kept)) if factor < 0 else (max(low, limit.low - kept), high)
         limits[name] = replace(limit, cut=cut)
-        yield LimitsProblem(kind="cut", dimension=name, detail=gap.barrier)
+        yield LimitsProblem(kind="cut", dimension=name, detail=gap.reached.words)
 
 
-def _overlaps(variant: Variant, limits: Mapping[str, Limits]) -> Iterator[LimitsProblem]:
-    """Yield the refinements that at their limits outgrow the cylinder or the disk."""
-
-    def reached(name: str, end: int) -> float:
-        return _ends(variant, limits, name)[end] if name in variant.dimensions else 0.0
-
-    along = [name for name in ("rim_length", "junction_fillet_radius") if name in variant.dimensions]
-    if sum(reached(name, 1) for name in along) > reached("cylinder_length", 0) and along:
-        yield LimitsProblem(kind="overlap", dimension=along[-1], detail="the cylinder length")
-    sides = _disk_sides(variant)
-    if sides and "hub_fillet_radius" in variant.dimensions:
-        inner, outer = sides
-        width = sum(factor * reached(name, 0) for name, factor in outer.items())
-        width -= sum(factor * reached(name, 1) for name, factor in inner.items())
-        if reached("hub_fillet_radius", 1) > width:
-            yield LimitsProblem(kind="overlap", dimension="hub_fillet_radius", detail="the width of the disk")
+def _overlaps(variant: Variant, limits: Mapping[str, Limits], overlapping: Iterable[Gap]) -> Iterable[LimitsProblem]:
+    """Return the refinements that at their limits outgrow the cylinder or the disk, the last one that does it."""
+    return {
+        gap.reached.words: LimitsProblem(kind="overlap", dimension=gap.dimension, detail=gap.reached.words)
+        for gap in overlapping
+        if _closes(variant, limits, replace(gap, may_close=True))[0]
+    }.values()
 
 
 def distributions(limits: Mapping[str, Limits]) -> dict[str, Distribution]:

@@ -13,15 +13,12 @@ from flexlash.schema.columns import Column, columns_of
 from flexlash.schema.spellings import misspelt, spelt_alike, suggested
 from flexlash.validation.cell_values import is_no_value, no_value_facts
 from flexlash.validation.ledger import Ledger, UnitMistake
-from flexlash.validation.relations import RELATIONS, Relation
+from flexlash.validation.relations import RELATIONS, Relation, numbers_of
 from flexlash.validation.typed_columns import Table
 from flexlash.validation.unit_mistakes import find_unit_mistakes, report_contradiction
 from flexlash.validation.unusual_values import report_unusual
 
 __all__ = ["check_cells", "check_relations"]
-
-_OF_SIZES = frozenset({"E303", "E305", "E306", "E312", "E313", "E328", "E330"})
-"""Relations between lengths, which a mistaken unit breaks."""
 
 
 def _checks(column: Column) -> list[pa.Check]:
@@ -50,13 +47,16 @@ def _cell_schema(schema: str) -> pa.DataFrameSchema:
     )
 
 
-def _relation_check(place: int, relation: Relation) -> pa.Check:
-    """Return a frame-wide check that holds where the relation is not broken or cannot be judged."""
+def _relation_check(relation: Relation) -> pa.Check:
+    """Return a frame-wide check, named by its rule, that holds where the relation is not broken."""
 
     def holds(data: Any) -> pl.LazyFrame:
-        return data.lazyframe.select(~relation.broken.fill_null(value=False))  # type: ignore[no-any-return]
+        return data.lazyframe.select(~relation.broken)  # type: ignore[no-any-return]
 
-    return pa.Check(holds, error=str(place))
+    return pa.Check(holds, name=relation.rule.id, error=relation.rule.id)
+
+
+_RELATIONS = pa.DataFrameSchema(checks=[_relation_check(relation) for relation in RELATIONS.values()])
 
 
 def _failures(schema: pa.DataFrameSchema, frame: pl.DataFrame) -> Iterator[tuple[str, str, int]]:
@@ -100,36 +100,30 @@ def check_cells(table: Table, ledger: Ledger) -> None:
 def check_relations(table: Table, ledger: Ledger) -> None:
     """Check what the cells of a Variants row must be to one another."""
     columns = columns_of("Variants")
-    checks = [_relation_check(place, relation) for place, relation in enumerate(RELATIONS)]
-    for check, _, index in _failures(pa.DataFrameSchema(checks=checks), table.frame):
-        relation = RELATIONS[int(check)]
-        record = table.frame.row(index, named=True)
-        row = record["row"]
-        if any((row, key) in table.faulty for key in relation.keys):
+    for name, _, index in _failures(_RELATIONS, table.frame):
+        relation = RELATIONS[name]
+        rule, record = relation.rule, table.frame.row(index, named=True)
+        row, key = record["row"], relation.rule.key
+        if any((row, other) in table.faulty for other in relation.keys):
             continue
-        if relation.code[0] != "E" and any((table.sheet, row, key) in ledger.unit_mistakes for key in relation.keys):
+        if not rule.is_error and any((table.sheet, row, other) in ledger.unit_mistakes for other in relation.keys):
             continue
-        if relation.code in _OF_SIZES and (mistake := _unit_mistake_beside(table, ledger, row, relation)):
-            report_contradiction(mistake, columns[relation.key].name, ledger)
+        if rule.compares_lengths and (mistake := _unit_mistake_beside(table, ledger, row, relation)):
+            report_contradiction(mistake, columns[key].name, ledger)
             continue
-        value = record[relation.key]
-        facts = {
-            "value": "" if value is None else value,
-            "entered": table.entered(row, relation.key),
-            **relation.facts(record),
-        }
+        entered = {"value": "" if record[key] is None else record[key], "entered": table.entered(row, key)}
         ledger.add(
-            relation.code,
+            rule.code,
             sheet=table.sheet,
-            cell=table.address(row, relation.key),
-            column=relation.key,
-            name=columns[relation.key].name,
+            cell=table.address(row, key),
+            column=key,
+            name=columns[key].name,
             rows=[row],
-            **facts,
+            **entered | rule.facts(numbers_of(record)),
         )
 
 
 def _unit_mistake_beside(table: Table, ledger: Ledger, row: int, relation: Relation) -> UnitMistake | None:
     """Return the mistaken cell that breaks a relation, where that is not the cell which the relation blames."""
     mistakes = {key: ledger.unit_mistakes.get((table.sheet, row, key)) for key in relation.keys}
-    return None if mistakes[relation.key] else next(filter(None, mistakes.values()), None)
+    return None if mistakes[relation.rule.key] else next(filter(None, mistakes.values()), None)

@@ -10,6 +10,8 @@ import numpy as np
 
 from flexlash.mechanics.flexspline import disk_thickness, radius_of
 from flexlash.schema.arrays import Array
+from flexlash.schema.part_row import NumberRow, first_broken
+from flexlash.schema.section_rules import SECTION_RULES
 
 __all__ = ["SLACK", "Part", "part_of", "section_problem"]
 
@@ -90,47 +92,22 @@ def part_of(flexspline_type: str, dimensions: Mapping[str, float]) -> Part:
 def section_problem(flexspline_type: str, dimensions: Mapping[str, float]) -> tuple[str, str] | None:
     """Return why the dimensions make no closed half-section: the dimension to blame and a clause; None if they do."""
     part = part_of(flexspline_type, dimensions)
-    edge = SLACK * part.mean
-    meeting = {"cup": "disk_outer_radius", "hat": "disk_inner_radius"}.get(part.kind, "mean_radius")
-    width = part.bore - part.clamp
-    cup, hat = part.kind == "cup", part.kind == "hat"
-    foil = _FOIL * part.mean
+    if foil := _foil(part, dimensions):
+        return foil
+    edge, flat = SLACK * part.mean, math.pi / 2 - SLACK
+    row = NumberRow(type=flexspline_type, entries=dimensions, edge=edge, flat=flat)
+    rule = first_broken(SECTION_RULES, row)
+    return (rule.dimension, rule.words) if rule else None
+
+
+def _foil(part: Part, dimensions: Mapping[str, float]) -> tuple[str, str] | None:
+    """Return which dimension is too thin to solve, and why."""
+    least = _FOIL * part.mean
+    if part.wall < least:
+        return "wall_thickness", "the wall is too thin a foil to solve"
     ends = np.array([part.clamp, dimensions.get("disk_outer_radius", part.mean), part.mean])
-    thinnest = float(part.thickness(ends).min()) if cup or hat else math.inf
+    has_foil = part.kind != "cylinder" and part.thickness(ends).min() < least
+    if not has_foil:
+        return None
     thin = "disk_hub_thickness" if "disk_hub_thickness" in dimensions else "disk_thickness"
-    problems = (
-        (part.wall < foil, "wall_thickness", "the wall is too thin a foil to solve"),
-        (
-            thinnest < foil,
-            thin if thin in dimensions else "wall_thickness",
-            "the disk thins to a foil that cannot be solved",
-        ),
-        (part.bore <= edge, "wall_thickness", "the wall fills its bore"),
-        (
-            abs(dimensions.get(meeting, part.mean) - part.mean) > part.wall / 2 + edge,
-            meeting,
-            "the disk does not end within the wall",
-        ),
-        (hat and part.clamp <= part.outside + edge, "disk_outer_radius", "the flange ends within the wall"),
-        (cup and width <= edge, "disk_inner_radius", "the hub reaches into the wall"),
-        (cup and part.hub_fillet > width + edge, "hub_fillet_radius", "the hub fillet reaches into the wall"),
-        (
-            cup and part.hub_fillet + part.junction_fillet > width + edge,
-            "junction_fillet_radius",
-            "hub fillet and junction fillet overlap on the disk"
-            if part.hub_fillet
-            else "the junction fillet reaches beyond the disk",
-        ),
-        (
-            part.lean > 0 and part.hub_fillet + part.junction_fillet > 0,
-            "disk_cone_angle",
-            "a conical disk takes no fillet",
-        ),
-        (part.rim_length > part.length * (1 - SLACK), "rim_length", "the rim is as long as the cylinder"),
-        (
-            part.junction_fillet + part.rim_length > part.length * (1 + SLACK),
-            "rim_length" if part.rim_length else "junction_fillet_radius",
-            "rim and junction fillet are longer than the cylinder",
-        ),
-    )
-    return next(((name, clause) for broken, name, clause in problems if broken), None)
+    return thin if thin in dimensions else "wall_thickness", "the disk thins to a foil that cannot be solved"

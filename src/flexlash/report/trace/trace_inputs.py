@@ -7,8 +7,8 @@ from xlsxwriter.utility import xl_rowcol_to_cell
 from flexlash.report.formula.functions import AND, IF, ISNUMBER, OR
 from flexlash.report.formula.live import Live, Operand, Range, fill, put
 from flexlash.report.trace.inputs import ENTERED
-from flexlash.report.trace.part_rules import ALWAYS, TYPES
 from flexlash.report.trace.trace_page import CHANGE, LEFT_OUT, SUBMITTED, Page
+from flexlash.report.trace.trace_rules import ALWAYS, TYPES
 from flexlash.schema.columns import Column
 
 __all__ = ["write_inputs"]

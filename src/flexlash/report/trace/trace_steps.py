@@ -26,8 +26,8 @@ from flexlash.report.formula.functions import (
 )
 from flexlash.report.formula.live import Live, Operand, live
 from flexlash.report.trace.blocks import Block
-from flexlash.report.trace.part_rules import RULES_WIDTH, write_rules
 from flexlash.report.trace.trace_page import Page
+from flexlash.report.trace.trace_rules import RULES_WIDTH, write_rules
 
 __all__ = ["STEPS", "Steps", "shear", "thickness_at"]
 

@@ -1,0 +1,28 @@
+"""What a column's numbers are called and must be, as a line of the template's status or of Trace says it."""
+
+from __future__ import annotations
+
+from flexlash.schema.column import Column
+
+__all__ = ["inner_name", "wrong_number"]
+
+
+def inner_name(column: Column) -> str:
+    """Return a column's name inside a sentence: `disk cone angle`, `Young's modulus E`."""
+    name = column.plain_name.replace("_", " ")
+    return name if name.startswith(("Young", "Poisson")) else name[0].lower() + name[1:]
+
+
+def wrong_number(column: Column) -> str:
+    """Return that an entry is no number within the bounds: `disk cone angle is not a number from 30 to 90 °`."""
+    return f"{inner_name(column)} is not {_bounds(column)}"
+
+
+def _bounds(column: Column) -> str:
+    """Return what a number must be: `a number from 30 to 90 °`."""
+    unit = "" if column.unit in {"", "-"} else f" {column.unit}"
+    least = f"{column.minimum:.15g}"
+    if column.maximum is None:
+        return f"a number above {least}{unit}" if column.exclusive_minimum else f"a number of at least {least}{unit}"
+    most = f"{column.maximum:.15g}{unit}"
+    return f"a number above {least}, at most {most}" if column.exclusive_minimum else f"a number from {least} to {most}"
