@@ -340,7 +340,7 @@ def test_requirement_of_a_setting(key, words):
 
 def test_requirement_with_an_upper_bound_alone():
     """A column that only has a greatest value says so without 'and'."""
-    assert Column(sheet="x", key="x", label="x", help="x", maximum=5).requirement == "a number at most 5"
+    assert Column(sheet="x", role="result", key="x", label="x", help="x", maximum=5).requirement == "a number at most 5"
 
 
 @for_each("column", EVERY)
@@ -432,6 +432,6 @@ def test_a_text_has_no_unit():
     """Asking a text column for its unit fails loudly, and so does a unit that does not exist."""
     with pytest.raises(LookupError):
         _ = columns_of("Variants")["notes"].si_unit
-    wrong = Column(sheet="Variants", key="width_furlong", label="Width", help="x", unit="furlong", quantity="length")
+    wrong = Column.entry("Variants", "dimension", "width_furlong", "Width [furlong]", "x", quantity="length")
     with pytest.raises(LookupError, match=r"Variants\.width_furlong"):
         _ = wrong.si_unit

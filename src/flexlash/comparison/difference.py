@@ -23,11 +23,6 @@ FIRST = ("status", "backlash_arcmin", "p97_5_arcmin", "probability_over_limit", 
 """Results on which a verdict rests, in the order in which a reader wants them."""
 
 _RESULTS = {column.key: column for column in result_columns(cross_check=True, elasticity=True)}
-_TWICE = frozenset({"variant", "notes", "findings", "backlash_limit_arcmin"})
-"""Results that repeat what was entered, or name cells."""
-
-_NAMES = frozenset({"material", "tolerance_class"})
-"""Columns that name a row of another sheet, in whatever spelling."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,7 +166,8 @@ def _entered(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[Change]
     """Yield what differs between two rows of Variants."""
     for column in VARIANTS:
         pair = old.get(column.key), new.get(column.key)
-        alike = column.key in _NAMES and plain(pair[0] or "") == plain(pair[1] or "")
+        is_name = column.role == "identity" and column.type == "text"
+        alike = is_name and plain(pair[0] or "") == plain(pair[1] or "")
         if column.key != "variant" and not (alike or equal(*pair)):
             yield _change(column, *pair)
 
@@ -239,7 +235,7 @@ def _is_within(old: Side, new: Side, name: Name, results: list[Change]) -> bool:
 
 def changed_results(old: Mapping[str, Any], new: Mapping[str, Any], tolerance: float = ROUNDING) -> list[Change]:
     """Return what differs between two rows of Results, what a verdict rests on first; a column of one alone is none."""
-    keys = [key for key in _RESULTS if key in old and key in new and key not in _TWICE]
+    keys = [key for key in _RESULTS if key in old and key in new and _RESULTS[key].role == "result"]
     order = sorted(keys, key=lambda key: FIRST.index(key) if key in FIRST else len(FIRST))
     return [_change(_RESULTS[key], old[key], new[key]) for key in order if not equal(old[key], new[key], tolerance)]
 

@@ -248,8 +248,7 @@ def _entered(
                 value = mend * table.heading.factors.get(key, 1.0)
         elif value is None and not column.is_number:
             value = column.default
-        # A fillet of 0 is none.
-        found[key] = None if value == 0 and key.endswith("fillet_radius_mm") else value
+        found[key] = None if value == 0 and column.zero_is_blank else value
     return found
 
 

@@ -4,22 +4,48 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias
 
 from flexlash.schema.units import Unit, find_unit
 
-__all__ = ["Column"]
+__all__ = ["FACTOR", "FILLET", "LENGTH", "PERCENT", "POSITIVE", "RADIUS", "STRESS", "TORQUE", "Column", "Role"]
 
+Role: TypeAlias = Literal["identity", "dimension", "requirement", "remark", "result"]
+"""What a field is good for.
+
+- identity: says which row it is, or which row of another sheet or which kind it takes;
+- dimension: a number that the mechanics may take and that may have a tolerance;
+- requirement: what is asked of a part, a material or a run; it is exact and no dimension of the part;
+- remark: a text that is carried to the report;
+- result: what flexlash says.
+"""
+
+POSITIVE: dict[str, Any] = {"minimum": 0, "exclusive_minimum": True}
+LENGTH = {"quantity": "length", **POSITIVE}
+RADIUS = {**LENGTH, "grade_at": "diameter"}
+FILLET = {"quantity": "length", "minimum": 0, "zero_is_blank": True, "grade_at": "none"}
+TORQUE = {"quantity": "torque", **POSITIVE}
+STRESS = {"quantity": "stress", **POSITIVE}
+FACTOR = {"quantity": "ratio", "unit": "-", "minimum": 0.1, "maximum": 10, "default": 1}
+PERCENT = {"quantity": "ratio", "unit": "%", **POSITIVE}
+"""Quantity and bounds that several fields share."""
 
 _FEW = 8
 """Most choices that a sentence lists."""
 
+_FIRST = ("sheet", "key", "label", "unit", "type", "required", "minimum", "maximum", "choices", "default", "help")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Column:
-    """One field of one sheet; bounds are in the printed unit, `since` is the template version that brought it."""
+    """One field of one sheet; bounds are in the printed unit, `since` is the template version that brought it.
+
+    `zero_is_blank` where a 0 says the same as a blank cell: a fillet of 0 is none. `grade_at` is the size at which a
+    tolerance grade of a length is read: the length itself, the diameter of a radius, or none where no grade applies.
+    """
 
     sheet: str
+    role: Role
     key: str
     label: str
     help: str
@@ -34,6 +60,14 @@ class Column:
     default: str | float | None = None
     group: str = ""
     since: int = 1
+    zero_is_blank: bool = False
+    grade_at: Literal["length", "diameter", "none"] = "length"
+
+    @classmethod
+    def entry(cls, sheet: str, role: Role, key: str, label: str, text: str, **rest: Any) -> Column:
+        """Return a field that is entered; a unit at the end of its label is its unit."""
+        unit = label.rpartition("[")[2].rstrip("]") if "[" in label else rest.pop("unit", "")
+        return cls(sheet=sheet, role=role, key=key, label=label, help=text, unit=unit, **rest)
 
     @cached_property
     def name(self) -> str:
@@ -53,8 +87,8 @@ class Column:
 
     @cached_property
     def si_unit(self) -> Unit:
-        """The unit the field is measured in."""
-        unit = find_unit(self.unit, self.quantity)
+        """The unit the field is measured in; that of a ratio for a number without unit."""
+        unit = find_unit(self.unit, self.quantity or "ratio") if self.is_number else None
         if unit is None:
             raise LookupError(f"{self.sheet}.{self.key} has no unit")
         return unit
@@ -83,13 +117,9 @@ class Column:
         return words
 
     def as_dictionary(self) -> dict[str, Any]:
-        """Return the entry of `flexlash schema --json`."""
-        entry = asdict(self)
-        entry["choices"] = list(self.choices)
-        order = ("sheet", "key", "label", "unit", "type", "required", "minimum", "maximum")
-        return {
-            key: entry[key] for key in (*order, "choices", "default", "help", "exclusive_minimum", "group", "since")
-        }
+        """Return the entry of `flexlash schema --json`: the fields that scripts rely on first."""
+        entry = asdict(self) | {"choices": list(self.choices)}
+        return {key: entry[key] for key in dict.fromkeys((*_FIRST, *entry))}
 
 
 def _is_symbol(word: str) -> bool:

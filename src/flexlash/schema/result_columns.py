@@ -12,11 +12,12 @@ __all__ = ["CROSS_CHECK", "ELASTICITY", "FINDINGS", "RESULTS", "result_columns"]
 def _result(key: str, label: str, text: str, unit: str = "", quantity: str = "", **rest: Any) -> Column:
     """Return a numeric Results column; angles and percentiles say so in their unit."""
     heading = f"{label} [{unit}]" if unit else label
-    return Column(sheet="Results", key=key, label=heading, help=text, unit=unit, quantity=quantity, **rest)
+    fields = {"role": "result", **rest}
+    return Column(sheet="Results", key=key, label=heading, help=text, unit=unit, quantity=quantity, **fields)
 
 
-def _angle(key: str, label: str, text: str, unit: str = "arcmin") -> Column:
-    return _result(f"{key}_{unit}", label, text, unit, "angle")
+def _angle(key: str, label: str, text: str, unit: str = "arcmin", **rest: Any) -> Column:
+    return _result(f"{key}_{unit}", label, text, unit, "angle", **rest)
 
 
 def _percentile(key: str, share: str) -> Column:
@@ -36,7 +37,7 @@ def _plain_draws(key: str, label: str) -> tuple[Column, ...]:
 
 
 RESULTS = (
-    _result("variant", "Variant", "Name of the variant as submitted.", type="text"),
+    _result("variant", "Variant", "Name of the variant as submitted.", type="text", role="identity"),
     _result(
         "status",
         "Status",
@@ -88,7 +89,7 @@ RESULTS = (
     _result("ppk", "Ppk upper", "(limit − P50)/(P99.865 − P50), ISO 22514-2."),
     _result("main_contributor", "Main contributor", "Dimension that causes most of the spread.", type="text"),
     _result("main_contributor_share", "Main contributor share", "Its share of the variance, a fraction."),
-    _angle("backlash_limit", "Backlash limit", "The limit as submitted."),
+    _angle("backlash_limit", "Backlash limit", "The limit as submitted.", role="requirement"),
     _angle("rim_windup", "Rim wind-up", "Part of the wind-up in the tooth rim.", "rad"),
     _angle("wall_windup", "Wall wind-up", "Part of the wind-up in the plain wall.", "rad"),
     _angle("junction_fillet_windup", "Junction fillet wind-up", "Part in the junction fillet.", "rad"),
@@ -177,8 +178,10 @@ RESULTS = (
     _result("spread_method", "Spread by", "line, sobol or random: what made the spread of this row.", type="text"),
     _result("spread_points", "Lines or points", "Lines (method line) or points behind the spread of this row."),
     _result("spread_note", "Note on the spread", "Why not lines, or which precision was not reached.", type="text"),
-    _result("notes", "Notes", "Notes as submitted.", type="text"),
-    _result("findings", "Findings", "Codes and cells of the errors and warnings of this row.", type="text"),
+    _result("notes", "Notes", "Notes as submitted.", type="text", role="remark"),
+    _result(
+        "findings", "Findings", "Codes and cells of the errors and warnings of this row.", type="text", role="remark"
+    ),
 )
 
 CROSS_CHECK = (
@@ -246,7 +249,7 @@ def result_columns(*, cross_check: bool = False, elasticity: bool = False) -> tu
 
 
 FINDINGS = tuple(
-    Column(sheet="Findings", key=key, label=label, help=text, type="text")
+    Column(sheet="Findings", role="result", key=key, label=label, help=text, type="text")
     for key, label, text in (
         (
             "level",

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
+from flexlash.schema.columns import SETTINGS
+
 __all__ = ["Material", "Settings", "ToleranceRow", "Variant"]
 
 
@@ -65,5 +67,5 @@ class Settings:
     samples: int | None = None
     lost_motion_percent: float = 4.0
     calibrations: dict[str, float] = field(
-        default_factory=lambda: {"cylinder_calibration": 1.0, "disk_calibration": 1.0}
+        default_factory=lambda: {column.key: 1.0 for column in SETTINGS if column.role == "dimension"}
     )

@@ -14,7 +14,6 @@ from flexlash.tolerance.gaps import Gap, gaps
 
 __all__ = ["Limits", "LimitsProblem", "distributions", "limits_of", "shape_problems"]
 
-_RADII = frozenset({"mean_radius", "disk_inner_radius", "disk_outer_radius"})
 _ROUNDING = 1e-12
 """Decimals become binary with a relative error below this; limits that close count as reached."""
 
@@ -76,7 +75,7 @@ class LimitsProblem:
 def _deviations(row: ToleranceRow, nominal: float) -> tuple[float, float] | None:
     """Lower and upper deviation [SI] from the entered value; None where a grade has no entry."""
     if row.grade:
-        diameter = row.dimension in _RADII
+        diameter = DIMENSIONS[row.dimension].grade_at == "diameter"
         found = deviations(row.grade, 2 * nominal if diameter else nominal)
         return (found[0] / 2, found[1] / 2) if found and diameter else found
     return (row.lower * nominal, row.upper * nominal) if row.relative else (row.lower, row.upper)

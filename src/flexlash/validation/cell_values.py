@@ -124,7 +124,7 @@ def _from_text(value: RawValue, column: Column | None, measure: Measure | None, 
 
 def _percentage(value: Percentage, column: Column | None, measure: Measure | None) -> float | Fault:
     """Return the number that a cell shown as a percentage means: per cent where those are wanted, else the ratio."""
-    if column is not None and column.key.endswith("_percent"):
+    if column is not None and column.unit == "%":
         return round(value * 100, 12)
     if measure is not None and measure.quantity == "ratio":
         return round(value / measure.si, 12)

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 from flexlash.reading.raw import RawSheet
 from flexlash.schema.cell_addresses import CellAddress
-from flexlash.schema.columns import columns_of
+from flexlash.schema.columns import columns_of, naming_column
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.typed_columns import Table
 
@@ -19,8 +19,6 @@ _EMPTY_ROWS = 60
 """So many empty rows between two rows fill more than a screen: who scrolls does not see both."""
 
 _DIGITS = re.compile(r"\d{1,3}", re.ASCII)
-_REMARKS = frozenset(("notes", "source"))
-"""Columns whose text may well be merged over the rows that it is about."""
 
 
 def tell_overlooked(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
@@ -42,19 +40,19 @@ def tell_overlooked(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
 
 def _tell_digits(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
     """Warn of remarks that are nothing but short digits, as where decimal commas have split numbers."""
-    for key in (
-        sorted(_REMARKS & table.heading.places.keys()) if sheet.dialect and sheet.dialect.delimiter == "," else ()
-    ):
-        filled = table.frame.select("row", key).drop_nulls().rows()
-        if filled and all(_DIGITS.fullmatch(text) for _, text in filled):
-            row, text = filled[0]
-            name = columns_of(table.schema)[key].name
-            ledger.add("W430", sheet=sheet.name, cell=table.address(row, key), column=key, name=name, value=text)
+    if sheet.dialect is None or sheet.dialect.delimiter != ",":
+        return
+    for key, column in columns_of(table.schema).items():
+        texts = table.frame.select("row", key).drop_nulls().rows() if column.role == "remark" else []
+        if texts and all(_DIGITS.fullmatch(text) for _, text in texts):
+            row, text = texts[0]
+            cell = table.address(row, key)
+            ledger.add("W430", sheet=sheet.name, cell=cell, column=key, name=column.name, value=text)
 
 
 def _name_cell(table: Table, row: int) -> CellAddress:
     """Return the cell that names a row."""
-    return table.address(row, next(iter(columns_of(table.schema))))
+    return table.address(row, naming_column(table.schema).key)
 
 
 def _covered(sheet: RawSheet, table: Table, rows: list[int]) -> Iterator[tuple[int, int, str]]:
@@ -76,9 +74,10 @@ def _covered(sheet: RawSheet, table: Table, rows: list[int]) -> Iterator[tuple[i
 def _blame_covered(table: Table, ledger: Ledger, row: int, place: int, area: str) -> None:
     """Record that a cell lies under a merged area, unless it holds a remark or has a finding already."""
     (key,) = (key for key, own in table.heading.places.items() if own == place)
-    if key in _REMARKS or (row, key) in table.faulty:
-        return
     column = columns_of(table.schema)[key]
+    # A remark may well be merged over the rows that it is about.
+    if column.role == "remark" or (row, key) in table.faulty:
+        return
     table.faulty.add((row, key))
     ledger.add(
         "E214",

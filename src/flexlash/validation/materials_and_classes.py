@@ -36,8 +36,9 @@ BUILT_IN_SHEETS = {"Materials": "materials", "Tolerances": "standard_class"}
 """Sheets that a submission may lack, with the table that is used instead."""
 
 _CONSTANTS = ("youngs_modulus_GPa", "poisson_ratio", "shear_modulus_GPa")
+"""Columns of which the last, or else the first two, are required."""
+
 _DEVIATIONS = ("lower_deviation", "upper_deviation")
-_UNGRADED = frozenset({"hub_fillet_radius", "junction_fillet_radius"})
 
 
 def built_in_sheet(schema: str) -> RawSheet:
@@ -67,9 +68,9 @@ def built_in_materials() -> dict[str, Material]:
 def _material(record: dict[str, Any], name: str) -> Material:
     """Return a material in SI."""
     constants = {
-        _MATERIAL[key].dimension: record[key] * _MATERIAL[key].si_unit.si
-        for key in _CONSTANTS
-        if record.get(key) is not None
+        column.dimension: record[column.key] * column.si_unit.si
+        for column in MATERIALS
+        if column.role == "dimension" and record.get(column.key) is not None
     }
     strength = record.get("yield_MPa")
     return Material(
@@ -216,7 +217,7 @@ def _check_grade(table: Table, ledger: Ledger, record: dict[str, Any], column: C
         meant = meant_grade(grade)
         repair = None if grade.isdecimal() else meant or None
         _blame(table, ledger, "E210", row, "grade", value=grade, suggestion=meant, repair=repair)
-    elif column and (column.quantity != "length" or column.dimension in _UNGRADED):
+    elif column and (column.quantity != "length" or column.grade_at == "none"):
         _blame(table, ledger, "E320", row, "grade", value=grade, other=column.dimension)
 
 
@@ -295,9 +296,10 @@ def _number_fault(column: Column, value: float) -> Fault | None:
 
 def settings_from(values: dict[str, Any]) -> Settings:
     """Return settings from valid values by name; absent ones take their default."""
-    plain_values = {key: value for key, value in values.items() if not key.endswith("calibration")}
+    calibrations = {
+        column.key: float(values.pop(column.key, column.default)) for column in SETTINGS if column.role == "dimension"
+    }
     for key in ("seed", "samples"):
-        if plain_values.get(key) is not None:
-            plain_values[key] = int(plain_values[key])
-    calibrations = {key: float(values.get(key, 1.0)) for key in ("cylinder_calibration", "disk_calibration")}
-    return Settings(**plain_values, calibrations=calibrations)
+        if values.get(key) is not None:
+            values[key] = int(values[key])
+    return Settings(**values, calibrations=calibrations)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from flexlash.reading.raw import RawValue
-from flexlash.schema.columns import columns_of
+from flexlash.schema.columns import columns_of, naming_column
 from flexlash.schema.header_names import BLANK
 from flexlash.schema.spellings import plain
 from flexlash.validation.headers import Heading
@@ -52,7 +52,8 @@ class NoEntries:
 
     def __init__(self, schema: str, heading: Heading) -> None:
         columns = columns_of(schema)
-        first, *others = columns
+        first = naming_column(schema).key
+        others = [key for key in columns if key != first]
         places = heading.places
         self.schema = schema
         self.first = places.get(first)

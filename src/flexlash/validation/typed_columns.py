@@ -11,7 +11,7 @@ import polars as pl
 
 from flexlash.reading.raw import Percentage, RawSheet, RawValue, Unstored
 from flexlash.schema.cell_addresses import CellAddress, cell_ranges, column_letters
-from flexlash.schema.columns import DIMENSIONS, Column, columns_of
+from flexlash.schema.columns import DIMENSIONS, Column, columns_of, naming_column
 from flexlash.schema.header_names import BLANK
 from flexlash.schema.units import find_unit
 from flexlash.validation.cell_values import Fault, as_number, as_text
@@ -82,7 +82,7 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
     )
     read = {place: columns[key] for key, place in heading.places.items()}
     records: list[dict[str, Any]] = []
-    first_key = next(iter(columns))
+    first_key = naming_column(schema).key
     for number, cells, bare in _entries(table, sheet, units, ledger):
         record: dict[str, Any] = {"row": number}
         if surplus := _surplus(sheet, heading, number):
@@ -112,7 +112,7 @@ def _entries(
 ) -> Iterator[tuple[int, dict[int, RawValue], NoEntry | None]]:
     """Yield the rows of a table but that of units, each with why it is no entry after all; tell what is none at all."""
     no_entries, last = NoEntries(table.schema, table.heading), table.heading.row
-    for number, cells in _data_rows(sheet, table.heading, next(iter(columns_of(table.schema))), ledger):
+    for number, cells in _data_rows(sheet, table.heading, naming_column(table.schema).key, ledger):
         none = no_entries.of(cells, apart=number > last + 1) if number != units else None
         if none and none.code[0] == "W":
             ledger.add(none.code, sheet=sheet.name, cell=CellAddress(row=number, column=none.place), **none.facts)
@@ -263,7 +263,7 @@ def _on_bound(column: Column, value: float) -> float:
 
 def _longest(column: Column) -> int:
     """Return how many characters a text may have: names are short, remarks are not."""
-    return 1000 if column.key in {"notes", "source"} else 200
+    return 1000 if column.role == "remark" else 200
 
 
 def _choice(column: Column, text: str) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from flexlash.reading.raw import RawSheet, RawValue
 from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.column import Column
-from flexlash.schema.columns import columns_of
+from flexlash.schema.columns import columns_of, naming_column
 from flexlash.schema.header_names import name_and_unit
 from flexlash.schema.spellings import plain
 from flexlash.schema.units import Unit, find_unit
@@ -51,13 +51,12 @@ def take_units_row(sheet: RawSheet, heading: Heading, schema: str, ledger: Ledge
 
 def _units(entries: Mapping[str, RawValue], columns: Mapping[str, Column]) -> dict[str, Unit]:
     """Return the units of a row by column, none where a cell of it holds anything else."""
-    first = next(iter(columns))
     found: dict[str, Unit] = {}
     for key, entry in entries.items():
         text = _bare(entry)
         if text is None:
             return {}
-        if text.casefold() in _NONE or (key == first and plain(text) in _TITLES):
+        if text.casefold() in _NONE or (plain(text) in _TITLES and key == naming_column(columns[key].sheet).key):
             continue
         unit = find_unit(text, columns[key].quantity) if columns[key].is_number and columns[key].quantity else None
         if unit is None:

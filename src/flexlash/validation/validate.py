@@ -12,7 +12,8 @@ import polars as pl
 from flexlash.reading.read import Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.cell_addresses import CellAddress
-from flexlash.schema.columns import columns_of
+from flexlash.schema.column import Role
+from flexlash.schema.columns import VARIANTS, columns_of
 from flexlash.schema.spellings import affordable, misspelt, plain, spelt_alike, suggested
 from flexlash.schema.variant import Material, Settings, ToleranceRow, Variant
 from flexlash.validation.cell_values import is_no_value, no_value_facts
@@ -215,17 +216,21 @@ def _tell_other_sources(submission: Submission, ledger: Ledger) -> None:
             ledger.add("W406", sheet=name, cell=CellAddress(row=min(sheet.rows), column=1))
 
 
+def _sizes(record: Mapping[str, Any], role: Role) -> dict[str, float]:
+    """Return the numbers of a row in SI by name; those that are blank, or 0 where that says the same, are left out."""
+    return {
+        column.dimension: record[column.key] * column.si_unit.si
+        for column in VARIANTS
+        if column.role == role
+        and column.is_number
+        and record[column.key] is not None
+        and not (column.zero_is_blank and record[column.key] == 0)
+    }
+
+
 def _variant(record: dict[str, Any], result: Validated) -> Variant:
     """Return a sound row as a variant in SI; dimensions that equal another are left out."""
-    columns = columns_of("Variants")
-    dimensions = {
-        column.dimension: record[key] * column.si_unit.si
-        for key, column in columns.items()
-        if column.is_number and record[key] is not None and not (key.endswith("fillet_radius_mm") and record[key] == 0)
-    }
-    rated_torque = dimensions.pop("rated_torque", None)
-    load_inertia = dimensions.pop("load_inertia_kg_m2", None)
-    backlash_limit = dimensions.pop("backlash_limit", None)
+    requirements = _sizes(record, "requirement")
     material = result.materials[plain(record["material"])]
     constants = dict(material.constants)
     if "shear_modulus" in constants:
@@ -236,10 +241,10 @@ def _variant(record: dict[str, Any], result: Validated) -> Variant:
         flexspline_type=record["flexspline_type"] or "cup",
         material=material.name,
         tolerance_class=record["tolerance_class"] or "standard",
-        dimensions=dimensions | constants | result.settings.calibrations,
-        rated_torque=rated_torque,
-        load_inertia=load_inertia,
-        backlash_limit=backlash_limit,
+        dimensions=_sizes(record, "dimension") | constants | result.settings.calibrations,
+        rated_torque=requirements.get("rated_torque"),
+        load_inertia=requirements.get("load_inertia_kg_m2"),
+        backlash_limit=requirements.get("backlash_limit"),
         yield_strength=material.yield_strength,
         youngs_modulus=material.constants.get("youngs_modulus"),
         poisson_ratio=material.constants.get("poisson_ratio"),

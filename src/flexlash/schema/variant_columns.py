@@ -1,0 +1,194 @@
+"""The fields of Variants: what is entered of one flexspline, each field once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from flexlash.schema.column import FILLET, LENGTH, POSITIVE, RADIUS, TORQUE, Column
+
+__all__ = ["VARIANTS"]
+
+_identity: Callable[..., Column] = partial(Column.entry, "Variants", "identity")
+_dimension: Callable[..., Column] = partial(Column.entry, "Variants", "dimension")
+_requirement: Callable[..., Column] = partial(Column.entry, "Variants", "requirement")
+_remark: Callable[..., Column] = partial(Column.entry, "Variants", "remark")
+
+VARIANTS = (
+    _identity(
+        "variant",
+        "Variant",
+        "Name of the variant, used once. The report names each row by it.",
+        type="text",
+        required=True,
+        group="Variant",
+    ),
+    _identity(
+        "flexspline_type",
+        "Flexspline type",
+        "cup: disk inwards to the hub. hat: flange outwards to the bolt circle. cylinder: pin, tooth or jaw "
+        "connection, no disk. Blank means cup.",
+        type="choice",
+        choices=("cup", "hat", "cylinder"),
+        default="cup",
+        group="Variant",
+    ),
+    _identity(
+        "material",
+        "Material",
+        "A material of the Materials sheet. Add a row there for your own.",
+        type="text",
+        required=True,
+        group="Variant",
+    ),
+    _dimension(
+        "torque_Nm",
+        "Torque T [N·m]",
+        "Output torque at which the wind-up is wanted. The backlash is the lag when it reverses.",
+        **TORQUE,
+        required=True,
+        group="Load",
+    ),
+    _dimension(
+        "cylinder_length_mm",
+        "Cylinder length l [mm]",
+        "Inside depth: from the inner face of the disk to the open end, tooth rim included.",
+        **LENGTH,
+        required=True,
+        group="Cylinder",
+    ),
+    _dimension(
+        "mean_radius_mm",
+        "Mean radius r_m [mm]",
+        "Radius of the middle of the wall. Give this or the bore diameter, not both.",
+        **RADIUS,
+        group="Cylinder",
+    ),
+    _dimension(
+        "bore_diameter_mm",
+        "Bore diameter [mm]",
+        "Inside diameter of the wall. The mean radius is then bore/2 + wall/2 and follows both tolerances.",
+        **LENGTH,
+        group="Cylinder",
+    ),
+    _dimension(
+        "wall_thickness_mm",
+        "Wall thickness Δ [mm]",
+        "Thickness of the cylinder wall.",
+        **LENGTH,
+        required=True,
+        group="Cylinder",
+    ),
+    _dimension(
+        "disk_thickness_mm",
+        "Disk thickness [mm]",
+        "Thickness of the disk or flange. Blank: the same as the wall, cut in one pass, one tolerance for both.",
+        **LENGTH,
+        group="Disk",
+    ),
+    _dimension(
+        "disk_inner_radius_mm",
+        "Disk inner radius r_ci [mm]",
+        "Cup: radius of the hub, where the disk is clamped; required. Hat: blank means the mean radius.",
+        **RADIUS,
+        group="Disk",
+    ),
+    _dimension(
+        "disk_outer_radius_mm",
+        "Disk outer radius r_co [mm]",
+        "Cup: blank means the mean radius, as it should be. Hat: radius of the bolt circle; required.",
+        **RADIUS,
+        group="Disk",
+    ),
+    _dimension(
+        "disk_hub_thickness_mm",
+        "Disk thickness at hub [mm]",
+        "Cup only. Disk that thins in a straight line from here to the disk thickness at its rim. Blank: even.",
+        **LENGTH,
+        group="Refinements",
+    ),
+    _dimension(
+        "disk_thickness_exponent",
+        "Disk thickness exponent n [-]",
+        "Cup only. Disk that thins as t = t_hub (r_ci/r)^n from the thickness at hub; leave the disk thickness blank. "
+        "2: the same shear stress at every radius.",
+        quantity="ratio",
+        minimum=0,
+        maximum=10,
+        group="Refinements",
+        since=2,
+    ),
+    _dimension(
+        "disk_cone_angle_deg",
+        "Disk cone angle [°]",
+        "Angle between a conical disk or flange and the axis; it falls away from the open end. Thicknesses are normal "
+        "to it. Blank or 90: flat.",
+        quantity="angle",
+        minimum=30,
+        maximum=90,
+        group="Refinements",
+        since=2,
+    ),
+    _dimension(
+        "hub_fillet_radius_mm",
+        "Hub fillet radius [mm]",
+        "Cup only. Fillet between hub and inner face of the disk. Blank or 0: sharp corner.",
+        **FILLET,
+        group="Refinements",
+    ),
+    _dimension(
+        "junction_fillet_radius_mm",
+        "Junction fillet radius [mm]",
+        "Cup only. Fillet inside the corner of disk and wall. Blank or 0: sharp corner.",
+        **FILLET,
+        group="Refinements",
+    ),
+    _dimension(
+        "rim_length_mm",
+        "Tooth rim length [mm]",
+        "Length of the thicker toothed rim at the open end. Give length and thickness, or neither.",
+        **LENGTH,
+        group="Refinements",
+    ),
+    _dimension(
+        "rim_thickness_mm",
+        "Tooth rim thickness [mm]",
+        "Total thickness of the rim over the same bore, teeth counted to their root or pitch circle.",
+        **LENGTH,
+        group="Refinements",
+    ),
+    _requirement(
+        "rated_torque_Nm",
+        "Rated torque [N·m]",
+        "Gives the lost motion of the flexspline alone, and of a catalogue drive, at a few per cent of it (Settings: "
+        "lost_motion_percent).",
+        **TORQUE,
+        group="Requirements",
+    ),
+    _requirement(
+        "load_inertia_kg_m2",
+        "Load inertia J [kg·m²]",
+        "Moment of inertia on the output. Gives the natural frequency of the load on the flexspline.",
+        quantity="inertia",
+        **POSITIVE,
+        group="Requirements",
+        since=2,
+    ),
+    _requirement(
+        "backlash_limit_arcmin",
+        "Backlash limit [arcmin]",
+        "Greatest backlash allowed. Gives probability over limit, ppm and Ppk.",
+        quantity="angle",
+        **POSITIVE,
+        group="Requirements",
+    ),
+    _identity(
+        "tolerance_class",
+        "Tolerance class",
+        "A class of the Tolerances sheet. Blank means standard.",
+        type="text",
+        default="standard",
+        group="Requirements",
+    ),
+    _remark("notes", "Notes", "Free text; carried to the report.", type="text", group="Requirements"),
+)
