@@ -50,23 +50,28 @@ def pytest_make_collect_report(collector):
     return report
 
 
-def _set(patch: pytest.MonkeyPatch, *, here: bool) -> None:
-    patch.setattr(WHERE, answer_here if here else _APART)
+@pytest.fixture(scope="session", autouse=True)
+def _read_here():
+    """Read workbooks in this process: starting another takes a second."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(WHERE, answer_here)
+        yield
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _read_here_for_all(request):
-    """Read workbooks in this process also where a fixture serves a whole module."""
+def _read_apart_in_module(request):
+    """Read them in a process of their own, as the program does, also in the fixtures of a module that is about it."""
     with pytest.MonkeyPatch.context() as patch:
-        if request.node.get_closest_marker("limited_process") is None:
-            _set(patch, here=True)
+        if request.node.get_closest_marker("limited_process"):
+            patch.setattr(WHERE, _APART)
         yield
 
 
 @pytest.fixture(autouse=True)
-def _read_here(request, monkeypatch):
-    """Read workbooks in this process, unless a test is about the process that does so."""
-    _set(monkeypatch, here="limited_process" not in request.keywords)
+def _read_apart(request, monkeypatch):
+    """Read them in a process of their own where a test is about it."""
+    if "limited_process" in request.keywords:
+        monkeypatch.setattr(WHERE, _APART)
 
 
 @pytest.fixture

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import re
 import subprocess
-import warnings
 import zipfile
-from functools import lru_cache
 
 import openpyxl
 import pytest
-import regenerate
 import xlsxwriter
 from libreoffice import convert_all, needs_pages
 from report_charts import chart_titled, points_of
+from report_entries import opened
 
 from flexlash.pipeline import run
 from flexlash.report.compare.compare_sheet import BOXES, write_compare
@@ -24,13 +22,6 @@ from flexlash.report.layout.styles import Book
 from flexlash.report.selection import drawn_variants
 
 AROUND = "Spread around the median of each variant"
-
-
-@pytest.fixture(scope="module")
-def study(tmp_path_factory):
-    """Return the study's outcome and the path of its report."""
-    path = tmp_path_factory.mktemp("study") / "report.xlsx"
-    return run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path, samples=512), path
 
 
 @pytest.fixture(scope="module")
@@ -45,16 +36,9 @@ def many(tmp_path_factory):
     return run(folder / "many.csv", folder / "report.xlsx", method="random", samples=64), folder / "report.xlsx"
 
 
-@lru_cache(maxsize=2)
-def _open(path):
-    with path.open("rb") as file, warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return openpyxl.load_workbook(file)
-
-
 def _cells(path, heading, last):
     """Return the range of a column of the data sheet, and the numbers in it."""
-    sheet = _open(path)["Compared"]
+    sheet = opened(path)["Compared"]
     (place,) = [cell.column for cell in sheet[2] if cell.value == heading]
     letter = openpyxl.utils.get_column_letter(place)
     end = f":${letter}${last}" if last > 3 else ""
@@ -62,7 +46,7 @@ def _cells(path, heading, last):
 
 
 def _texts(path):
-    return " ".join(str(cell.value) for row in _open(path)["Compare"].iter_rows() for cell in row if cell.value)
+    return " ".join(str(cell.value) for row in opened(path)["Compare"].iter_rows() for cell in row if cell.value)
 
 
 @pytest.mark.parametrize(

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import warnings
-from functools import lru_cache
-
-import openpyxl
 import pytest
-import regenerate
 from report_charts import chart_titled, points_of
+from report_entries import opened
 
 from flexlash.analysis.run_summary import dimension_words
 from flexlash.pipeline import run
@@ -19,18 +15,8 @@ from flexlash.report.selection import drawn_variants
 CHART = "Disk share of the wind-up against the length of the cylinder"
 
 
-@pytest.fixture(scope="module")
-def study(tmp_path_factory):
-    """Return the study's outcome and the path of its report."""
-    path = tmp_path_factory.mktemp("study") / "report.xlsx"
-    return run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path, samples=512), path
-
-
-@lru_cache(maxsize=2)
 def _sheet(path):
-    with path.open("rb") as file, warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return openpyxl.load_workbook(file)["Contributions"]
+    return opened(path)["Contributions"]
 
 
 def _table(sheet):

@@ -6,9 +6,8 @@ import zipfile
 
 import numpy as np
 import pytest
-import regenerate
 import xlsxwriter
-from libreoffice import convert, convert_all, needs_libreoffice
+from libreoffice import convert_all, needs_libreoffice
 from report_entries import error_cells, typed, values_of, without_charts
 from scipy.special import ndtri
 
@@ -24,13 +23,6 @@ VARIANT, UNIT, LIMIT, WANTED = "B4", "B5", "B6", "B7"
 USED, SHARE, LOW, HIGH, PPM, VERDICT, FOUND, FOUND_ERROR = (f"B{row}" for row in range(9, 17))
 OUTER = 1e-6
 """The rarest share whose reading is promised to be within 1 %."""
-
-
-@pytest.fixture(scope="module")
-def study(tmp_path_factory):
-    """Return the study's outcome and the path of its report."""
-    path = tmp_path_factory.mktemp("study") / "report.xlsx"
-    return run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path), path
 
 
 @pytest.fixture
@@ -79,10 +71,10 @@ def test_the_worst_variant_is_picked_and_answered(study):
 
 
 @needs_libreoffice
-def test_stored_values_are_those_of_a_recalculation(study, tmp_path):
+def test_stored_values_are_those_of_a_recalculation(study, recalculated):
     """Every formula of Explorer holds what LibreOffice makes of it."""
     stored = values_of(study[1], "Explorer")
-    again = values_of(convert(study[1], "xlsx", tmp_path), "Explorer")
+    again = values_of(recalculated, "Explorer")
     assert stored.keys() == again.keys()
     for cell, value in stored.items():
         assert again[cell] == (pytest.approx(value, rel=1e-7, abs=1e-12) if isinstance(value, float) else value), cell

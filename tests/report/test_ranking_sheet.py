@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-import warnings
-from functools import lru_cache
-
-import openpyxl
 import pytest
-import regenerate
 import xlsxwriter
 from libreoffice import convert_all, needs_libreoffice
-from report_entries import typed
+from report_entries import opened, typed
 
 from flexlash.analysis.run_summary import dimension_words, share_words
 from flexlash.pipeline import run
@@ -28,13 +23,6 @@ KEYS = {
 OF_DIFFERENCE = {"P50": "p50_arcmin", "P97.5": "p97_5_arcmin", "sd": "sd_arcmin"}
 
 
-@pytest.fixture(scope="module")
-def study(tmp_path_factory):
-    """Return the study's outcome and the path of its report."""
-    path = tmp_path_factory.mktemp("study") / "report.xlsx"
-    return run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path, samples=512), path
-
-
 def _alone(outcome, path):
     """Write the Ranking with its data and what it leads to, which are recalculated sooner than a whole report."""
     drawn = drawn_variants(outcome)
@@ -47,11 +35,8 @@ def _alone(outcome, path):
     return path
 
 
-@lru_cache(maxsize=2)
 def _sheet(path, **options):
-    with path.open("rb") as file, warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return openpyxl.load_workbook(file, **options)["Ranking"]
+    return opened(path, **options)["Ranking"]
 
 
 def _places(sheet):

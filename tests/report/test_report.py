@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-import warnings
 import zipfile
-from functools import lru_cache
 
-import openpyxl
 import pytest
 import regenerate
-from libreoffice import convert, needs_libreoffice
+from libreoffice import needs_libreoffice
+from report_entries import opened
 
 from flexlash import pipeline
 from flexlash.analysis.run_summary import dimension_words
@@ -32,29 +30,15 @@ SHEETS = [
 
 
 @pytest.fixture(scope="module")
-def study(tmp_path_factory):
-    """Return the study's outcome and the path of its report."""
-    path = tmp_path_factory.mktemp("study") / "report.xlsx"
-    return run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path, samples=4096), path
-
-
-@pytest.fixture(scope="module")
 def faulty(tmp_path_factory):
     """Return the outcome of the submission with twenty faults and the path of its report."""
     path = tmp_path_factory.mktemp("faulty") / "report.xlsx"
     return run(regenerate.ROOT / "data" / "needs-fixing.xlsx", path, samples=512), path
 
 
-@lru_cache(maxsize=2)
-def _open(path, **options):
-    with path.open("rb") as file, warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return openpyxl.load_workbook(file, **options)
-
-
 def test_the_sheets_stand_in_order(study):
     """The report opens on the Summary and holds every sheet in reading order."""
-    book = _open(study[1])
+    book = opened(study[1])
     assert book.sheetnames == SHEETS
     assert book.active.title == "Summary"
 
@@ -62,7 +46,7 @@ def test_the_sheets_stand_in_order(study):
 def test_results_repeat_the_frame(study):
     """The Results sheet holds every number of the frame below label and key, errors and estimated shares rounded."""
     outcome, path = study
-    sheet = _open(path)["Results"]
+    sheet = opened(path)["Results"]
     rows = list(sheet.iter_rows(values_only=True))
     assert list(rows[0]) == [column.label for column in RESULTS]
     assert list(rows[1]) == [column.key for column in RESULTS]
@@ -98,7 +82,7 @@ def test_results_show_no_more_digits_than_their_error_justifies(table, sound, tm
     """A cell of Results ends at the first digit of its standard error: one more would be noise, one fewer a loss."""
     rows = [sound, {**sound, "variant": "small", "torque_Nm": 8.0}, {**sound, "variant": "large", "torque_Nm": 2e4}]
     outcome = run(table(rows), tmp_path / "report.xlsx", cross_check=True, **how)
-    sheet = _open(tmp_path / "report.xlsx")["Results"]
+    sheet = opened(tmp_path / "report.xlsx")["Results"]
     keys = [cell.value for cell in sheet[2]]
     seen = set()
     for key, error in _with_errors().items():
@@ -122,7 +106,7 @@ def test_results_without_scatter_show_their_usual_digits(table, sound, tmp_path)
         "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n", encoding="utf-8"
     )
     run(table([sound]), tmp_path / "report.xlsx", tolerances=tolerances)
-    sheet = _open(tmp_path / "report.xlsx")["Results"]
+    sheet = opened(tmp_path / "report.xlsx")["Results"]
     formats = {sheet.cell(2, cell.column).value: cell.number_format for cell in sheet[3]}
     assert formats["backlash_arcmin"] == formats["mean_arcmin"] == formats["p99_865_arcmin"] == "0.0000"
 
@@ -130,7 +114,7 @@ def test_results_without_scatter_show_their_usual_digits(table, sound, tmp_path)
 def test_a_cross_check_stands_in_the_report(table, sound, tmp_path):
     """With a cross-check Results has its columns and About says what was compared."""
     run(table([sound]), tmp_path / "report.xlsx", cross_check=True)
-    book = _open(tmp_path / "report.xlsx")
+    book = opened(tmp_path / "report.xlsx")
     columns = [column.key for column in (*RESULTS, *CROSS_CHECK)]
     assert [cell.value for cell in book["Results"][2]] == columns
     assert book["Results"].auto_filter.ref.startswith("A2:")
@@ -152,7 +136,7 @@ def test_about_and_summary_name_the_method(table, sound, tmp_path, method):
     """About tells the method that was used and no other; the Summary names it with its lines or points."""
     run(table([sound]), tmp_path / "report.xlsx", samples=256, method=method)
     told, points = SAID[method]
-    book = _open(tmp_path / "report.xlsx")
+    book = opened(tmp_path / "report.xlsx")
     about = "\n".join(str(cell.value) for row in book["About"].iter_rows() for cell in row if cell.value)
     others = {words for words, _ in SAID.values()} - {told}
     assert told in about
@@ -165,7 +149,7 @@ def test_about_and_summary_name_the_method(table, sound, tmp_path, method):
 def test_sensitivity_has_first_order_and_total_indices(study):
     """Sensitivity lists each variant's first-order indices and, to the right, its total ones."""
     outcome, path = study
-    sheet = _open(path)["Sensitivity"]
+    sheet = opened(path)["Sensitivity"]
     (header,) = (row for row in sheet.iter_rows() if row[0].value == "Variant")
     headings = [cell.value for cell in header if cell.value]
     firsts = [heading for heading in headings[1:] if not heading.endswith(", total")]
@@ -185,7 +169,7 @@ def test_sensitivity_has_first_order_and_total_indices(study):
 def test_tornado_has_both_indices_of_the_worst_variant(study):
     """The tornado's table has, by falling share, swings, first-order and total index of the worst variant."""
     outcome, path = study
-    sheet = _open(path)["Sensitivity"]
+    sheet = opened(path)["Sensitivity"]
     worst = selection.drawn_variants(outcome)[0].computed.spread
     assert [cell.value for cell in sheet[4]][:5] == [
         "Dimension", "At lower limit", "At upper limit", "Share of variance", "Share with interactions",
@@ -212,7 +196,7 @@ def _table(sheet, header):
 def test_segments_add_up_to_the_backlash(study):
     """Sections holds every computed variant, whose segments add up to its nominal backlash."""
     outcome, path = study
-    sheet = _open(path)["Sections"]
+    sheet = opened(path)["Sections"]
     rows = _table(sheet, 1 + next(cell.row for cell in sheet["A"] if cell.value == "Variant") - 1)
     results = {row["variant"]: row for row in outcome.results.iter_rows(named=True)}
     assert {row["Variant"] for row in rows} == set(results)
@@ -228,7 +212,7 @@ def test_segments_add_up_to_the_backlash(study):
 def test_strength_names_the_governing_section(study):
     """Strength holds shear and von Mises stress of every section and names the one with the greatest."""
     outcome, path = study
-    sheet = _open(path)["Strength"]
+    sheet = opened(path)["Strength"]
     rows = _table(sheet, next(cell.row for cell in sheet["A"] if cell.value == "Variant"))
     assert len(rows) == len(outcome.computed)
     for row in rows:
@@ -260,7 +244,7 @@ def test_about_repeats_what_the_proof_computes(tmp_path, monkeypatch):
     for name in ("fillets", "fillets, rim 20 mm"):
         assert f"meridian integral {rows[name]['backlash_arcmin']:.3f}′, elasticity {elastic[name]:.3f}′" in text
     assert f"{rows['fillets, rim 30 mm']['backlash_arcmin']:.3f}′ and {elastic['fillets, rim 30 mm']:.3f}′" in text
-    sheets = _open(tmp_path / "proof.xlsx")
+    sheets = opened(tmp_path / "proof.xlsx")
     about = [str(row[0]) for row in sheets["About"].iter_rows(values_only=True)]
     assert all(f"•  {line}" in about for line in PROOF)
     sheet = sheets["Elasticity"]
@@ -272,7 +256,7 @@ def test_about_repeats_what_the_proof_computes(tmp_path, monkeypatch):
 def test_findings_link_to_their_cells(faulty):
     """Each finding links to its cell in the submission as read, at the user's own address, coloured there."""
     outcome, path = faulty
-    book = _open(path)
+    book = opened(path)
     sheet = book["Findings"]
     labels = [column.label for column in FINDINGS]
     header = next(row[0].row for row in sheet.iter_rows() if [cell.value for cell in row] == labels)
@@ -287,8 +271,8 @@ def test_findings_link_to_their_cells(faulty):
 
 def test_the_submission_stands_at_its_own_addresses(faulty):
     """The submission as read repeats texts and numbers of the file cell by cell."""
-    original = _open(regenerate.ROOT / "data" / "needs-fixing.xlsx", data_only=True)
-    book = _open(faulty[1])
+    original = opened(regenerate.ROOT / "data" / "needs-fixing.xlsx", data_only=True)
+    book = opened(faulty[1])
     for name, title in (("Variants", "Submission"), ("Materials", "Materials"), ("Tolerances", "Tolerances")):
         for row in original[name].iter_rows(max_col=20):
             for cell in row:
@@ -301,7 +285,7 @@ def test_text_of_a_submission_is_inert(table, sound, tmp_path):
     names = ["=1+1", "{=1}", "http://example.org", "+cmd", "@x", "-2", "mailto:a@b.c", "internal:Results!A1"]
     rows = [{**sound, "variant": name, "notes": name} for name in names]
     run(table(rows), tmp_path / "report.xlsx", samples=256)
-    book = _open(tmp_path / "report.xlsx")
+    book = opened(tmp_path / "report.xlsx")
     assert [cell.value for cell in book["Results"]["A"][2:]] == names
     for title in ("Results", "Submission", "Summary", "Curves", "Sensitivity"):
         for row in book[title].iter_rows():
@@ -329,7 +313,7 @@ def test_charts_have_cached_points_and_alternative_texts(study):
 def test_a_variant_is_picked_from_the_drawn_ones(study, sheet, cell):
     """Each drop-down lists all drawn variants, worst first, as its data sheet stores them."""
     outcome, path = study
-    book = _open(path)
+    book = opened(path)
     rules = {str(rule.sqref): rule.formula1 for rule in book[sheet].data_validations.dataValidation}
     stored, _, cells = rules[cell].partition("!")
     listed = [entry.value for (entry,) in book[stored][cells.replace("$", "")]]
@@ -339,7 +323,7 @@ def test_a_variant_is_picked_from_the_drawn_ones(study, sheet, cell):
 
 def test_stored_curves_rise_and_stored_heights_are_shares(study):
     """The percentiles of each variant rise, and its histogram holds all units but the two cut tails."""
-    sheet = _open(study[1])["Curves"]
+    sheet = opened(study[1])["Curves"]
     headings = [cell.value for cell in sheet[2]]
     first, last = headings.index("Bin 1"), headings.index("Bin 40")
     start, end = headings.index("z -5.0"), headings.index("z +5.0")
@@ -355,7 +339,7 @@ def test_only_the_worst_are_drawn_when_there_are_many(table, sound, tmp_path, mo
     monkeypatch.setattr(pipeline, "DRAWN", 3)
     rows = [{**sound, "variant": f"v{number}", "torque_Nm": 700.0 + 10 * number} for number in range(5)]
     run(table(rows), tmp_path / "report.xlsx", samples=256)
-    book = _open(tmp_path / "report.xlsx")
+    book = opened(tmp_path / "report.xlsx")
     assert [cell.value for cell in book["Curves"]["A"][2:]] == ["v4", "v3", "v2"]
     assert "The 3 worst of 5 variants" in book["Explorer"]["A2"].value
     assert book["Results"].max_row == 7
@@ -368,7 +352,7 @@ def test_a_report_without_scatter_or_limit(table, sound, tmp_path):
         "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n", encoding="utf-8"
     )
     run(table([{**sound, "backlash_limit_arcmin": ""}]), tmp_path / "report.xlsx", tolerances=tolerances)
-    book = _open(tmp_path / "report.xlsx")
+    book = opened(tmp_path / "report.xlsx")
     assert book["Sensitivity"]["A4"].value is None
 
 
@@ -376,7 +360,7 @@ def test_long_names_do_not_spill(table, sound, tmp_path):
     """A long name is shortened under charts and in the Summary, and whole in Results."""
     name = "pinned sleeve with a really long name for the design review"
     run(table([{**sound, "variant": name}]), tmp_path / "report.xlsx", samples=256)
-    book = _open(tmp_path / "report.xlsx")
+    book = opened(tmp_path / "report.xlsx")
     assert book["Curves"]["B3"].value == "pinned sleeve with a re…"
     assert book["Results"]["A3"].value == name
 
@@ -395,7 +379,7 @@ def test_the_same_outcome_gives_the_same_bytes(study):
 def test_a_table_alone_shows_the_built_in_materials_and_tolerances(table, sound, tmp_path):
     """A CSV submission's report shows the built-in materials and the class standard that were used."""
     run(table([sound]), tmp_path / "report.xlsx", samples=256)
-    book = _open(tmp_path / "report.xlsx")
+    book = opened(tmp_path / "report.xlsx")
     assert book["Materials"]["A2"].value == "20Cr2Ni4"
     assert book["Materials"]["B2"].value == 211
     assert [cell.value for cell in book["Tolerances"][3]][:1] == ["mean_radius"]
@@ -404,16 +388,16 @@ def test_a_table_alone_shows_the_built_in_materials_and_tolerances(table, sound,
 def test_notes_that_say_row_status_stay(table, sound, tmp_path):
     """Only the header of the status column hides a column, not a note of the same words."""
     run(table([{**sound, "notes": "Row status"}]), tmp_path / "report.xlsx", samples=256)
-    cells = [cell.value for row in _open(tmp_path / "report.xlsx")["Submission"].iter_rows() for cell in row]
+    cells = [cell.value for row in opened(tmp_path / "report.xlsx")["Submission"].iter_rows() for cell in row]
     assert "Row status" in cells
     assert "notes" in cells
 
 
 @needs_libreoffice
-def test_every_formula_is_stored_with_its_value(study, tmp_path):
+def test_every_formula_is_stored_with_its_value(study, recalculated):
     """Recalculated by a spreadsheet program, every cell of the report keeps its stored value."""
-    stored, recalculated = (_open(path, data_only=True) for path in (study[1], convert(study[1], "xlsx", tmp_path)))
-    formulas = _open(study[1])
+    stored, recalculated = (opened(path, data_only=True) for path in (study[1], recalculated))
+    formulas = opened(study[1])
     count = 0
     for name in SHEETS:
         for row in formulas[name].iter_rows():
@@ -436,7 +420,7 @@ def test_the_elasticity_sheet_says_what_was_not_checked(table, sound, tmp_path):
     )
     path = tmp_path / "report.xlsx"
     run(table([odd, faulty]), path, elasticity=True, method="random", samples=16)
-    book = _open(path)
+    book = opened(path)
     sheet = book["Elasticity"]
     rows = _table(sheet, next(cell.row for cell in sheet["A"] if cell.value == "Variant"))
     assert [(row["Variant"], row["Two-term formula [arcmin]"]) for row in rows] == [

@@ -6,7 +6,6 @@ import re
 
 import polars as pl
 import pytest
-import regenerate
 
 from flexlash.pipeline import run
 from flexlash.report.wording.sentences import sentences
@@ -14,10 +13,10 @@ from flexlash.report.wording.sentences import sentences
 EXACT = "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n"
 
 
-@pytest.fixture(scope="module")
-def study():
+@pytest.fixture
+def outcome(study):
     """Return the study's outcome."""
-    return run(regenerate.ROOT / "data" / "b3-160-study.xlsx")
+    return study[0]
 
 
 @pytest.fixture
@@ -31,18 +30,18 @@ def told(table, sound):
     return tell
 
 
-def test_the_topics_are_questions_of_a_review_in_order(study):
+def test_the_topics_are_questions_of_a_review_in_order(outcome):
     """Which fail, how sure, why, what to change: in this order, what leads to further sheets last."""
-    assert [topic for topic, _ in sentences(study)] == [
+    assert [topic for topic, _ in sentences(outcome)] == [
         "Computed", "Which fail", "How sure", "Why", "What to tighten", "What to stiffen", "Cylinder-only formula",
         "Strength", "Findings",
     ]  # fmt: skip
 
 
-def test_the_study_in_words(study):
+def test_the_study_in_words(outcome):
     """Names, percentages and limits of the study's failing variants are those of its results."""
-    told = dict(sentences(study))
-    rows = {row["variant"]: row for row in study.results.iter_rows(named=True)}
+    told = dict(sentences(outcome))
+    rows = {row["variant"]: row for row in outcome.results.iter_rows(named=True)}
     worst = rows["B3-160 case 5"]
     assert told["Computed"] == "11 of 11 variants were computed."
     assert told["Which fail"].startswith(
@@ -238,12 +237,12 @@ def test_a_given_shear_modulus_without_tolerance_is_said(told, tmp_path):
     assert said == "The shear modulus of 1 variant is given and has no tolerance: it does not scatter."
 
 
-def test_what_yields_first(study):
+def test_what_yields_first(outcome):
     """The variant nearest to yield is named with its governing section and its reserve."""
-    rows = list(study.results.iter_rows(named=True))
-    torque = {one.variant.name: one.variant.dimensions["torque"] for one in study.computed.values()}
+    rows = list(outcome.results.iter_rows(named=True))
+    torque = {one.variant.name: one.variant.dimensions["torque"] for one in outcome.computed.values()}
     least = min(row["elastic_limit_torque_Nm"] / torque[row["variant"]] for row in rows)
-    said = dict(sentences(study))["Strength"]
+    said = dict(sentences(outcome))["Strength"]
     alike, name, section = re.match(
         r"Nearest to yield, one of (\d+) alike, is “(.*)”: its (.*) yields at ", said
     ).groups()

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import re
 import subprocess
-import warnings
 import zipfile
-from functools import lru_cache
 
-import openpyxl
 import pytest
 import regenerate
 import xlsxwriter
 from libreoffice import convert_all, needs_pages
+from report_entries import opened
 
 from flexlash.analysis.run_summary import dimension_words, share_words
 from flexlash.pipeline import run
@@ -31,13 +29,6 @@ FILLS = {"red": "FFF8CBAD", "amber": "FFFFE699", "green": "FFC6E5D8"}
 NUMBERS = ("backlash_arcmin", "p50_arcmin", "p97_5_arcmin", "backlash_limit_arcmin")
 
 
-@lru_cache(maxsize=2)
-def _open(path, **options):
-    with path.open("rb") as file, warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return openpyxl.load_workbook(file, **options)
-
-
 def _row(sheet, words):
     """Return the number of the row whose first cell holds these words."""
     return next(row for row in range(1, sheet.max_row + 1) if sheet.cell(row, 1).value == words)
@@ -47,13 +38,6 @@ def _row(sheet, words):
 def folder(tmp_path_factory):
     """Return the folder of this module's reports."""
     return tmp_path_factory.mktemp("summary")
-
-
-@pytest.fixture(scope="module")
-def study(folder):
-    """Return the study's outcome and the path of its report."""
-    path = folder / "study.xlsx"
-    return run(regenerate.ROOT / "data" / "b3-160-study.xlsx", path), path
 
 
 def _many(count, first=700.0):
@@ -72,7 +56,7 @@ def _many(count, first=700.0):
 
 def test_key_figures_and_their_rule(study):
     """Computed, red, amber, green and findings stand in words above their rule; only what occurs is coloured."""
-    sheet = _open(study[1])["Summary"]
+    sheet = opened(study[1])["Summary"]
     places = (1, 2, 5, 8, 9)
     assert [sheet.cell(4, place).value for place in places] == ["11 of 11", "3 red", "0 amber", "8 green", "5 warnings"]
     captions = [sheet.cell(5, place).value for place in places]
@@ -84,7 +68,7 @@ def test_key_figures_and_their_rule(study):
 def test_every_sentence_stands_beside_its_topic(study):
     """The sheet holds every sentence, merged across the table and as high as its lines."""
     outcome, path = study
-    sheet = _open(path)["Summary"]
+    sheet = opened(path)["Summary"]
     merged = {str(area) for area in sheet.merged_cells.ranges}
     for topic, text in sentences(outcome):
         row = _row(sheet, topic)
@@ -98,7 +82,7 @@ def test_every_sentence_stands_beside_its_topic(study):
 def test_the_table_holds_the_worst_with_their_numbers(study):
     """Each row of the table repeats a variant's results, its verdict in word and colour, worst first."""
     outcome, path = study
-    sheet = _open(path)["Summary"]
+    sheet = opened(path)["Summary"]
     first = _row(sheet, "Variant") + 1
     for row, one in enumerate(drawn_variants(outcome), start=first):
         cells = [sheet.cell(row, place) for place in range(1, 10)]
@@ -118,7 +102,7 @@ def test_links_lead_to_their_variants(table, sound, tmp_path):
     rows = [{**sound, "variant": "bad", "torque_Nm": ""}]
     rows += [{**sound, "variant": name, "torque_Nm": 700 + place} for place, name in enumerate(("=1+1", "x" * 90, "c"))]
     outcome = run(table(rows), tmp_path / "report.xlsx", samples=64)
-    book = _open(tmp_path / "report.xlsx")
+    book = opened(tmp_path / "report.xlsx")
     sheet = book["Summary"]
     first = _row(sheet, "Variant") + 1
     for row, one in enumerate(drawn_variants(outcome), start=first):
@@ -136,7 +120,7 @@ def test_links_lead_to_their_variants(table, sound, tmp_path):
 
 def test_distances_are_the_same_in_sentence_and_table(study):
     """What a sentence says a red variant is over its limit by is what its row of the table shows."""
-    sheet = _open(study[1])["Summary"]
+    sheet = opened(study[1])["Summary"]
     cells = [sheet.cell(_row(sheet, "Variant") + 1 + place, 7) for place in range(3)]
     shown = [f"{cell.value:.{len(cell.number_format.split(';')[0].partition('.')[2])}f}" for cell in cells]
     assert re.findall(r"([\d.]+)′ over", sheet.cell(_row(sheet, "Which fail"), 2).value) == shown
@@ -147,7 +131,7 @@ def test_verdicts_of_few_points_have_a_mark(folder):
     """By 64 draws eight green verdicts have a ? in cell and key figure, in the colour of green, and shares an ≈."""
     study = regenerate.ROOT / "data" / "b3-160-study.xlsx"
     run(study, folder / "few.xlsx", method="random", samples=64)
-    sheet = _open(folder / "few.xlsx")["Summary"]
+    sheet = opened(folder / "few.xlsx")["Summary"]
     assert [sheet.cell(4, place).value for place in (2, 5, 8)] == ["3 red", "0 amber", "8 green?"]
     assert sheet.cell(5, 8).value == f"{RULES['green']}; 8 not settled"
     assert sheet.cell(4, 8).fill.fgColor.rgb == FILLS["green"]
@@ -161,7 +145,7 @@ def test_verdicts_of_few_points_have_a_mark(folder):
 
 def test_further_sheets_and_a_line_to_sign(study):
     """Below the table links lead to Explorer and Trace, and the page ends with room for a reviewer's name."""
-    book = _open(study[1])
+    book = opened(study[1])
     sheet = book["Summary"]
     row = _row(sheet, "Pick a variant in")
     for place, title in ((2, "Explorer"), (3, "Trace")):
@@ -176,7 +160,7 @@ def test_numbers_have_no_separators(study, folder, table, sound):
     run(table([sound]), folder / "many points.xlsx", method="sobol")
     for path in (study[1], folder / "many points.xlsx"):
         texts = [
-            cell.value for row in _open(path)["Summary"].iter_rows() for cell in row if isinstance(cell.value, str)
+            cell.value for row in opened(path)["Summary"].iter_rows() for cell in row if isinstance(cell.value, str)
         ]
         assert not any(re.search(r"\d,\d", text) for text in texts)
     assert any("32768 points per variant" in text for text in texts)
@@ -186,7 +170,7 @@ def test_long_names_of_the_table_stay_apart(table, sound, tmp_path):
     """Names that begin alike are cut in their middle, so that each row of the table has its own."""
     names = [f"A Name That Is The Same For Thirty Letters, Wall {wall} mm" for wall in ("1.6", "1.7", "1.8")]
     run(table([{**sound, "variant": name} for name in names]), tmp_path / "report.xlsx", samples=64)
-    sheet = _open(tmp_path / "report.xlsx")["Summary"]
+    sheet = opened(tmp_path / "report.xlsx")["Summary"]
     first = _row(sheet, "Variant") + 1
     labels = [sheet.cell(row, 1).value for row in range(first, first + 3)]
     assert len(set(labels)) == 3
@@ -198,7 +182,7 @@ def test_long_names_of_the_table_stay_apart(table, sound, tmp_path):
 def test_where_the_numbers_come_from(study):
     """Name, date, sha256, version, method, seed and lines stand on the page; nothing of the time of the run."""
     outcome, path = study
-    texts = "\n".join(str(cell.value) for row in _open(path)["Summary"].iter_rows() for cell in row if cell.value)
+    texts = "\n".join(str(cell.value) for row in opened(path)["Summary"].iter_rows() for cell in row if cell.value)
     assert "Submission b3-160-study.xlsx; last changed 2026-01-01" in texts
     assert f"sha256 {outcome.submission.sha256}" in texts
     assert re.search(r"flexlash \d+\.\d+\.\d+, method line, seed 0, \d+ (to \d+ )?lines per variant\.", texts)
@@ -207,7 +191,7 @@ def test_where_the_numbers_come_from(study):
 def test_a_file_without_a_date_has_none(table, sound, tmp_path):
     """A table has no date of its own, so none is told."""
     run(table([sound]), tmp_path / "report.xlsx", samples=64)
-    sheet = _open(tmp_path / "report.xlsx")["Summary"]
+    sheet = opened(tmp_path / "report.xlsx")["Summary"]
     texts = [str(cell.value) for cell in sheet["A"] if cell.value]
     assert "Submission submission.csv" in texts
     assert not any("last changed" in text for text in texts)
@@ -247,7 +231,7 @@ def test_more_variants_than_fit_are_said(table, tmp_path, monkeypatch):
     """The table lists the twelve worst and the chart the sixty worst; both say of how many, not of how many drawn."""
     monkeypatch.setattr("flexlash.pipeline.DRAWN", 70)
     run(table(_many(80)), tmp_path / "report.xlsx", samples=64)
-    texts = [str(cell.value) for cell in _open(tmp_path / "report.xlsx")["Summary"]["A"] if cell.value]
+    texts = [str(cell.value) for cell in opened(tmp_path / "report.xlsx")["Summary"]["A"] if cell.value]
     assert any(text.startswith("The 12 worst of 80 are listed; all are in Results.") for text in texts)
     assert ": the 60 worst of 80<" in _chart(tmp_path / "report.xlsx")
     assert _chart(tmp_path / "report.xlsx").count('<c:ptCount val="60"/>') == 8
@@ -268,7 +252,7 @@ def test_few_decimals_of_an_axis_are_enough(table, sound, tmp_path):
 def test_nothing_computed_still_has_a_page(table, sound, tmp_path):
     """A submission without a computed row has its Summary without table, chart and link to a variant."""
     path = _alone(run(table([{**sound, "torque_Nm": ""}])), tmp_path / "report.xlsx", 9)
-    values = [cell.value for cell in _open(path)["Summary"]["A"]]
+    values = [cell.value for cell in opened(path)["Summary"]["A"]]
     assert "0 of 1" in values
     assert "Variant" not in values
 

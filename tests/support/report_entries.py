@@ -6,12 +6,13 @@ import re
 import warnings
 import zipfile
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from xml.sax.saxutils import escape
 
 import openpyxl
 
-__all__ = ["error_cells", "sheet_part", "typed", "values_of", "without_charts"]
+__all__ = ["error_cells", "opened", "sheet_part", "typed", "values_of", "without_charts"]
 
 
 def sheet_part(archive: zipfile.ZipFile, sheet: str) -> str:
@@ -61,6 +62,14 @@ def _cell(cell: str, style: str, entry: str | float) -> str:
     if isinstance(entry, str):
         return f'<c r="{cell}"{style} t="inlineStr"><is><t>{escape(entry)}</t></is></c>'
     return f'<c r="{cell}"{style}><v>{entry!r}</v></c>'
+
+
+@lru_cache(maxsize=4)
+def opened(path: Path, **options: bool) -> openpyxl.Workbook:
+    """Return a workbook as openpyxl reads it, which takes seconds for a report; no test may change it."""
+    with path.open("rb") as file, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return openpyxl.load_workbook(file, **options)
 
 
 def values_of(path: Path, sheet: str) -> dict[str, object]:
