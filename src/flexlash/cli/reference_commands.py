@@ -14,8 +14,9 @@ __all__ = ["explain", "schema"]
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="As a JSON array, one object per column.")
 def schema(*, as_json: bool) -> None:
-    """Print the data dictionary: every column of every sheet."""
+    """Print the data dictionary: every column of every sheet, and the rules of its cells."""
     from flexlash.schema.columns import ENTRY_SHEETS
+    from flexlash.schema.part_rules import PART_RULES
     from flexlash.schema.result_columns import FINDINGS, RESULTS
 
     sheets = {**ENTRY_SHEETS, "Results": RESULTS, "Findings": FINDINGS}
@@ -28,6 +29,11 @@ def schema(*, as_json: bool) -> None:
         for column in entries:
             click.echo(f"  {column.key:32} {column.label}{', required' if column.required else ''}")
             click.echo(f"  {'':32} {column.help}")
+            for rule in column.rules.values():
+                click.echo(f"  {'':32} {rule.id}: {rule.words}")
+    click.echo("\nBetween columns of Variants, each with what breaks it")
+    for part_rule in PART_RULES:
+        click.echo(f"  {part_rule.id:32} {part_rule.words}")
 
 
 @click.command()

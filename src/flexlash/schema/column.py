@@ -8,7 +8,19 @@ from typing import Any, Literal, TypeAlias
 
 from flexlash.schema.units import Unit, find_unit
 
-__all__ = ["FACTOR", "FILLET", "LENGTH", "PERCENT", "POSITIVE", "RADIUS", "STRESS", "TORQUE", "Column", "Role"]
+__all__ = [
+    "FACTOR",
+    "FILLET",
+    "LENGTH",
+    "PERCENT",
+    "POSITIVE",
+    "RADIUS",
+    "STRESS",
+    "TORQUE",
+    "Column",
+    "ColumnRule",
+    "Role",
+]
 
 Role: TypeAlias = Literal["identity", "dimension", "requirement", "remark", "result"]
 """What a field is good for.
@@ -34,6 +46,18 @@ _FEW = 8
 """Most choices that a sentence lists."""
 
 _FIRST = ("sheet", "key", "label", "unit", "type", "required", "minimum", "maximum", "choices", "default", "help")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ColumnRule:
+    """What a cell of a column must hold, in words.
+
+    `id` is `column|rule`, `code` that of the finding at a cell that breaks it; results, which keep theirs, have none.
+    """
+
+    id: str
+    code: str
+    words: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,27 +122,51 @@ class Column:
         """Whether the field holds numbers."""
         return self.type in {"number", "integer"}
 
+    @cached_property
+    def rules(self) -> dict[str, ColumnRule]:
+        """The rules that each cell is held to, by name: required, minimum, maximum, choices."""
+        rules = {
+            "required": ("E201", "required" if self.required else ""),
+            "minimum": ("E207", self._lower_bound),
+            "maximum": ("E208", "" if self.maximum is None else f"at most {self.maximum:.15g}"),
+            "choices": ("E209", self._list),
+        }
+        return {
+            name: ColumnRule(id=f"{self.key}|{name}", code="" if self.role == "result" else code, words=words)
+            for name, (code, words) in rules.items()
+            if words
+        }
+
+    @property
+    def _lower_bound(self) -> str:
+        """The lower bound in words, an empty text where there is none."""
+        if self.minimum is None:
+            return ""
+        return f"{'greater than' if self.exclusive_minimum else 'of at least'} {self.minimum:.15g}"
+
+    @property
+    def _list(self) -> str:
+        """The choices in words, an empty text where there are none."""
+        if len(self.choices) > _FEW:
+            return "an entry of its list"
+        return f"one of {', '.join(self.choices)}" if self.choices else ""
+
     @property
     def requirement(self) -> str:
         """What a cell must hold, in words: `a number in mm greater than 0`."""
-        if len(self.choices) > _FEW:
-            return "an entry of its list"
         if self.choices:
-            return "one of " + ", ".join(self.choices)
+            return self._list
         if not self.is_number:
             return "a text"
         words = "a whole number" if self.type == "integer" else "a number"
         if self.unit not in {"", "-"}:
             words += f" in {self.unit}"
-        if self.minimum is not None:
-            words += f" {'greater than' if self.exclusive_minimum else 'of at least'} {self.minimum:.15g}"
-        if self.maximum is not None:
-            words += f"{' and' if self.minimum is not None else ''} at most {self.maximum:.15g}"
-        return words
+        bounds = [self.rules[name].words for name in ("minimum", "maximum") if name in self.rules]
+        return " ".join(filter(None, [words, " and ".join(bounds)]))
 
     def as_dictionary(self) -> dict[str, Any]:
         """Return the entry of `flexlash schema --json`: the fields that scripts rely on first."""
-        entry = asdict(self) | {"choices": list(self.choices)}
+        entry = asdict(self) | {"choices": list(self.choices), "rules": [asdict(rule) for rule in self.rules.values()]}
         return {key: entry[key] for key in dict.fromkeys((*_FIRST, *entry))}
 
 

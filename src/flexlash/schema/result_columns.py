@@ -20,13 +20,17 @@ def _angle(key: str, label: str, text: str, unit: str = "arcmin", **rest: Any) -
     return _result(f"{key}_{unit}", label, text, unit, "angle", **rest)
 
 
+def _share(key: str, label: str, text: str) -> Column:
+    return _result(key, label, text, minimum=0, maximum=1)
+
+
 def _percentile(key: str, share: str) -> Column:
     return _angle(key, f"P{share}", f"Backlash that {share} % of units stay below.")
 
 
 def _error(key: str, label: str) -> Column:
     text = f"Standard error of {label}: ± 1.96 of them is a 95 % interval."
-    return _angle(f"{key}_standard_error", f"{label} standard error", text)
+    return _angle(f"{key}_standard_error", f"{label} standard error", text, minimum=0)
 
 
 def _plain_draws(key: str, label: str) -> tuple[Column, ...]:
@@ -51,7 +55,7 @@ RESULTS = (
     _angle("backlash", "Backlash", "Twice the wind-up, at the entered dimensions.", "rad"),
     _angle("backlash", "Backlash", "Twice the wind-up, at the entered dimensions."),
     _angle("backlash", "Backlash", "Twice the wind-up, at the entered dimensions.", "arcsec"),
-    _result("disk_share", "Disk share", "Disk wind-up over wind-up, a fraction."),
+    _share("disk_share", "Disk share", "Disk wind-up over wind-up, a fraction."),
     _angle(
         "cylinder_only_backlash",
         "Cylinder-only backlash",
@@ -67,7 +71,7 @@ RESULTS = (
         "2U at the set per cent of the rated torque: the flexspline's part; teeth, bearing and hub add theirs.",
     ),
     _angle("mean", "Mean", "Mean backlash over the tolerances."),
-    _angle("sd", "Standard deviation", "Standard deviation of the backlash over the tolerances."),
+    _angle("sd", "Standard deviation", "Standard deviation of the backlash over the tolerances.", minimum=0),
     _percentile("p0_135", "0.135"),
     _percentile("p2_5", "2.5"),
     _percentile("p5", "5"),
@@ -82,13 +86,13 @@ RESULTS = (
     _angle("worst_case_low", "Worst case low", "Every dimension at the limit that lowers the backlash."),
     _angle("worst_case_high", "Worst case high", "Every dimension at the limit that raises the backlash."),
     _angle("first_order_sd", "First-order sd", "First-order (GUM) standard uncertainty at mid-limits."),
-    _result("probability_over_limit", "Probability over limit", "Share of units over the limit, a fraction."),
-    _result("probability_over_limit_low", "Probability low", "Lower end of its 95 % interval."),
-    _result("probability_over_limit_high", "Probability high", "Upper end of its 95 % interval."),
-    _result("ppm_over_limit", "Over limit", "Units over the limit per million.", "ppm"),
+    _share("probability_over_limit", "Probability over limit", "Share of units over the limit, a fraction."),
+    _share("probability_over_limit_low", "Probability low", "Lower end of its 95 % interval."),
+    _share("probability_over_limit_high", "Probability high", "Upper end of its 95 % interval."),
+    _result("ppm_over_limit", "Over limit", "Units over the limit per million.", "ppm", minimum=0, maximum=1_000_000),
     _result("ppk", "Ppk upper", "(limit − P50)/(P99.865 − P50), ISO 22514-2."),
     _result("main_contributor", "Main contributor", "Dimension that causes most of the spread.", type="text"),
-    _result("main_contributor_share", "Main contributor share", "Its share of the variance, a fraction."),
+    _share("main_contributor_share", "Main contributor share", "Its share of the variance, a fraction."),
     _angle("backlash_limit", "Backlash limit", "The limit as submitted.", role="requirement"),
     _angle("rim_windup", "Rim wind-up", "Part of the wind-up in the tooth rim.", "rad"),
     _angle("wall_windup", "Wall wind-up", "Part of the wind-up in the plain wall.", "rad"),
@@ -163,8 +167,12 @@ RESULTS = (
     *(_error(key, label) for key, label in (("coverage_low", "Coverage low"), ("coverage_high", "Coverage high"))),
     _result("skewness", "Skewness", "Third central moment over the cube of the standard deviation; 0 for a normal."),
     _result("skewness_standard_error", "Skewness standard error", "Standard error of the skewness."),
-    _result("ppm_over_limit_low", "Over limit low", "Lower end of its 95 % interval.", "ppm"),
-    _result("ppm_over_limit_high", "Over limit high", "Upper end of its 95 % interval.", "ppm"),
+    _result(
+        "ppm_over_limit_low", "Over limit low", "Lower end of its 95 % interval.", "ppm", minimum=0, maximum=1_000_000
+    ),
+    _result(
+        "ppm_over_limit_high", "Over limit high", "Upper end of its 95 % interval.", "ppm", minimum=0, maximum=1_000_000
+    ),
     _result("ppk_normal", "Ppk upper, normal theory", "(limit − mean)/(3 sd): right only for a normal backlash."),
     _result(
         "first_order_valid",
@@ -174,7 +182,7 @@ RESULTS = (
         type="choice",
         choices=("yes", "no"),
     ),
-    _result("interaction_share", "Interaction", "Share of the variance that no dimension causes by itself."),
+    _share("interaction_share", "Interaction", "Share of the variance that no dimension causes by itself."),
     _result("spread_method", "Spread by", "line, sobol or random: what made the spread of this row.", type="text"),
     _result("spread_points", "Lines or points", "Lines (method line) or points behind the spread of this row."),
     _result("spread_note", "Note on the spread", "Why not lines, or which precision was not reached.", type="text"),
@@ -191,7 +199,7 @@ CROSS_CHECK = (
     *_plain_draws("p50", "P50"),
     *_plain_draws("p97_5", "P97.5"),
     *_plain_draws("p99_865", "P99.865"),
-    _result("random_probability_over_limit", "Over limit by plain draws", "Share of plain draws over the limit."),
+    _share("random_probability_over_limit", "Over limit by plain draws", "Share of plain draws over the limit."),
     _result("random_points", "Plain draws", "Number of plain Monte Carlo draws."),
     _result(
         "cross_check_deviation",

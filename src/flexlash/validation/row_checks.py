@@ -1,17 +1,16 @@
-"""The pandera schemas that derive from the columns, and their failures turned into findings."""
+"""What the pandera schemas of columns and of relations find, turned into findings."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import pandera.polars as pa
 import polars as pl
-from pandera.errors import SchemaErrors
 
-from flexlash.schema.columns import Column, columns_of
+from flexlash.schema.columns import columns_of
 from flexlash.schema.spellings import misspelt, spelt_alike, suggested
 from flexlash.validation.cell_values import is_no_value, no_value_facts
+from flexlash.validation.column_schemas import entry_schema, failures
 from flexlash.validation.ledger import Ledger, UnitMistake
 from flexlash.validation.relations import RELATIONS, Relation, numbers_of
 from flexlash.validation.typed_columns import Table
@@ -19,32 +18,6 @@ from flexlash.validation.unit_mistakes import find_unit_mistakes, report_contrad
 from flexlash.validation.unusual_values import report_unusual
 
 __all__ = ["check_cells", "check_relations"]
-
-
-def _checks(column: Column) -> list[pa.Check]:
-    """Return a column's bounds and list as checks whose error is the finding's code."""
-    checks = []
-    if column.minimum is not None and column.is_number:
-        bound = pa.Check.gt if column.exclusive_minimum else pa.Check.ge
-        checks.append(bound(column.minimum, error="E207"))
-    if column.maximum is not None and column.is_number:
-        checks.append(pa.Check.le(column.maximum, error="E208"))
-    if column.choices:
-        checks.append(pa.Check.isin(column.choices, error="E209"))
-    return checks
-
-
-def _cell_schema(schema: str) -> pa.DataFrameSchema:
-    return pa.DataFrameSchema(
-        {
-            key: pa.Column(
-                pl.Float64 if column.is_number else pl.String,
-                checks=_checks(column),
-                nullable=not column.required,
-            )
-            for key, column in columns_of(schema).items()
-        }
-    )
 
 
 def _relation_check(relation: Relation) -> pa.Check:
@@ -59,28 +32,20 @@ def _relation_check(relation: Relation) -> pa.Check:
 _RELATIONS = pa.DataFrameSchema(checks=[_relation_check(relation) for relation in RELATIONS.values()])
 
 
-def _failures(schema: pa.DataFrameSchema, frame: pl.DataFrame) -> Iterator[tuple[str, str, int]]:
-    """Yield check, column and frame index of every failure, in row order."""
-    try:
-        schema.validate(frame, lazy=True)
-    except SchemaErrors as errors:
-        cases = errors.failure_cases.sort("index", maintain_order=True)
-        yield from cases.select("check", pl.col("column").fill_null(""), "index").iter_rows()
-
-
 def check_cells(table: Table, ledger: Ledger) -> None:
     """Check every cell by itself: required, bounds, lists; and find the units that are mistaken."""
     columns = columns_of(table.schema)
-    for check, key, index in _failures(_cell_schema(table.schema), table.frame):
-        row = table.frame["row"][index]
+    for broken, place in failures(entry_schema(table.schema), table.frame):
+        key, _, rule = broken.partition("|")
+        row = table.frame["row"][place]
         column = columns[key]
         if (row, key) in table.faulty or key not in table.heading.places:
             continue
-        value = table.frame[key][index]
+        value = table.frame[key][place]
         table.faulty.add((row, key))
-        is_none = check == "E209" and is_no_value(value)
+        is_none = rule == "choices" and is_no_value(value)
         ledger.add(
-            "E201" if check == "not_nullable" else "E221" if is_none else check,
+            "E221" if is_none else column.rules[rule].code,
             sheet=table.sheet,
             cell=table.address(row, key),
             column=key,
@@ -88,8 +53,8 @@ def check_cells(table: Table, ledger: Ledger) -> None:
             requirement=column.requirement,
             choices=", ".join(column.choices),
             value=table.entered(row, key),
-            suggestion=suggested(value, column.choices) if check == "E209" and not is_none else "",
-            repair=misspelt(value, spelt_alike(column.choices)) if check == "E209" else None,
+            suggestion=suggested(value, column.choices) if rule == "choices" and not is_none else "",
+            repair=misspelt(value, spelt_alike(column.choices)) if rule == "choices" else None,
             **no_value_facts(column),
             rows=[row] if table.schema == "Variants" else [],
         )
@@ -100,7 +65,7 @@ def check_cells(table: Table, ledger: Ledger) -> None:
 def check_relations(table: Table, ledger: Ledger) -> None:
     """Check what the cells of a Variants row must be to one another."""
     columns = columns_of("Variants")
-    for name, _, index in _failures(_RELATIONS, table.frame):
+    for name, index in failures(_RELATIONS, table.frame):
         relation = RELATIONS[name]
         rule, record = relation.rule, table.frame.row(index, named=True)
         row, key = record["row"], relation.rule.key
