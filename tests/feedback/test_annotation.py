@@ -264,6 +264,7 @@ def test_sorted_rows_take_their_marks_along():
     assert ("Data", "D6") not in notes(clean)
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_marks_survive_libreoffice(tmp_path):
     """After a round trip through LibreOffice the marks are replaced and taken away as before."""

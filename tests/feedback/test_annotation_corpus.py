@@ -45,6 +45,7 @@ def _by_calamine(data):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.public_workbooks
 @pytest.mark.skipif(not CASES, reason="FLEXLASH_CORPUS names no folder of public workbooks")
 @pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import openpyxl
 import pytest
 import regenerate
-from libreoffice import convert, needs_libreoffice
+from libreoffice import convert_all, needs_libreoffice
 from openpyxl.utils import get_column_letter
 
 from flexlash.feedback.template.upgrade import upgraded
@@ -21,10 +21,6 @@ _EVERY = 60
 """Rows at the top of each sheet of which every cell's lock is compared."""
 
 
-def _through_libreoffice(path, folder):
-    return convert(path, "xlsx", folder)
-
-
 def _through_openpyxl(path, folder):
     saved = folder / "openpyxl.xlsx"
     openpyxl.load_workbook(path).save(saved)
@@ -38,7 +34,6 @@ def _through_xlsxwriter(path, folder):
 
 
 PROGRAMS = {
-    "libreoffice": _through_libreoffice,
     "openpyxl": _through_openpyxl,
     "xlsxwriter": _through_xlsxwriter,
 }
@@ -58,13 +53,29 @@ FORMULAS = {
 """What becomes of cells with a formula: LibreOffice calculates it, openpyxl drops every result."""
 
 
-@pytest.fixture(scope="module", params=[(program, file) for program in PROGRAMS for file in FILES], ids="-".join)
+@pytest.fixture(scope="module")
+def through_libreoffice(tmp_path_factory):
+    """Return every file, and a plain one with frozen panes, as LibreOffice saves it."""
+    folder = tmp_path_factory.mktemp("libreoffice")
+    book = openpyxl.Workbook()
+    book.active["A1"] = "x"
+    book.active.freeze_panes = "B2"
+    book.save(folder / "plain.xlsx")
+    paths = [*(regenerate.ROOT / file for file in FILES.values()), folder / "plain.xlsx"]
+    return dict(zip([*FILES, "plain"], convert_all(paths, "xlsx", folder), strict=True))
+
+
+TRIPS = [pytest.param(("libreoffice", file), marks=[pytest.mark.slow, needs_libreoffice]) for file in FILES]
+TRIPS += [(program, file) for program in PROGRAMS for file in FILES]
+
+
+@pytest.fixture(scope="module", params=TRIPS, ids="-".join)
 def trip(request, tmp_path_factory):
     """Return a program's name, a file, and the same file as that program saves it."""
     program, file = request.param
-    if program == "libreoffice" and needs_libreoffice.args[0]:
-        pytest.skip(needs_libreoffice.kwargs["reason"])
     path = regenerate.ROOT / FILES[file]
+    if program == "libreoffice":
+        return program, path, request.getfixturevalue("through_libreoffice")[file]
     return program, path, PROGRAMS[program](path, tmp_path_factory.mktemp("trip"))
 
 
@@ -267,17 +278,12 @@ def test_what_a_program_always_loses_is_known(books):
     assert panes["Variants"] == "B5"
 
 
+@pytest.mark.slow
 @needs_libreoffice
-def test_libreoffice_without_a_window_freezes_nothing(tmp_path):
+def test_libreoffice_without_a_window_freezes_nothing(through_libreoffice):
     """The loss of frozen panes is LibreOffice's own: a plain workbook loses them as the template does."""
-    path = tmp_path / "plain.xlsx"
-    book = openpyxl.Workbook()
-    book.active["A1"] = "x"
-    book.active.freeze_panes = "B2"
-    book.save(path)
-    template = convert(regenerate.ROOT / FILES["template"], "xlsx", tmp_path)
-    kept = [openpyxl.load_workbook(convert(path, "xlsx", tmp_path)).active.freeze_panes]
-    kept += [openpyxl.load_workbook(template)["Variants"].freeze_panes]
+    kept = [openpyxl.load_workbook(through_libreoffice["plain"]).active.freeze_panes]
+    kept += [openpyxl.load_workbook(through_libreoffice["template"])["Variants"].freeze_panes]
     assert kept in ([None, None], ["B2", "B5"])
 
 

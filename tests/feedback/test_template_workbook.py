@@ -84,6 +84,12 @@ def filled(tmp_path_factory):
     return path
 
 
+@pytest.fixture(scope="module")
+def recalculated(filled):
+    """Return the same file as a spreadsheet program recalculates and saves it."""
+    return convert(filled, "xlsx", filled.parent)
+
+
 def _statuses(path):
     sheet = openpyxl.load_workbook(path, data_only=True)["Variants"]
     return [sheet.cell(FIRST_ROW + 1 + place, len(VARIANTS) + 1).value for place in range(len(STATUS_ROWS) + 2)]
@@ -178,21 +184,24 @@ def test_stored_status_tells_what_a_row_lacks(filled):
     assert _statuses(filled) == [text for _, text in STATUS_ROWS] + ["variant used twice"] * 2
 
 
+@pytest.mark.slow
 @needs_libreoffice
-def test_the_status_formula_calculates_what_is_stored(filled, tmp_path):
+def test_the_status_formula_calculates_what_is_stored(filled, recalculated):
     """Recalculated by a spreadsheet program, every status formula gives its stored text."""
-    assert _statuses(convert(filled, "xlsx", tmp_path)) == _statuses(filled)
+    assert _statuses(recalculated) == _statuses(filled)
 
 
+@pytest.mark.slow
 @needs_libreoffice
-def test_the_live_sentence_counts_complete_rows(filled, tmp_path):
+def test_the_live_sentence_counts_complete_rows(filled, recalculated):
     """The sentence above the table counts the complete rows, stored and recalculated."""
     complete = [text for _, text in STATUS_ROWS].count("complete")
-    for path in (filled, convert(filled, "xlsx", tmp_path)):
+    for path in (filled, recalculated):
         sheet = openpyxl.load_workbook(path, data_only=True)["Variants"]
         assert sheet.cell(2, 10).value == f"{complete} of {len(STATUS_ROWS) + 2} rows complete"
 
 
+@pytest.mark.slow
 @needs_pages
 def test_the_template_prints_on_whole_pages(tmp_path):
     """Every sheet of the filled template prints one page wide: no page holds a cut-off column."""
@@ -204,6 +213,7 @@ def test_the_template_prints_on_whole_pages(tmp_path):
     assert 5 <= count <= 9
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_the_class_list_follows_tolerances(tmp_path):
     """The drop-down of classes holds each name of Tolerances once, stored and recalculated."""

@@ -71,6 +71,7 @@ def judged():
         return [Judged(row) for row in rows]
 
 
+@pytest.mark.slow
 @pytest.mark.public_workbooks
 def test_every_public_workbook_ends_in_an_outcome(judged):
     """Every file of the corpus ends in one refusal with exit code 4."""
@@ -78,6 +79,7 @@ def test_every_public_workbook_ends_in_an_outcome(judged):
     assert {one.path.name: one.codes for one in judged if one.outcome.exit_code != 4 or not one.codes} == {}
 
 
+@pytest.mark.slow
 @pytest.mark.public_workbooks
 def test_every_public_workbook_is_told_by_the_right_name(judged):
     """What the manifest calls encrypted, old, foreign, damaged or readable is told as such, both ways."""
@@ -86,12 +88,14 @@ def test_every_public_workbook_is_told_by_the_right_name(judged):
     } == {}
 
 
+@pytest.mark.slow
 @pytest.mark.public_workbooks
 def test_reading_warns_nobody(judged):
     """Reading a workbook raises no Python warning, which would reach the user's terminal."""
     assert {one.path.name: str(one.warned[0].message) for one in judged if one.warned} == {}
 
 
+@pytest.mark.slow
 @pytest.mark.public_workbooks
 def test_strict_open_xml_is_read(judged):
     """Every public workbook of the Strict dialect is read, not refused."""
@@ -104,6 +108,7 @@ def _cells(sheets):
     return [cell for sheet in sheets.values() for row in sheet.rows.values() for cell in row.values()]
 
 
+@pytest.mark.slow
 @pytest.mark.public_workbooks
 def test_public_workbooks_are_read_whole(judged):
     """From each readable workbook come as many cells as the manifest counts, with or without errors and empty texts."""
@@ -172,6 +177,7 @@ SEEN_OTHERWISE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.public_workbooks
 def test_public_workbooks_are_read_alike_by_another_reader(judged):
     """Every cell of the readable workbooks is what calamine reads at its address, to the last bit, and none more."""
@@ -242,6 +248,7 @@ def test_files_of_other_programs(program, tmp_path):
     assert _differences(read_submission(path).sheets, path) == {}
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_a_file_of_libreoffice(tmp_path):
     """What LibreOffice writes of a workbook is read as the workbook itself, its numbers to 15 digits."""

@@ -21,7 +21,10 @@ MEBIBYTES = 1_024
 CHECKED_EVERY = 10
 COMPARED_EVERY = 5
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="how much memory a process has is told otherwise there")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(sys.platform != "linux", reason="how much memory a process has is told otherwise there"),
+]
 
 
 def _batch(first: int) -> dict:

@@ -154,6 +154,7 @@ def test_openpyxl_keeps_the_sheet(tmp_path):
     assert _carried(_saved_by_openpyxl(tmp_path / "r.xlsx", tmp_path)) == _carried(tmp_path / "r.xlsx")
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_libreoffice_keeps_the_sheet(table, sound, tmp_path):
     """Saved by LibreOffice, the report still carries the same submission."""

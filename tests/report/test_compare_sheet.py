@@ -129,6 +129,7 @@ def _alone(outcome, path):
     return path
 
 
+@pytest.mark.slow
 @needs_pages
 def test_the_comparison_prints_on_whole_pages(study, many, tmp_path):
     """Compare and Contributions print on one page each, Ranking of a few dozen rows on one or two."""

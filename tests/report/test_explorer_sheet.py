@@ -70,6 +70,7 @@ def test_the_worst_variant_is_picked_and_answered(study):
     assert not error_cells(values)
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_stored_values_are_those_of_a_recalculation(study, recalculated):
     """Every formula of Explorer holds what LibreOffice makes of it."""
@@ -102,6 +103,7 @@ def _five(sound):
     ]
 
 
+@pytest.mark.slow
 @needs_libreoffice
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.usefixtures("_curves_without_a_report")
@@ -162,6 +164,7 @@ def _at(curve, share):
     return float(np.interp(-ndtri(share), CURVE_SCORES, curve.outputs)) / ARCMIN
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_the_limit_for_a_wanted_share_is_the_programs_percentile(study, tmp_path):
     """The limit read off for 0.135, 2.5 and 50 % of units over it is P99.865, P97.5 and P50 of Results."""
@@ -184,6 +187,7 @@ def test_the_limit_for_a_wanted_share_is_the_programs_percentile(study, tmp_path
         assert half >= step
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_an_answer_has_the_digits_that_are_known(study, tmp_path):
     """Case 1 at 3.75′ is told as 1.687 %, where its interval leaves no more; a share known better has no interval."""
@@ -201,6 +205,7 @@ def test_an_answer_has_the_digits_that_are_known(study, tmp_path):
     assert _decimals(many[SHARE]) <= 5
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_the_unit_is_switched_in_one_cell(study, tmp_path):
     """In arcsec every angle is sixty times as much, the typed limit is read so, and no share changes."""
@@ -220,6 +225,7 @@ def test_the_unit_is_switched_in_one_cell(study, tmp_path):
     assert "arcsec" in one["C6"]
 
 
+@pytest.mark.slow
 @needs_libreoffice
 @pytest.mark.usefixtures("_curves_without_a_report")
 def test_without_limit_or_scatter_nothing_is_an_error(table, sound, tmp_path):
@@ -282,6 +288,7 @@ NONSENSE = {
 }
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_nonsense_is_told_and_gives_no_number(study, tmp_path):
     """What cannot be read is named beside its cell, and nothing is answered from it: no verdict, no error in a cell."""

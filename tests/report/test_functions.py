@@ -102,6 +102,7 @@ def test_values(name):
     assert type(found.value) is type(expected)
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_a_spreadsheet_program_finds_the_same(tmp_path):
     """Recalculated, each formula comes to the value it was written with."""

@@ -96,6 +96,7 @@ def test_the_base_is_the_first_submitted(study):
     assert (str(rule.sqref), rule.formula1) == ("B5", "Compared!$A$3:$A$13")
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_differences_follow_the_base(study, tmp_path):
     """With another base every difference and the base's own figures are anew; unchanged, they are as stored."""

@@ -393,6 +393,7 @@ def test_notes_that_say_row_status_stay(table, sound, tmp_path):
     assert "notes" in cells
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_every_formula_is_stored_with_its_value(study, recalculated):
     """Recalculated by a spreadsheet program, every cell of the report keeps its stored value."""

@@ -65,6 +65,7 @@ def _footers(pdf, sizes):
     return [feet[size][place] for place, size in enumerate(sizes)]
 
 
+@pytest.mark.slow
 @needs_pages
 @pytest.mark.parametrize("paper", PAPERS)
 @pytest.mark.parametrize("name", EXAMPLES)

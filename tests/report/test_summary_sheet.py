@@ -277,6 +277,7 @@ def _words(document):
     return "".join(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split())
 
 
+@pytest.mark.slow
 @needs_pages
 def test_the_summary_prints_whole_on_one_page_of_either_paper(study, table, sound, tmp_path, monkeypatch):
     """On A4 and Letter the Summary is one page that holds every sentence whole, to its last line, in readable size."""

@@ -153,6 +153,7 @@ def _entries(lines, base, changes):
     return entries
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_trace_refuses_what_the_program_refuses(trace, workbook):
     """Typed into Trace, exactly those changes show no number which the same row of a submission is refused for."""

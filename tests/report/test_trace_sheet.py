@@ -156,6 +156,7 @@ def test_the_trace_says_when_more_variants_were_computed():
         assert bool(lines) is (count > 0)
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_stored_values_are_those_of_a_recalculation(tmp_path):
     """Every formula of Trace and its steps, of the study's worst variant, holds what LibreOffice makes of it."""
@@ -211,6 +212,7 @@ def _changed(workbook):
     return {one.variant.name: one.nominal for one in check(path).computed.values()}
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_a_reader_may_pick_and_change(traces, workbook, tmp_path):
     """After picking a variant and typing changes, the Trace is what the program makes of those inputs."""
@@ -234,6 +236,7 @@ def test_a_reader_may_pick_and_change(traces, workbook, tmp_path):
         assert values["F4"] == list(ROWS).index(name) + 1
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_another_variant_that_is_picked_agrees(everything, traces, tmp_path):
     """After picking any of some variants, and nothing else, the Trace agrees with the program."""
@@ -253,6 +256,7 @@ def test_another_variant_that_is_picked_agrees(everything, traces, tmp_path):
         assert values[cells["verdict"]] == AGREES, (name, values[cells["difference"]])
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_a_variant_that_is_not_in_the_list_has_no_numbers(traces, tmp_path):
     """A name typed that is not there to the letter is told beside it; no cell holds a number or an error."""

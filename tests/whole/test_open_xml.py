@@ -12,7 +12,7 @@ from own_workbooks import READABLE, RICH
 from flexlash.cli import cli
 from flexlash.feedback.annotation import marked_copy
 
-pytestmark = needs_validator
+pytestmark = [needs_validator, pytest.mark.slow]
 
 TABLE = """variant,flexspline_type,material,torque_Nm,cylinder_length_mm,mean_radius_mm,wall_thickness_mm,\
 disk_inner_radius_mm,hub_fillet_radius_mm,backlash_limit_arcmin,notes
