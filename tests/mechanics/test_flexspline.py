@@ -104,9 +104,11 @@ def meridian(cup):
 
 
 def public_functions():
-    """Return the public functions of all modules in mechanics by qualified name."""
+    """Return the public functions of all modules in mechanics by qualified name; elementary ones have no physics."""
     found = {}
     for module in pkgutil.iter_modules(flexlash.mechanics.__path__):
+        if module.ispkg or module.name == "elementary":
+            continue
         loaded = importlib.import_module(f"flexlash.mechanics.{module.name}")
         for name in loaded.__all__:
             one = getattr(loaded, name)

@@ -13,6 +13,7 @@ from scipy.integrate import quad
 
 from flexlash.mechanics import strength, windup
 from flexlash.mechanics.flexspline import windups
+from flexlash.mechanics.tapered_disk import tapered_disk_integral
 
 MODULUS = 211e9 / 2.6
 INNER, OUTER = 0.040, 0.080
@@ -41,7 +42,7 @@ def taper_in_closed_form(inner, outer, first, last):
 
 def test_linear_taper_from_4_to_1_6_mm():
     """An annulus 40 → 80 mm that thins from 4.0 to 1.6 mm winds up by 1.2086009619e-4 rad."""
-    assert angle(windup.tapered_disk_integral(INNER, OUTER, 0.004, 0.0016)) == pytest.approx(1.2086009619e-4, rel=5e-11)
+    assert angle(tapered_disk_integral(INNER, OUTER, 0.004, 0.0016)) == pytest.approx(1.2086009619e-4, rel=5e-11)
 
 
 def test_linear_taper_as_a_disk_of_a_cup():
@@ -53,14 +54,14 @@ def test_linear_taper_as_a_disk_of_a_cup():
 
 def test_mean_thickness_is_no_shortcut_for_a_taper():
     """Calculating the taper 4.0 → 1.6 mm with its mean thickness overstates the wind-up by 8.7 %."""
-    taper = windup.tapered_disk_integral(INNER, OUTER, 0.004, 0.0016)
+    taper = tapered_disk_integral(INNER, OUTER, 0.004, 0.0016)
     assert windup.annulus_integral(INNER, OUTER, 0.0028) / taper - 1 == pytest.approx(0.087, abs=5e-4)
 
 
 @pytest.mark.parametrize(("first", "last"), [(0.004, 0.0016), (0.0016, 0.004), (0.003, 0.002), (0.0005, 0.004)])
 def test_linear_taper_in_closed_form(first, last):
     """Tapers that thin or thicken towards the rim agree with the closed form in radii and with quadrature."""
-    found = windup.tapered_disk_integral(INNER, OUTER, first, last)
+    found = tapered_disk_integral(INNER, OUTER, first, last)
     slope = (last - first) / (OUTER - INNER)
     assert found == pytest.approx(taper_in_closed_form(INNER, OUTER, first, last), rel=1e-11)
     assert found == pytest.approx(slow(lambda r: first + slope * (r - INNER)), rel=1e-12)
@@ -69,7 +70,7 @@ def test_linear_taper_in_closed_form(first, last):
 @pytest.mark.parametrize("difference", [1e-6, 1e-9, 1e-12, 0.0])
 def test_vanishing_taper_is_an_even_annulus(difference):
     """As a taper vanishes its wind-up tends to the even annulus's, where the closed form loses its digits."""
-    found = windup.tapered_disk_integral(INNER, OUTER, 0.002 + difference, 0.002)
+    found = tapered_disk_integral(INNER, OUTER, 0.002 + difference, 0.002)
     even = windup.annulus_integral(INNER, OUTER, 0.002)
     assert found == pytest.approx(float(even), rel=difference / 0.002 + 1e-13)
     assert found <= even * (1 + 1e-13)
@@ -135,7 +136,7 @@ def test_tapered_cone_by_quadrature(degrees):
         return 1 / ((INNER + s * sine) ** 3 * (0.004 - 0.0024 * s / length))
 
     along = quad(integrand, 0, length, epsabs=0, epsrel=1e-12)[0]
-    taper = windup.tapered_disk_integral(INNER, OUTER, 0.004, 0.0016)
+    taper = tapered_disk_integral(INNER, OUTER, 0.004, 0.0016)
     assert windup.cone_integral(taper, math.radians(degrees)) == pytest.approx(along, rel=1e-11)
 
 

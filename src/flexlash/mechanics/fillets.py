@@ -13,9 +13,9 @@ from collections.abc import Callable, Iterable
 from typing import TypeAlias
 
 import numpy as np
-from scipy.special import boxcox, expm1
 
-from flexlash.schema.arrays import Array
+from flexlash.mechanics.elementary import exp, log
+from flexlash.schema.arrays import Array, Quantity
 
 __all__ = [
     "ARC_RULE",
@@ -23,6 +23,8 @@ __all__ = [
     "JUNCTION_RULE",
     "UNLIKE",
     "WIDE",
+    "added_thickness",
+    "arc_radius",
     "hub_fillet_integral",
     "junction_fillet_integral",
 ]
@@ -36,15 +38,15 @@ def _rule(angles_and_weights: Iterable[tuple[float, float]]) -> Rule:
 
 
 def _gauss(points: int) -> list[tuple[float, float]]:
-    """Return places and weights of the Gauss–Legendre rule from 0 to 1."""
+    """Return nodes and weights of the Gauss–Legendre rule from 0 to 1."""
     nodes, weights = np.polynomial.legendre.leggauss(points)
     return list(zip(((nodes + 1) / 2).tolist(), (weights / 2).tolist(), strict=True))
 
 
-ARC_RULE = _rule((place * math.pi / 2, weight * math.pi / 2) for place, weight in _gauss(12))
+ARC_RULE = _rule((node * math.pi / 2, weight * math.pi / 2) for node, weight in _gauss(12))
 
 GRADED_RULE = tuple(_gauss(32))
-"""Places and weights between either end of an arc and its middle, in the variable that follows the integrand."""
+"""Nodes and weights between either end of an arc and its middle, in the variable that follows the integrand."""
 
 WIDE = 19.7
 """Fillet radius over the least thickness above which graded points follow the arc; no ratio of round dimensions."""
@@ -70,7 +72,7 @@ _LEAST = 1e-30
 
 
 def hub_fillet_integral(
-    inner_radius: Array | float, fillet_radius: Array | float, thickness_at: Callable[[Array], Array | float]
+    inner_radius: Quantity, fillet_radius: Quantity, thickness_at: Callable[[Array], Quantity]
 ) -> Array:
     """Integral of the disk's inmost ring, thickened by the hub fillet [1/m³].
 
@@ -95,11 +97,11 @@ def hub_fillet_integral(
         return np.asarray(sine / (radius * radius * radius * (thickness_at(radius) + fillet * (1 - sine))))
 
     def radius_at(along: Array, back: Array) -> Array:
-        return np.asarray(inner + fillet * (back * back) / (1 + along * along))
+        return np.asarray(arc_radius(inner, fillet, along, back))
 
     def at_tangent(along: Array, back: Array) -> Array:
         radius = radius_at(along, back)
-        return np.asarray(1 / (radius * radius * radius * (thickness_at(radius) + _added(fillet, along))))
+        return np.asarray(1 / (radius * radius * radius * (thickness_at(radius) + added_thickness(fillet, along))))
 
     def widths() -> tuple[Array, Array]:
         # A far draw of the tolerances may let the fillet pass the edge of a taper, where nothing is left of it.
@@ -112,13 +114,11 @@ def hub_fillet_integral(
         return np.asarray(outer), np.asarray(np.sqrt(steep))
 
     usual = sum((weight * at_angle(sine, cosine) for sine, cosine, weight in ARC_RULE), np.zeros(()))
-    found = np.where(graded, _graded(at_tangent, widths()), usual) if np.any(graded) else usual
-    return np.asarray(found * fillet)
+    integral = np.where(graded, _graded(at_tangent, widths()), usual) if np.any(graded) else usual
+    return np.asarray(integral * fillet)
 
 
-def junction_fillet_integral(
-    mean_radius: Array | float, thickness: Array | float, fillet_radius: Array | float
-) -> Array:
+def junction_fillet_integral(mean_radius: Quantity, thickness: Quantity, fillet_radius: Quantity) -> Array:
     """Integral of the wall's first ring, thickened inwards by the fillet in the corner [1/m³].
 
     Equation: I = ∫ dz/((r_m − a/2)³ (Δ + a)), z from 0 to R, a = R (1 − cos p), z = R (1 − sin p)
@@ -133,23 +133,47 @@ def junction_fillet_integral(
     wall, fillet = np.asarray(thickness), np.asarray(fillet_radius)
     graded = fillet > WIDE * wall
 
-    def of_added(added: Array) -> Array:
+    def of_added(added: Quantity) -> Array:
         radius = mean_radius - added * 0.5
         return np.asarray(1 / (radius * radius * radius * (wall + added)))
 
     usual = sum(
-        (weight * cosine * of_added(fillet * (1 - cosine)) for _, cosine, weight in JUNCTION_RULE), np.zeros(())
+        (weight * cosine * of_added(fillet * (1 - cosine)) for _, cosine, weight in JUNCTION_RULE),
+        np.zeros(()),
     )
     if np.any(graded):
         widths = np.sqrt(wall / (wall + 2 * fillet)), np.ones(())
-        usual = np.where(graded, _graded(lambda along, _: of_added(_added(fillet, along)), widths), usual)
+        usual = np.where(graded, _graded(lambda along, _: of_added(added_thickness(fillet, along)), widths), usual)
     return np.asarray(usual * fillet)
 
 
-def _added(fillet_radius: Array, along: Array) -> Array:
-    """Return what a fillet adds to the thickness at the tangent of half the angle from where it adds nothing."""
+def added_thickness(fillet_radius: Quantity, along: Quantity) -> Quantity:
+    """Thickness that a fillet adds at a point of its arc [m].
+
+    Equation: a = 2 R m²/(1 + m²)
+    Arguments: fillet_radius R [m] and m along the arc [-], the tangent of half the angle from where it adds nothing.
+    Valid: 0 ≤ m ≤ 1.
+    Source: geometry.
+
+    >>> added_thickness(3.0, 1.0)
+    3.0
+    """
     square = along * along
-    return np.asarray(2 * fillet_radius * square / (1 + square))
+    return 2 * fillet_radius * square / (1 + square)
+
+
+def arc_radius(inner_radius: Quantity, fillet_radius: Quantity, along: Quantity, back: Quantity) -> Quantity:
+    """Radius at a point of the hub fillet's arc [m].
+
+    Equation: r = r_ci + R (1 − m)²/(1 + m²)
+    Arguments: inner_radius r_ci and fillet_radius R [m]; m along the arc and 1 − m back from its steep end [-].
+    Valid: 0 ≤ m ≤ 1.
+    Source: geometry.
+
+    >>> arc_radius(40.0, 3.0, 0.0, 1.0)
+    43.0
+    """
+    return inner_radius + fillet_radius * (back * back) / (1 + along * along)
 
 
 def _graded(integrand: Callable[[Array, Array], Array], widths: tuple[Array, Array]) -> Array:
@@ -157,10 +181,9 @@ def _graded(integrand: Callable[[Array, Array], Array], widths: tuple[Array, Arr
     total = np.zeros(())
     for thin, width in zip((True, False), widths, strict=True):
         half = 0.5 / width
-        # Logarithm and exponential of SciPy, since NumPy's may round otherwise at another place of an array.
-        reach = boxcox(half + np.sqrt(half * half + 1), 0.0)
-        for place, weight in GRADED_RULE:
-            growth = expm1(reach * place) + 1
+        reach = log(half + np.sqrt(half * half + 1))
+        for node, weight in GRADED_RULE:
+            growth = exp(reach * node)
             near, pace = width * (growth - 1 / growth) / 2, width * (growth + 1 / growth) / 2
             along, back = (near, 1 - near) if thin else (1 - near, near)
             square = 1 + along * along

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from scipy.special import expm1, xlogy
 
 from flexlash.mechanics import fillets, windup
-from flexlash.schema.arrays import Array
+from flexlash.mechanics.elementary import power
+from flexlash.mechanics.tapered_disk import tapered_disk_integral
+from flexlash.schema.arrays import Array, Quantity
 
 __all__ = [
     "CYLINDER_SEGMENTS",
@@ -17,17 +18,20 @@ __all__ = [
     "disk_radii",
     "disk_thickness",
     "modulus_of",
+    "power_law_thickness",
     "radius_of",
+    "tapered_thickness",
+    "thickness_slope",
     "windups",
 ]
 
 CYLINDER_SEGMENTS = ("rim", "wall", "junction_fillet")
 DISK_SEGMENTS = ("disk_body", "hub_fillet")
 
-Dimensions = Mapping[str, Array | float]
+Dimensions = Mapping[str, Quantity]
 
 
-def radius_of(dimensions: Dimensions) -> Array:
+def radius_of(dimensions: Dimensions) -> Quantity:
     """Mean radius of the wall [m], as given or from bore and wall.
 
     Equation: r_m as given, else d/2 + Δ/2
@@ -39,11 +43,11 @@ def radius_of(dimensions: Dimensions) -> Array:
     0.0808
     """
     if "mean_radius" in dimensions:
-        return np.asarray(dimensions["mean_radius"])
+        return dimensions["mean_radius"]
     return windup.mean_radius_from_bore(dimensions["bore_diameter"], dimensions["wall_thickness"])
 
 
-def modulus_of(dimensions: Dimensions) -> Array:
+def modulus_of(dimensions: Dimensions) -> Quantity:
     """Shear modulus [Pa], as given or from Young's modulus and Poisson's ratio.
 
     Equation: G as given, else E / (2 (1 + ν))
@@ -55,11 +59,11 @@ def modulus_of(dimensions: Dimensions) -> Array:
     81000000000.0
     """
     if "shear_modulus" in dimensions:
-        return np.asarray(dimensions["shear_modulus"])
+        return dimensions["shear_modulus"]
     return windup.shear_modulus(dimensions["youngs_modulus"], dimensions["poisson_ratio"])
 
 
-def disk_radii(dimensions: Dimensions) -> tuple[Array | float, Array | float]:
+def disk_radii(dimensions: Dimensions) -> tuple[Quantity, Quantity]:
     """Inner and outer radius of the disk or flange [m]; a blank one is the mean radius.
 
     Equation: r_ci and r_co as given, else r_m
@@ -75,7 +79,7 @@ def disk_radii(dimensions: Dimensions) -> tuple[Array | float, Array | float]:
     return dimensions.get("disk_inner_radius", mean_radius), dimensions.get("disk_outer_radius", mean_radius)
 
 
-def disk_thickness(dimensions: Dimensions, radius: Array | float) -> Array | float:
+def disk_thickness(dimensions: Dimensions, radius: Quantity) -> Quantity:
     """Thickness of the disk itself at a radius, normal to it and without fillets [m].
 
     Equation: t; or a straight line from t_h at r_ci to t at r_co; or t_h (r_ci/r)^n
@@ -91,7 +95,7 @@ def disk_thickness(dimensions: Dimensions, radius: Array | float) -> Array | flo
     return _disk_profile(dimensions)(radius)
 
 
-def _disk_profile(dimensions: Dimensions) -> Callable[[Array | float], Array | float]:
+def _disk_profile(dimensions: Dimensions) -> Callable[[Quantity], Quantity]:
     """Return the thickness of the disk itself as a function of the radius."""
     even = dimensions.get("disk_thickness", dimensions["wall_thickness"])
     if "disk_hub_thickness" not in dimensions:
@@ -99,14 +103,55 @@ def _disk_profile(dimensions: Dimensions) -> Callable[[Array | float], Array | f
     hub_thickness, (inner, outer) = dimensions["disk_hub_thickness"], disk_radii(dimensions)
     if "disk_thickness_exponent" in dimensions:
         exponent = dimensions["disk_thickness_exponent"]
-        # expm1 of SciPy, since NumPy's exp may round otherwise at another place of an array; of a growth, since a
-        # decay beside 1 would lose the digits of a disk that thins to nothing.
-        return lambda radius: hub_thickness / (1 + expm1(xlogy(exponent, radius / np.asarray(inner))))
-    slope = (even - hub_thickness) / (outer - inner)
-    return lambda radius: hub_thickness + slope * (radius - inner)
+        return lambda radius: power_law_thickness(radius, inner, hub_thickness, exponent)
+    slope = thickness_slope(inner, outer, hub_thickness, even)
+    return lambda radius: tapered_thickness(radius, inner, hub_thickness, slope)
 
 
-def _cylinder_integrals(dimensions: Dimensions, mean_radius: Array) -> dict[str, Array]:
+def thickness_slope(inner_radius: Quantity, outer_radius: Quantity, hub: Quantity, edge: Quantity) -> Quantity:
+    """Change of thickness per radius of a disk that thins in a straight line [-].
+
+    Equation: k = (t − t_h) / (r_co − r_ci)
+    Arguments: inner_radius r_ci and outer_radius r_co, thickness t_h at the hub, t at the edge [m], of any one shape.
+    Valid: r_ci < r_co.
+    Source: geometry.
+
+    >>> thickness_slope(40.0, 80.0, 4.0, 2.0)
+    -0.05
+    """
+    return (edge - hub) / (outer_radius - inner_radius)
+
+
+def tapered_thickness(radius: Quantity, inner_radius: Quantity, hub: Quantity, slope: Quantity) -> Quantity:
+    """Thickness at a radius of a disk that thins in a straight line [m].
+
+    Equation: t(r) = t_h + k (r − r_ci)
+    Arguments: radius r, inner_radius r_ci and thickness t_h at the hub [m], slope k [-], of any one shape.
+    Valid: r_ci ≤ r ≤ r_co.
+    Source: geometry.
+
+    >>> tapered_thickness(60.0, 40.0, 4.0, -0.05)
+    3.0
+    """
+    return hub + slope * (radius - inner_radius)
+
+
+def power_law_thickness(radius: Quantity, inner_radius: Quantity, hub: Quantity, exponent: Quantity) -> Quantity:
+    """Thickness at a radius of a disk that thins with a power of it [m].
+
+    Equation: t(r) = t_h / (r/r_ci)^n
+    Arguments: radius r, inner_radius r_ci and thickness t_h at the hub [m], exponent n [-], of any one shape.
+    Valid: r_ci ≤ r ≤ r_co.
+    Source: geometry.
+
+    >>> float(power_law_thickness(80.0, 40.0, 4.0, 2.0))
+    1.0
+    """
+    # Of a growth, since a decay would lose the digits of a disk that thins to nothing.
+    return hub / power(radius / inner_radius, exponent)
+
+
+def _cylinder_integrals(dimensions: Dimensions, mean_radius: Quantity) -> dict[str, Quantity]:
     """Integrals of rim, plain wall and junction fillet [1/m³]."""
     thickness = dimensions["wall_thickness"]
     plain = dimensions["cylinder_length"]
@@ -122,7 +167,7 @@ def _cylinder_integrals(dimensions: Dimensions, mean_radius: Array) -> dict[str,
     return integrals | {"wall": windup.wall_integral(plain, mean_radius, thickness)}
 
 
-def _disk_integrals(dimensions: Dimensions) -> dict[str, Array]:
+def _disk_integrals(dimensions: Dimensions) -> dict[str, Quantity]:
     """Integrals of disk or flange and of the hub fillet [1/m³]; blanks are the same dimension elsewhere."""
     inner, outer = disk_radii(dimensions)
     integrals = {}
@@ -137,7 +182,7 @@ def _disk_integrals(dimensions: Dimensions) -> dict[str, Array]:
         body = windup.power_law_disk_integral(start, outer, thickness_at(start), exponent)
     elif "disk_hub_thickness" in dimensions:
         thickness = dimensions.get("disk_thickness", dimensions["wall_thickness"])
-        body = windup.tapered_disk_integral(start, outer, thickness_at(start), thickness)
+        body = tapered_disk_integral(start, outer, thickness_at(start), thickness)
     else:
         body = windup.annulus_integral(start, outer, thickness_at(start))
     if "disk_cone_angle" in dimensions:
@@ -145,7 +190,7 @@ def _disk_integrals(dimensions: Dimensions) -> dict[str, Array]:
     return integrals | {"disk_body": body}
 
 
-def windups(flexspline_type: str, dimensions: Dimensions) -> dict[str, Array]:
+def windups(flexspline_type: str, dimensions: Dimensions) -> dict[str, Quantity]:
     """Wind-up of each segment that the flexspline has [rad].
 
     Equation: U_i = c_i T/(2πG) · I_i, with c the calibration of cylinder or disk, 1 unless given

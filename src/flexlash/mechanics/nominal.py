@@ -10,8 +10,15 @@ from typing import TypeAlias
 import numpy as np
 
 from flexlash.mechanics import flexspline, strength, windup
-from flexlash.mechanics.stiffness import catalogue_stiffness, drive_lost_motion, natural_frequency, resonance_speed
-from flexlash.schema.arrays import Array
+from flexlash.mechanics.stiffness import (
+    catalogue_stiffness,
+    drive_lost_motion,
+    lost_motion,
+    natural_frequency,
+    resonance_speed,
+    torsional_stiffness,
+)
+from flexlash.schema.arrays import Array, Quantity
 from flexlash.schema.variant import Variant
 
 __all__ = ["Numbers", "nominal_numbers"]
@@ -37,24 +44,24 @@ def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> li
     '1491835'
     """
     groups: dict[tuple[str, frozenset[str]], list[int]] = defaultdict(list)
-    for place, variant in enumerate(variants):
-        groups[variant.flexspline_type, frozenset(variant.dimensions)].append(place)
+    for index, variant in enumerate(variants):
+        groups[variant.flexspline_type, frozenset(variant.dimensions)].append(index)
     numbers: list[Numbers] = [{} for _ in variants]
-    for (flexspline_type, _), places in groups.items():
-        first = variants[places[0]]
+    for (flexspline_type, _), indices in groups.items():
+        first = variants[indices[0]]
         dimensions = {
-            name: np.array([variants[place].dimensions[name] for place in places]) for name in first.dimensions
+            name: np.array([variants[index].dimensions[name] for index in indices]) for name in first.dimensions
         }
         with np.errstate(all="ignore"):
             columns = _windups(flexspline_type, dimensions) | _stresses(flexspline_type, dimensions)
-        for offset, place in enumerate(places):
-            numbers[place] = {key: float(values[offset]) for key, values in columns.items()}
-            with np.errstate(all="ignore"):
-                numbers[place] |= _beside(variants[place], numbers[place], lost_motion_share)
+            rows = zip(*(np.asarray(column).tolist() for column in columns.values()), strict=True)
+            for index, row in zip(indices, rows, strict=True):
+                numbers[index] = dict(zip(columns, row, strict=True))
+                numbers[index] |= _beside(variants[index], numbers[index], lost_motion_share)
     return numbers
 
 
-def _windups(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Array]:
+def _windups(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Quantity]:
     """Return wind-ups and what follows from them for variants of one shape, each of shape (variants,)."""
     segments = flexspline.windups(flexspline_type, dimensions)
     torque, radius = dimensions["torque"], flexspline.radius_of(dimensions)
@@ -78,24 +85,24 @@ def _windups(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Ar
         "disk_share": disk / total,
         "cylinder_only_backlash": cylinder_only,
         "two_term_backlash": two_term,
-        "stiffness": torque / total,
+        "stiffness": torsional_stiffness(torque, total),
         "mean_radius": radius,
         "wall_ratio": dimensions["wall_thickness"] / radius,
         **{f"{name}_windup": angle for name, angle in segments.items()},
     }
 
 
-def _stresses(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Array]:
+def _stresses(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Quantity]:
     """Return the greatest shear and von Mises stress of each section for variants of one shape."""
     torque, radius, wall = dimensions["torque"], flexspline.radius_of(dimensions), dimensions["wall_thickness"]
     shear = {"wall": strength.shear_stress(torque, radius, wall)}
-    found = {}
+    numbers: dict[str, Quantity] = {}
     if "rim_length" in dimensions:
         rim = dimensions["rim_thickness"]
-        shear["rim"] = strength.shear_stress(torque, radius + (rim - wall) / 2, rim)
+        shear["rim"] = strength.shear_stress(torque, windup.rim_radius(radius, wall, rim), rim)
     if flexspline_type != "cylinder":
         inner, outer = flexspline.disk_radii(dimensions)
-        shear["hub"], found["hub_shear_radius"] = strength.disk_shear(
+        shear["hub"], numbers["hub_shear_radius"] = strength.disk_shear(
             torque=torque,
             inner_radius=inner,
             outer_radius=outer,
@@ -103,46 +110,48 @@ def _stresses(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, A
             thickness_at=partial(flexspline.disk_thickness, dimensions),
         )
     stress = {section: strength.von_mises_stress(values) for section, values in shear.items()}
-    found |= {f"{section}_shear": values for section, values in shear.items()}
-    found |= {f"{section}_von_mises": values for section, values in stress.items()}
-    return found | {"von_mises": np.max(list(stress.values()), axis=0)}
+    numbers |= {f"{section}_shear": values for section, values in shear.items()}
+    numbers |= {f"{section}_von_mises": values for section, values in stress.items()}
+    return numbers | {"von_mises": np.max(np.array(list(stress.values())), axis=0)}
 
 
 _SECTIONS = {"wall": "wall", "rim": "tooth rim", "hub": "disk"}
+_TUBE = ("wall_thickness", "cylinder_length")
 _RANGES = {-1: "shorter", 0: "yes", 1: "longer"}
 
 
 def _beside(variant: Variant, numbers: Numbers, lost_motion_share: float) -> Numbers:
     """Return what asks for more than dimensions and torque: material strength, rated torque, inertia, catalogue."""
-    found: Numbers = {}
+    beside: Numbers = {}
     stiffness, torque = _of(numbers, "stiffness"), variant.dimensions["torque"]
     stress = {section: numbers.get(f"{section}_von_mises") or 0.0 for section in _SECTIONS}
-    found["governing_section"] = _SECTIONS[max(stress, key=lambda section: stress[section])]
+    beside["governing_section"] = _SECTIONS[max(stress, key=lambda section: stress[section])]
     if variant.yield_strength is not None:
-        limit = strength.elastic_limit_torque(torque, _of(numbers, "von_mises"), variant.yield_strength)
-        found["elastic_limit_torque"] = float(limit)
-    wall, length = variant.dimensions["wall_thickness"], variant.dimensions["cylinder_length"]
+        limit = strength.limit_torque(torque, np.float64(_of(numbers, "von_mises")), variant.yield_strength)
+        beside["elastic_limit_torque"] = float(limit)
     radius = _of(numbers, "mean_radius")
     if variant.youngs_modulus is not None and variant.poisson_ratio is not None:
-        young, poisson = variant.youngs_modulus, variant.poisson_ratio
-        buckling = strength.wall_buckling_shear(young, poisson, radius, wall, length)
-        found["buckling_shear"] = float(buckling)
-        found["buckling_torque"] = float(torque * buckling / _of(numbers, "wall_shear"))
-        found["buckling_range"] = _RANGES[int(strength.buckling_range(poisson, radius, wall, length))]
+        young, poisson = variant.youngs_modulus, np.float64(variant.poisson_ratio)
+        # As numbers of NumPy, which divide by nothing without raising.
+        tube = [np.float64(size) for size in (radius, *(variant.dimensions[name] for name in _TUBE))]
+        buckling = strength.wall_buckling_shear(young, poisson, *tube)
+        torque_there = strength.limit_torque(torque, np.float64(_of(numbers, "wall_shear")), buckling)
+        beside |= {"buckling_shear": float(buckling), "buckling_torque": float(torque_there)}
+        beside["buckling_range"] = _RANGES[int(strength.buckling_range(poisson, *tube))]
     if variant.rated_torque is not None:
         lost_at = lost_motion_share * variant.rated_torque
-        found["lost_motion"] = float(np.divide(2 * lost_at, stiffness))
-        found["drive_lost_motion"] = drive_lost_motion(radius, lost_at)
+        beside["lost_motion"] = float(lost_motion(np.float64(stiffness), lost_at))
+        beside["drive_lost_motion"] = drive_lost_motion(radius, lost_at)
     listed = catalogue_stiffness(radius)
     if listed and variant.flexspline_type != "cylinder":
-        found |= {"catalogue_size": float(listed.size), "catalogue_stiffness": listed.stiffness}
-        found["least_stiffness"] = listed.at_radius(radius)
+        beside |= {"catalogue_size": float(listed.size), "catalogue_stiffness": listed.stiffness}
+        beside["least_stiffness"] = listed.at_radius(radius)
     if variant.load_inertia is not None:
         frequency = natural_frequency(stiffness, variant.load_inertia)
-        found |= {"natural_frequency": frequency, "resonance_speed": resonance_speed(frequency)}
+        beside |= {"natural_frequency": frequency, "resonance_speed": resonance_speed(frequency)}
         of_drive = min(stiffness, listed.at_radius(radius)) if listed else stiffness
-        found["resonance_speed_low"] = resonance_speed(natural_frequency(of_drive, variant.load_inertia))
-    return found
+        beside["resonance_speed_low"] = resonance_speed(natural_frequency(of_drive, variant.load_inertia))
+    return beside
 
 
 def _of(numbers: Numbers, key: str) -> float:

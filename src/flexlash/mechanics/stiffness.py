@@ -9,6 +9,7 @@ from functools import cache
 from typing import NamedTuple
 
 from flexlash.schema import tables
+from flexlash.schema.arrays import Quantity
 
 __all__ = [
     "DriveTorque",
@@ -16,8 +17,10 @@ __all__ = [
     "catalogue_stiffness",
     "catalogue_torque",
     "drive_lost_motion",
+    "lost_motion",
     "natural_frequency",
     "resonance_speed",
+    "torsional_stiffness",
 ]
 
 _METRES_PER_SIZE = 2.54e-3
@@ -25,6 +28,34 @@ _METRES_PER_SIZE = 2.54e-3
 
 _WAVES = 2
 """Meshing waves, and so torque ripples, per turn of the wave generator."""
+
+
+def torsional_stiffness(torque: Quantity, windup: Quantity) -> Quantity:
+    """Torsional stiffness [N·m/rad].
+
+    Equation: K = T/U
+    Arguments: torque T [N·m] and the wind-up U at it [rad], of any one shape.
+    Valid: linear elasticity.
+    Source: definition.
+
+    >>> torsional_stiffness(800.0, 5e-4)
+    1600000.0
+    """
+    return torque / windup
+
+
+def lost_motion(stiffness: Quantity, torque: Quantity) -> Quantity:
+    """Lost motion of the flexspline alone: its wind-up from a torque to the same the other way [rad].
+
+    Equation: φ = 2 M/K
+    Arguments: stiffness K [N·m/rad]; torque M = p T_rated [N·m] to either side at which it is stated.
+    Valid: linear elasticity.
+    Source: makers' definition of lost motion.
+
+    >>> lost_motion(1.6e6, 32.0)
+    4e-05
+    """
+    return 2 * torque / stiffness
 
 
 def natural_frequency(stiffness: float, inertia: float) -> float:
@@ -132,7 +163,7 @@ def _nearest(mean_radius: float, listed: Collection[int]) -> int | None:
     size = 2 * mean_radius / _METRES_PER_SIZE
     if not min(listed) - _SLACK <= size <= max(listed) + _SLACK:
         return None
-    return min(listed, key=lambda one: (abs(one - size), one))
+    return min(listed, key=lambda candidate: (abs(candidate - size), candidate))
 
 
 _SLACK = 1e-9
@@ -160,9 +191,9 @@ def _first_slopes() -> dict[int, tuple[float, float]]:
 
 def _listed(table: str, column: str) -> dict[int, list[float]]:
     """Return the entries of a catalogue column by size, over the ratios that have one."""
-    found: dict[int, list[float]] = defaultdict(list)
+    listed: dict[int, list[float]] = defaultdict(list)
     for row in tables.rows(table):
-        entries = found[int(row["size"])]
+        entries = listed[int(row["size"])]
         if row[column]:
             entries.append(float(row[column]))
-    return found
+    return listed

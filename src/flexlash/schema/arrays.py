@@ -1,4 +1,4 @@
-"""The array type of the whole package: real numbers in double precision."""
+"""The types of numbers in the whole package: in double precision, one or an array of them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,12 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Array"]
+__all__ = ["Array", "Condition", "Quantity"]
 
 Array: TypeAlias = npt.NDArray[np.float64]
+
+Quantity: TypeAlias = Array | float
+"""One number or an array of them; arrays of one calculation have one shape, or broadcast."""
+
+Condition: TypeAlias = npt.NDArray[np.bool_] | bool
+"""Whether something holds, for each number of a quantity."""

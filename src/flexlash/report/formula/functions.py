@@ -16,7 +16,7 @@ from typing import Any
 from scipy.special import ndtr, ndtri
 from xlsxwriter.utility import quote_sheetname
 
-from flexlash.report.formula.live import Live, Operand, Range, call, is_error, live
+from flexlash.report.formula.live import PI, Live, Operand, Range, call, is_error, live
 
 __all__ = [
     "ABS",
@@ -50,8 +50,6 @@ __all__ = [
     "match_exactly",
     "on_sheet",
 ]
-
-PI = Live("PI()", math.pi)
 
 
 def ABS(number: Operand) -> Live:

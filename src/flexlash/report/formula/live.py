@@ -6,6 +6,7 @@ worked out by the very operations that its cells show, and every cell is stored 
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,13 +14,16 @@ from typing import Any, TypeAlias
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
-__all__ = ["Live", "Operand", "Range", "Value", "call", "fill", "is_error", "live", "put"]
+__all__ = ["PI", "Live", "Operand", "Range", "Value", "call", "fill", "is_error", "live", "put"]
 
 Value: TypeAlias = float | str | bool
 Operand: TypeAlias = "Live | float | str"
 
 _ATOM, _POWER, _PRODUCT, _SUM, _TEXT, _COMPARISON = range(6)
 """Kinds of expression; one needs parentheses inside a kind that binds closer."""
+
+_DIGITS = 15
+"""Digits of a constant that Excel keeps."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +33,9 @@ class Live:
     text: str
     value: Value
     kind: int = _ATOM
+
+    __array_ufunc__ = None
+    """NumPy's numbers and arrays leave arithmetic with a formula to the formula."""
 
     def __add__(self, other: Operand) -> Live:
         return _both(self, "+", other, _SUM, operator.add)
@@ -107,7 +114,30 @@ def live(operand: Operand) -> Live:
     if isinstance(operand, str):
         doubled = operand.replace('"', '""')
         return Live(f'"{doubled}"', operand)
-    return Live(_digits(operand), float(operand), _ATOM if operand >= 0 else _SUM)
+    return _notation(operand) or Live(_digits(operand), float(operand), _ATOM if operand >= 0 else _SUM)
+
+
+PI = Live("PI()", math.pi)
+
+_NOTATIONS: tuple[tuple[Callable[[float], float], Callable[[Live], Live]], ...] = (
+    (lambda number: number / math.pi, lambda plain: plain * PI),
+    (lambda number: number / math.pi**2, lambda plain: plain * PI**2.0),
+    (lambda number: number * number, lambda plain: call("SQRT", [plain], math.sqrt(plain.number))),
+    (lambda number: number**0.75, lambda plain: plain ** (live(4.0) / 3.0)),
+)
+"""Ways to write a constant, each with how its plain number is found."""
+
+
+def _notation(number: float) -> Live | None:
+    """Return a constant of more digits than Excel keeps by way of a plain number, where one comes to the very same.
+
+    >>> live(2 * math.pi), live(math.sqrt(3)).text, live(0.67 ** (4 / 3)).text
+    (Live(text='2*PI()', value=6.283185307179586, kind=2), 'SQRT(3)', '0.67^(4/3)')
+    """
+    if number <= 0 or float(f"{number:.{_DIGITS}g}") == number:
+        return None
+    ways = (write(live(float(f"{plain(number):.6g}"))) for plain, write in _NOTATIONS)
+    return next((found for found in ways if found.value == number), None)
 
 
 def _digits(number: float) -> str:

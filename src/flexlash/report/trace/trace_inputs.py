@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
+from flexlash.mechanics.windup import mean_radius_from_bore, shear_modulus
+from flexlash.report.formula.closed_forms import worked
 from flexlash.report.formula.functions import AND, IF, ISNUMBER, OR
 from flexlash.report.formula.live import Live, Operand, Range, fill, put
 from flexlash.report.trace.inputs import ENTERED
@@ -136,10 +138,11 @@ def _otherwise(page: Page, name: str) -> Operand:
     if name == "mean_radius":
         bore, wall = page["bore_diameter"], page["wall_thickness"]
         has_bore = AND(ISNUMBER(bore), bore > 0, ISNUMBER(wall))
-        return IF(has_bore, (bore + wall) / 2, LEFT_OUT)
+        return IF(has_bore, worked(mean_radius_from_bore, bore, wall), LEFT_OUT)
     if name == "shear_modulus":
         modulus, ratio = page["youngs_modulus"], page["poisson_ratio"]
-        return IF(AND(ISNUMBER(modulus), ISNUMBER(ratio), ratio > -1), modulus / (2 * (1 + ratio)), LEFT_OUT)
+        is_known = AND(ISNUMBER(modulus), ISNUMBER(ratio), ratio > -1)
+        return IF(is_known, worked(shear_modulus, modulus, ratio), LEFT_OUT)
     same_as = {
         "disk_thickness": "wall_thickness",
         "disk_inner_radius": "mean_radius",

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from flexlash.report.formula.functions import AND, IF, ISNUMBER, LN, PI, SIN
+from flexlash.mechanics import flexspline, windup
+from flexlash.mechanics.stiffness import lost_motion, torsional_stiffness
+from flexlash.report.formula.closed_forms import worked
+from flexlash.report.formula.functions import AND, IF, ISNUMBER, PI
 from flexlash.report.formula.live import Live
 from flexlash.report.trace.trace_page import Page
 from flexlash.report.trace.trace_steps import Steps, thickness_at
 
 __all__ = ["in_disk", "only", "write_integrals", "write_shape", "write_sums", "write_windups"]
 
-_DEGREE = PI / 180
 _ARCMIN = PI / 10800
 
 
@@ -28,10 +30,8 @@ def write_shape(page: Page) -> None:
     page.section("2  Material and shape")
     inner, outer, hub = page["disk_inner_radius"], page["disk_outer_radius"], page["disk_hub_thickness"]
     exponent, edge = page["disk_thickness_exponent"], page["disk_thickness"]
-    power = page["torque"] / (2 * PI * page["shear_modulus"])
-    page.line(
-        "torque_over_modulus", power, ("Torque over modulus", "T/(2πG)", "mm³", "T / (2π G); N·m over GPa is mm³")
-    )
+    words = ("Torque over modulus", "T/(2πG)", "mm³", "T / (2π G); N·m over GPa is mm³")
+    page.line("torque_over_modulus", worked(windup.torque_over_modulus, page["torque"], page["shear_modulus"]), words)
     has_power = AND(ISNUMBER(exponent), hub > 0)
     shaped = IF(has_power, "power law", IF(hub > 0, "straight taper", "even"))
     profile = page.line(
@@ -43,7 +43,7 @@ def write_shape(page: Page) -> None:
     page.line(
         "hub_thickness", IF(hub > 0, hub, edge), ("Disk thickness at r_ci", "t_1", "mm", "t_h where given, else t")
     )
-    straight = (edge - page["hub_thickness"]) / (outer - inner)
+    straight = worked(flexspline.thickness_slope, inner, outer, page["hub_thickness"], edge)
     words = ("Change of thickness", "k", "mm/mm", "straight taper: (t − t_h) / (r_co − r_ci)")
     page.line("thinning", only(profile.equals("straight taper"), straight), words, "fine")
     words = ("Exponent that counts", "n", "", "power law: n, else 0")
@@ -56,41 +56,36 @@ def write_shape(page: Page) -> None:
     page.line("outer_thickness", thickness_at(outer, *shape), ("Disk thickness at r_co", "t_o", "mm", "t(r) at r_co"))
     plain = page["cylinder_length"] - page["rim_length"] - page["junction_fillet_radius"]
     page.line("plain_length", plain, ("Plain wall", "l_w", "mm", "l − b − R_j"))
-    rim = page["mean_radius"] - page["wall_thickness"] / 2 + page["rim_thickness"] / 2
+    rim = worked(windup.rim_radius, page["mean_radius"], page["wall_thickness"], page["rim_thickness"])
     words = ("Mean radius of the rim", "r_b", "mm", "r_m − Δ/2 + t_b/2")
     page.line("rim_radius", only(page["rim_length"] > 0, rim), words)
-
-
-def _even(start: Live, outer: Live, thickness: Live) -> Live:
-    """Return the integral of a flat disk of even thickness."""
-    return (1 / start**2 - 1 / outer**2) / (2 * thickness)
 
 
 def write_integrals(page: Page, steps: Steps) -> None:
     """Write the integral of each segment."""
     page.section("3  Wind-up of each segment: U = c T/(2πG) · I,  I = ∫ ds/(r³ t) along the meridian")
-    wall = page["wall_thickness"]
-    rim = page["rim_length"] / (page["rim_radius"] ** 3 * page["rim_thickness"])
+    rim = worked(windup.wall_integral, page["rim_length"], page["rim_radius"], page["rim_thickness"])
     _integral(page, "rim", only(page["rim_length"] > 0, rim), ("Tooth rim: integral", "I_b", "b / (r_b³ t_b)"))
-    plain = page["plain_length"] / (page["mean_radius"] ** 3 * wall)
+    plain = worked(windup.wall_integral, page["plain_length"], page["mean_radius"], page["wall_thickness"])
     _integral(page, "wall", plain, ("Wall: integral", "I_w", "l_w / (r_m³ Δ)"))
     points = "sum over points, see Trace steps"
     _integral(page, "junction_fillet", steps.junction_fillet(), ("Junction fillet: integral", "I_j", points))
     profile, start, outer = page["profile"], page["disk_start"], page["disk_outer_radius"]
     thickness = page["start_thickness"]
     words = ("Even disk: integral", "I_e", "(1/r_s² − 1/r_co²) / (2 t)")
-    _integral(page, "even", only(profile.equals("even"), _even(start, outer, thickness)), words)
+    even = worked(windup.annulus_integral, start, outer, thickness)
+    _integral(page, "even", only(profile.equals("even"), even), words)
     words = ("Straight taper: integral", "I_t", "∫ v dv/t with v = 1/r, see Trace steps")
     _integral(page, "taper", only(profile.equals("straight taper"), steps.taper()), words)
-    ratio = LN(outer / start)
-    growth = ("Power law: exponent of growth", "z", "", "(n − 2) ln(r_co/r_s)")
     is_power = profile.equals("power law")
-    page.line("power_law_growth", only(is_power, (page["thinning_exponent"] - 2) * ratio), growth)
-    words = ("Power law: integral", "I_p", "ln(r_co/r_s) (e^z − 1)/z / (t_s r_s²); (e^z − 1)/z: Trace steps")
-    _integral(page, "power_law", only(is_power, ratio * steps.growth() / (thickness * start**2)), words)
+    growth = worked(windup.power_law_growth, start, outer, page["thinning_exponent"])
+    growth_words = ("Power law: growth", "g", "", "((r_co/r_s)^(n−2) − 1)/(n − 2); ln(r_co/r_s) at n = 2")
+    growth = page.line("power_law_growth", only(is_power, growth), growth_words)
+    power_law = only(is_power, worked(windup.growth_integral, growth, start, thickness))
+    _integral(page, "power_law", power_law, ("Power law: integral", "I_p", "g / (t_s r_s²)"))
     flat = page["even_integral"] + page["taper_integral"] + page["power_law_integral"]
     words = ("Disk with its cone: integral", "I_d", "(I_e + I_t + I_p) / sin α")
-    _integral(page, "disk_body", flat / SIN(page["disk_cone_angle"] * _DEGREE), words)
+    _integral(page, "disk_body", worked(windup.cone_integral, flat, page["disk_cone_angle"] * PI / 180), words)
     hub = in_disk(page, only(page["hub_fillet_radius"] > 0, steps.hub_fillet()))
     _integral(page, "hub_fillet", hub, ("Hub fillet: integral", "I_h", points))
 
@@ -122,24 +117,26 @@ def write_sums(page: Page) -> None:
     page.section("4  Sum")
     cylinder = page["rim_windup"] + page["wall_windup"] + page["junction_fillet_windup"]
     page.line("cylinder_windup", cylinder, ("Cylinder wind-up", "U_cyl", "", "U_b + U_w + U_j"), "angle")
-    disk = page["disk_body_windup"] + page["hub_fillet_windup"]
-    page.line("disk_windup", disk, ("Disk wind-up", "U_disk", "", "U_d + U_h"), "angle")
-    windup = page["cylinder_windup"] + page["disk_windup"]
-    page.line("windup", windup, ("Wind-up", "U", "", "U_cyl + U_disk"), "angle")
+    of_disk = page["disk_body_windup"] + page["hub_fillet_windup"]
+    page.line("disk_windup", of_disk, ("Disk wind-up", "U_disk", "", "U_d + U_h"), "angle")
+    total = page["cylinder_windup"] + page["disk_windup"]
+    page.line("windup", total, ("Wind-up", "U", "", "U_cyl + U_disk"), "angle")
     page.line("backlash", 2 * page["windup"], ("Backlash", "2U", "", "lag when the torque reverses"), "angle")
     share = page["disk_windup"] / page["windup"]
     page.line("disk_share", share, ("Disk share", "", "", "U_disk / U"), "share")
-    stiffness = page.line("stiffness", page["torque"] / page["windup"], ("Stiffness", "K", "N·m/rad", "T / U"))
+    stiffness = worked(torsional_stiffness, page["torque"], page["windup"])
+    stiffness = page.line("stiffness", stiffness, ("Stiffness", "K", "N·m/rad", "T / U"))
     page.line("stiffness_arcmin", stiffness * _ARCMIN, ("Stiffness", "K", "N·m/arcmin", "K π/10800"))
-    plain = page["cylinder_length"] / (page["mean_radius"] ** 3 * page["wall_thickness"])
+    plain = worked(windup.wall_integral, page["cylinder_length"], page["mean_radius"], page["wall_thickness"])
     words = ("Cylinder-only formula", "2U_0", "", "2 T/(2πG) · l / (r_m³ Δ)")
     page.line("cylinder_only_backlash", 2 * page["torque_over_modulus"] * plain, words, "angle")
-    even = _even(page["disk_inner_radius"], page["disk_outer_radius"], page["outer_thickness"])
+    disk = page["disk_inner_radius"], page["disk_outer_radius"], page["outer_thickness"]
+    even = worked(windup.annulus_integral, *disk)
     added = in_disk(page, 2 * page["torque_over_modulus"] * even)
     words = ("Two-term formula", "2U_1", "", "2U_0 + 2 T/(2πG) · (1/r_ci² − 1/r_co²) / (2 t_o)")
     page.line("two_term_backlash", page["cylinder_only_backlash"] + added, words, "angle")
-    lost = 2 * (page["lost_motion_percent"] / 100) * page["rated_torque"] / stiffness / _ARCMIN
-    page.line("lost_motion", lost, ("Lost motion, flexspline alone", "", "arcmin", "2 p T_r / K"))
+    lost = worked(lost_motion, stiffness, page["lost_motion_percent"] / 100 * page["rated_torque"])
+    page.line("lost_motion", lost / _ARCMIN, ("Lost motion, flexspline alone", "", "arcmin", "2 p T_r / K"))
     limit = page["backlash_limit"]
     reserve = only(limit > 0, page["backlash"] / _ARCMIN / limit)
     page.line("limit_share", reserve, ("Backlash over its limit", "", "", "2U / limit; without tolerances"), "share")

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from flexlash.mechanics.fillets import ARC_RULE, GRADED_RULE, JUNCTION_RULE, UNLIKE, WIDE
-from flexlash.mechanics.strength import PASSES, STATIONS
-from flexlash.mechanics.windup import NEARLY, TAPER_PLACES, TAPER_WEIGHTS
+from flexlash.mechanics import tapered_disk
+from flexlash.mechanics.fillets import ARC_RULE, GRADED_RULE, JUNCTION_RULE, UNLIKE, WIDE, added_thickness, arc_radius
+from flexlash.mechanics.flexspline import power_law_thickness, tapered_thickness
+from flexlash.mechanics.strength import PASSES, STATIONS, shear_stress
+from flexlash.mechanics.tapered_disk import TAPER_NODES, TAPER_WEIGHTS
+from flexlash.mechanics.windup import wall_integral
+from flexlash.report.formula.closed_forms import worked
 from flexlash.report.formula.functions import (
     ABS,
     COS,
@@ -36,8 +40,6 @@ _TITLE_ROW = 3
 _WIDTH = 15.5
 _JUNCTION, _HUB, _DISK, _SEARCH, _END = RULES_WIDTH + 1, RULES_WIDTH + 7, RULES_WIDTH + 14, RULES_WIDTH + 19, 26
 _PROFILE_WORDS = "(t_1 + k (r − r_ci)) (r_ci/r)^n"
-_STEEP = 1.0
-"""Size of an exponent from which e^z − 1 keeps its digits."""
 
 
 class Steps:
@@ -65,8 +67,8 @@ class Steps:
         self.sheet.print_area(0, 0, last, RULES_WIDTH - 1)
         return on_sheet(STEPS, said)
 
-    def _block(self, left: int, title: str, formula: str, row: int = _TITLE_ROW) -> Block:
-        return Block(self.page, self.sheet, left=left, row=row, heads=(title, formula))
+    def _block(self, left: int, title: str, formula: str) -> Block:
+        return Block(self.page, self.sheet, left=left, row=_TITLE_ROW, heads=(title, formula))
 
     def junction_fillet(self) -> Live:
         """Return the integral of the junction fillet [1/mm³]."""
@@ -82,12 +84,12 @@ class Steps:
             turn, weight = block.cell(0, cosine_), block.cell(1, weight_)
             added = block.cell(2, fillet * (1 - turn))
             middle = block.cell(3, radius - added / 2)
-            block.cell(4, weight * turn / (middle**3 * (wall + added)))
+            block.cell(4, worked(wall_integral, weight * turn, middle, wall + added))
         usual = block.entry(f"{len(JUNCTION_RULE)} points: R × sum", fillet * SUM(block.column(4)))
 
         def height_at(along: Live, _: Live) -> Live:
-            added = block.cell(3, added_by(fillet, along))
-            return 1 / ((radius - added / 2) ** 3 * (wall + added))
+            added = block.cell(3, worked(added_thickness, fillet, along))
+            return worked(wall_integral, 1.0, radius - added / 2, wall + added)
 
         thin = block.entry("Thin end: width of m", SQRT(wall / (wall + 2 * fillet)))
         ends = graded(block, (thin, live(1.0)), ("a",), height_at)
@@ -105,17 +107,18 @@ class Steps:
         block.heads("sin q", "cos q", "weight w", "r", "t", "w sin q/(r³ t)")
         for sine_, cosine_, weight_ in ARC_RULE:
             block.row += 1
-            rise, turn, weight = (block.cell(place, one) for place, one in enumerate((sine_, cosine_, weight_)))
+            rise, turn, weight = (block.cell(column, number) for column, number in enumerate((sine_, cosine_, weight_)))
             radius = block.cell(3, inner + fillet * (1 - turn))
             thickness = block.cell(4, thickness_at(radius, inner, *profile) + fillet * (1 - rise))
-            block.cell(5, weight * rise / (radius**3 * thickness))
+            block.cell(5, worked(wall_integral, weight * rise, radius, thickness))
         usual = block.entry(f"{len(ARC_RULE)} points: R × sum", fillet * SUM(block.column(5)))
         last = block.entry("t_e = t at r_ci + R", thickness_at(inner + fillet, inner, *profile))
 
         def height_at(along: Live, back: Live) -> Live:
-            radius = block.cell(3, inner + fillet * back**2 / (1 + along**2))
-            thickness = block.cell(4, thickness_at(radius, inner, *profile) + added_by(fillet, along))
-            return 1 / (radius**3 * thickness)
+            radius = block.cell(3, worked(arc_radius, inner, fillet, along, back))
+            added = worked(added_thickness, fillet, along)
+            thickness = block.cell(4, thickness_at(radius, inner, *profile) + added)
+            return worked(wall_integral, 1.0, radius, thickness)
 
         ends = graded(block, _hub_widths(block, fillet, inner, profile, last), ("r", "t"), height_at)
         first = profile[0]
@@ -134,34 +137,20 @@ class Steps:
         reach = block.entry("v_s − v_o", high - low)
         first, last = block.entry("t_o v_o", low * outer_thickness), block.entry("t_s v_s", high * inner_thickness)
         growth = block.entry("t_s v_s − t_o v_o", last - first)
-        nearly = ABS(growth) < NEARLY * first
-        intercept = block.entry("a (1: not used)", IF(nearly, 1.0, growth / reach))
-        slope = block.entry("b/a", (inner_thickness - intercept) / (start * intercept))
-        bracket = reach * ((high + low) / 2 - slope) + slope**2 * LN(last / first)
-        closed = block.entry("Closed form", bracket / intercept)
-        block.heads("place u", "weight w", "v", "w v²/(v t)")
-        for place_, weight_ in zip(TAPER_PLACES.tolist(), TAPER_WEIGHTS.tolist(), strict=True):
+        on_axis = worked(tapered_disk.axis_thickness, first, last, reach)
+        on_axis = block.entry("a (1: not used)", on_axis)
+        slope = block.entry("b/a", worked(tapered_disk.relative_slope, start, inner_thickness, on_axis))
+        closed = worked(tapered_disk.closed_integral, low, high, first, last, on_axis, slope)
+        closed = block.entry("Closed form", closed)
+        block.heads("node u", "weight w", "v", "w v²/(t v)")
+        for node_, weight_ in zip(TAPER_NODES.tolist(), TAPER_WEIGHTS.tolist(), strict=True):
             block.row += 1
-            place, weight = block.cell(0, place_), block.cell(1, weight_)
-            curvature = block.cell(2, low + reach * place)
-            block.cell(3, weight * curvature**2 / (first + growth * place))
+            node, weight = block.cell(0, node_), block.cell(1, weight_)
+            curvature = block.cell(2, low + reach * node)
+            block.cell(3, worked(tapered_disk.summand, weight, curvature, first + growth * node))
         points = block.entry("By points", reach * SUM(block.column(3)))
-        self._below = block.row + 3
-        return on_sheet(STEPS, block.entry("Taken (points: t ~ r)", IF(nearly, points, closed)))
-
-    def growth(self) -> Live:
-        """Return (e^z − 1)/z, by which a disk that thins with a power of the radius differs from n = 2 [-]."""
-        block = self._block(_DISK, "Power law: (e^z − 1)/z", "∫ e^(z u) du, u from 0 to 1", self._below)
-        (exponent,) = block.links(z="power_law_growth")
-        block.heads("place u", "weight w", "w e^(z u)")
-        for place_, weight_ in zip(TAPER_PLACES.tolist(), TAPER_WEIGHTS.tolist(), strict=True):
-            block.row += 1
-            place, weight = block.cell(0, place_), block.cell(1, weight_)
-            block.cell(2, weight * EXP(exponent * place))
-        points = block.entry("By points", SUM(block.column(2)))
-        closed = (EXP(exponent) - 1) / exponent
-        taken = IF(ABS(exponent) < _STEEP, points, closed)
-        return on_sheet(STEPS, block.entry("Taken (points: |z| < 1)", taken))
+        is_nearly = worked(tapered_disk.is_nearly_proportional, first, last)
+        return on_sheet(STEPS, block.entry("Taken (points: t ~ r)", IF(is_nearly, points, closed)))
 
     def hub_fillet_shear(self) -> tuple[Live, Live]:
         """Return the greatest shear stress in the hub fillet [MPa] and the radius where it acts [mm]."""
@@ -200,7 +189,7 @@ class Steps:
 def _hub_widths(block: Block, fillet: Live, inner: Live, profile: Sequence[Live], last: Live) -> tuple[Live, Live]:
     """Write over which widths of m the hub fillet's integrand changes, at its thin end and at its steep one."""
     even = block.entry("Thin end: w_1 of an even disk", SQRT(last / (last + 2 * fillet)))
-    radius = inner + fillet * (1 - even / 2) ** 2 / (1 + (even / 2) ** 2)
+    radius = block.entry("r at m = w_1/2", worked(arc_radius, inner, fillet, even / 2, 1 - even / 2))
     rise = block.entry("(t − t_e)/w_1 at m = w_1/2", MAX(thickness_at(radius, inner, *profile) - last, 0.0) / even)
     thin = block.entry("Thin end: width of m", last / (last + rise + SQRT(rise**2 + 2 * fillet * last)))
     whole = profile[0] + fillet
@@ -216,11 +205,11 @@ def graded(
     for end, width in zip(("m", "1 − m"), widths, strict=True):
         half = 0.5 / width
         reach = block.entry(f"v at {end} = 1/2, {end} = width sinh v", LN(half + SQRT(half**2 + 1)))
-        block.heads("place u", "weight w", end, *heads, "summand")
-        for place_, weight_ in GRADED_RULE:
+        block.heads("node u", "weight w", end, *heads, "summand")
+        for node_, weight_ in GRADED_RULE:
             block.row += 1
-            place, weight = block.cell(0, place_), block.cell(1, weight_)
-            growth, decay = EXP(reach * place), EXP(-(reach * place))
+            node, weight = block.cell(0, node_), block.cell(1, weight_)
+            growth, decay = EXP(reach * node), EXP(-(reach * node))
             near = block.cell(2, width * (growth - decay) / 2)
             along, back = (near, 1 - near) if end == "m" else (1 - near, near)
             height = height_at(along, back)
@@ -231,19 +220,15 @@ def graded(
     return sums[0], sums[1]
 
 
-def added_by(fillet: Live, along: Live) -> Live:
-    """Return what a fillet adds to the thickness at the tangent m of half the angle from its thin end [mm]."""
-    return 2 * fillet * along**2 / (1 + along**2)
-
-
 _PROFILE = {"r_ci": "disk_inner_radius", "t_1": "hub_thickness", "k": "thinning", "n": "thinning_exponent"}
 
 
 def thickness_at(radius: Operand, inner: Live, thickness: Live, thinning: Live, exponent: Live) -> Live:
     """Return the disk's own thickness at a radius, for every profile [mm]."""
-    return (thickness + thinning * (radius - inner)) * (inner / radius) ** exponent
+    straight = worked(tapered_thickness, radius, inner, thickness, thinning)
+    return worked(power_law_thickness, radius, inner, straight, exponent)
 
 
 def shear(torque: Live, radius: Live, thickness: Live) -> Live:
     """Return the shear stress of a ring [MPa]."""
-    return 1000 * torque / (2 * PI * radius**2 * thickness)
+    return worked(shear_stress, 1000 * torque, radius, thickness)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from flexlash.mechanics import strength
 from flexlash.mechanics.strength import GREATEST_SLENDERNESS, KNOCK_DOWN, LEAST_CURVATURE
-from flexlash.report.formula.functions import AND, IF, ISNUMBER, MAX, PI, SQRT
-from flexlash.report.formula.live import Live, live
+from flexlash.report.formula.closed_forms import worked
+from flexlash.report.formula.functions import AND, IF, ISNUMBER, MAX
 from flexlash.report.trace.trace_mechanics import in_disk, only
 from flexlash.report.trace.trace_page import Page
 from flexlash.report.trace.trace_steps import Steps, shear
@@ -20,14 +21,18 @@ def write_stresses(page: Page, steps: Steps) -> None:
     _write_shears(page, steps)
     for key, name in _NAMES:
         words = (f"{name}: von Mises", f"σ_{name[0].lower()}", "MPa", "√3 τ")
-        page.line(f"{key}_von_mises", SQRT(3.0) * page[f"{key}_shear"], words)
+        page.line(f"{key}_von_mises", worked(strength.von_mises_stress, page[f"{key}_shear"]), words)
     wall, rim, hub = (page[f"{key}_von_mises"] for key, _ in _NAMES)
     section = IF(AND(wall >= rim, wall >= hub), "wall", IF(rim >= hub, "tooth rim", "disk"))
     words = ("Governing section", "", "", "the one with the greatest von Mises stress")
     page.line("governing_section", section, words, "plain")
     stress = page.line("von_mises", MAX(wall, rim, hub), ("Greatest von Mises", "σ", "MPa", "of the three"))
-    limit = only(page["yield_strength"] > 0, page["torque"] * page["yield_strength"] / stress)
-    page.line("elastic_limit_torque", limit, ("Elastic limit torque", "T_el", "N·m", "T σ_y / σ"))
+    limit = worked(strength.limit_torque, page["torque"], stress, page["yield_strength"])
+    page.line(
+        "elastic_limit_torque",
+        only(page["yield_strength"] > 0, limit),
+        ("Elastic limit torque", "T_el", "N·m", "T σ_y / σ"),
+    )
 
 
 def _write_shears(page: Page, steps: Steps) -> None:
@@ -46,9 +51,9 @@ def _write_shears(page: Page, steps: Steps) -> None:
     in_fillet = in_disk(page, only(page["hub_fillet_radius"] > 0, in_fillet))
     words = ("Hub fillet: greatest shear", "", "MPa", "searched along the fillet, see Trace steps")
     page.line("fillet_shear", in_fillet, words)
-    found = MAX(page["start_shear"], page["outer_shear"], page["fillet_shear"])
+    greatest = MAX(page["start_shear"], page["outer_shear"], page["fillet_shear"])
     words = ("Disk: greatest shear", "τ_d", "MPa", "of fillet and both ends: between the ends it is never greater")
-    page.line("hub_shear", found, words)
+    page.line("hub_shear", greatest, words)
     at_end = IF(page["start_shear"] >= page["outer_shear"], start, outer)
     is_end = page["fillet_shear"] < MAX(page["start_shear"], page["outer_shear"])
     acts = only(page["hub_shear"] > 0, IF(is_end, at_end, place))
@@ -61,34 +66,25 @@ def write_buckling(page: Page) -> None:
     modulus, ratio = page["youngs_modulus"] * 1000, page["poisson_ratio"]
     radius, wall, length = page["mean_radius"], page["wall_thickness"], page["cylinder_length"]
     is_known = AND(page["youngs_modulus"] > 0, ISNUMBER(ratio))
-    flexible = 1 - ratio**2
-    curvature = live(KNOCK_DOWN) ** (live(4.0) / 3) * length**2 * SQRT(flexible) / (radius * wall)
+    curvature = worked(strength.curvature_parameter, ratio, radius, wall, length)
     words = ("Curvature", "γZ", "", f"{KNOCK_DOWN:g}^(4/3) l² √(1 − ν²) / (r_m Δ)")
-    page.line("curvature", only(is_known, curvature), words)
-    slender = length / radius / SQRT(radius / wall)
-    page.line("slenderness", slender, ("Slenderness", "", "", "(l/r_m) / √(r_m/Δ)"))
-    longer = IF(page["slenderness"] >= GREATEST_SLENDERNESS, "longer", "yes")
-    span = IF(page["curvature"] <= LEAST_CURVATURE, "shorter", longer)
+    curvature = page.line("curvature", only(is_known, curvature), words)
+    words = ("Slenderness", "", "", "(l/r_m) / √(r_m/Δ)")
+    slender = page.line("slenderness", worked(strength.slenderness, radius, wall, length), words)
     equation = f"shorter: γZ ≤ {LEAST_CURVATURE:g}; longer: slenderness ≥ {GREATEST_SLENDERNESS:g}; else yes"
-    span_words = ("Formula applies", "", "", equation)
-    applies = page.line("buckling_range", IF(is_known, span, "none"), span_words, "plain")
-    usual = 0.747 * KNOCK_DOWN * modulus / ((radius / wall) ** 1.25 * SQRT(length / radius))
+    span = worked(strength.by_buckling_range, curvature, slender, shorter="shorter", usual="yes", longer="longer")
+    page.line("buckling_range", IF(is_known, span, "none"), ("Formula applies", "", "", equation), "plain")
+    usual = worked(strength.buckling_shear, modulus, radius, wall, length)
     words = ("Usual cylinder", "τ_1", "MPa", f"0.747 · {KNOCK_DOWN:g} E (r_m/Δ)^(−5/4) (l/r_m)^(−1/2)")
-    page.line("usual_buckling", only(is_known, usual), words)
-    plate = 5.35 * PI**2 * modulus / (12 * flexible) * (wall / length) ** 2
+    usual = page.line("usual_buckling", only(is_known, usual), words)
+    plate = worked(strength.plate_buckling_shear, modulus, ratio, wall, length)
     words = ("Long plate", "τ_2", "MPa", "5.35 π² E / (12 (1 − ν²)) (Δ/l)²")
-    page.line("plate_buckling", only(is_known, plate), words)
-    tube = 0.272 * KNOCK_DOWN * modulus / flexible**0.75 * (wall / radius) ** 1.5
+    plate = page.line("plate_buckling", only(is_known, plate), words)
+    tube = worked(strength.tube_buckling_shear, modulus, ratio, radius, wall)
     words = ("Long tube", "τ_3", "MPa", f"0.272 · {KNOCK_DOWN:g} E (1 − ν²)^(−3/4) (Δ/r_m)^(3/2)")
-    page.line("tube_buckling", only(is_known, tube), words)
-    _write_governing_buckling(page, applies)
-
-
-def _write_governing_buckling(page: Page, applies: Live) -> None:
-    usual = page["usual_buckling"]
-    short = IF(applies.equals("shorter"), MAX(usual, page["plate_buckling"]), usual)
-    stress = IF(applies.equals("longer"), page["tube_buckling"], short)
+    tube = page.line("tube_buckling", only(is_known, tube), words)
+    stress = worked(strength.by_buckling_range, curvature, slender, shorter=MAX(usual, plate), usual=usual, longer=tube)
     words = ("Wall buckles at shear", "τ_cr", "MPa", "τ_1; shorter: the greater of τ_1 and τ_2; longer: τ_3")
-    page.line("buckling_shear", stress, words)
-    torque = page["torque"] * page["buckling_shear"] / page["wall_shear"]
+    stress = page.line("buckling_shear", only(is_known, stress), words)
+    torque = worked(strength.limit_torque, page["torque"], page["wall_shear"], stress)
     page.line("buckling_torque", torque, ("Wall buckles at torque", "", "N·m", "T τ_cr / τ_w"))
