@@ -39,18 +39,18 @@ def graded(start: float, end: float, first: float, last: float, least: int = 1) 
             above = min(above * _GROWTH, longest)
     gap = high[-1] - low[-1]
     pieces = max(1, math.ceil(gap / max(below, above) - SLACK))
-    return (*low, *(low[-1] + gap * place / pieces for place in range(1, pieces)), *reversed(high))
+    return (*low, *(low[-1] + gap * index / pieces for index in range(1, pieces)), *reversed(high))
 
 
 def nodes_on(lines: Sequence[float], refinement: int) -> Array:
     """Return the nodes on mesh lines: each cell is halved once for its middle node and once per refinement."""
-    found = np.asarray(lines, dtype=float)
+    nodes = np.asarray(lines, dtype=float)
     for _ in range(refinement + 1):
-        halves = np.empty(2 * len(found) - 1)
-        halves[::2] = found
-        halves[1::2] = (found[:-1] + found[1:]) / 2
-        found = halves
-    return found
+        halves = np.empty(2 * len(nodes) - 1)
+        halves[::2] = nodes
+        halves[1::2] = (nodes[:-1] + nodes[1:]) / 2
+        nodes = halves
+    return nodes
 
 
 def step_at(*, sharp: bool, thickness: float) -> float:

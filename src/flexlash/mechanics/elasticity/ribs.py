@@ -19,18 +19,18 @@ ARC = 6
 LONG = 6
 """Least number of cells along a stretch of the meridian."""
 
-Place = Callable[[Array], tuple[Array, Array, Array, Array]]
-"""Outer radius and height, inner radius and height of ribs at places from 0 to 1 along a stretch."""
+RibsAt = Callable[[Array], tuple[Array, Array, Array, Array]]
+"""Outer radius and height, inner radius and height of ribs at fractions from 0 to 1 of a stretch."""
 
 
-def disk_stretches(part: Part, end: float) -> Iterator[tuple[Lines, Place]]:
+def disk_stretches(part: Part, end: float) -> Iterator[tuple[Lines, RibsAt]]:
     """Yield the ribs of a cup's disk from the hub to a radius: those under the hub fillet, then the others."""
     start = part.clamp
     at_hub, at_end = (float(part.thickness(np.array([radius]))[0]) for radius in (start, end))
     if part.hub_fillet:
 
-        def arc(place: Array) -> tuple[Array, Array, Array, Array]:
-            angle = place * (math.pi / 2)
+        def arc(fraction: Array) -> tuple[Array, Array, Array, Array]:
+            angle = fraction * (math.pi / 2)
             radius = part.clamp + part.hub_fillet * (1 - np.cos(angle))
             return radius, -part.thickness(radius), radius, part.hub_fillet * (1 - np.sin(angle))
 
@@ -39,9 +39,9 @@ def disk_stretches(part: Part, end: float) -> Iterator[tuple[Lines, Place]]:
     if end - start > SLACK * part.mean:
         stretch = math.log(end / start)
 
-        def body(place: Array) -> tuple[Array, Array, Array, Array]:
+        def body(fraction: Array) -> tuple[Array, Array, Array, Array]:
             # Steps grow with the radius, since the twist goes as a power of it.
-            radius = start * np.exp(stretch * place)
+            radius = start * np.exp(stretch * fraction)
             top = -(part.bore - radius) * part.lean
             return radius, top - part.thickness(radius), radius, top
 
@@ -50,7 +50,7 @@ def disk_stretches(part: Part, end: float) -> Iterator[tuple[Lines, Place]]:
         yield graded(0.0, 1.0, first, last, LONG), body
 
 
-def fan(part: Part) -> Iterator[tuple[Lines, Place]]:
+def fan(part: Part) -> Iterator[tuple[Lines, RibsAt]]:
     """Yield the ribs around the junction fillet, from the disk to the diagonal and from there to the wall."""
     fillet, bore = part.junction_fillet, part.bore
     base = float(part.thickness(np.array([part.outside]))[0])
@@ -58,37 +58,37 @@ def fan(part: Part) -> Iterator[tuple[Lines, Place]]:
     def on_arc(angle: Array) -> tuple[Array, Array]:
         return bore - fillet * (1 - np.sin(angle)), fillet * (1 - np.cos(angle))
 
-    def to_diagonal(place: Array) -> tuple[Array, Array, Array, Array]:
-        radius = bore - fillet + (part.outside - bore + fillet) * place
-        return radius, -part.thickness(radius), *on_arc(place * (math.pi / 4))
+    def to_diagonal(fraction: Array) -> tuple[Array, Array, Array, Array]:
+        radius = bore - fillet + (part.outside - bore + fillet) * fraction
+        return radius, -part.thickness(radius), *on_arc(fraction * (math.pi / 4))
 
-    def from_diagonal(place: Array) -> tuple[Array, Array, Array, Array]:
-        height = -base + (base + fillet) * place
-        return np.full_like(place, part.outside), height, *on_arc((1 + place) * (math.pi / 4))
+    def from_diagonal(fraction: Array) -> tuple[Array, Array, Array, Array]:
+        height = -base + (base + fillet) * fraction
+        return np.full_like(fraction, part.outside), height, *on_arc((1 + fraction) * (math.pi / 4))
 
-    for place in (to_diagonal, from_diagonal):
-        yield tuple(np.linspace(0, 1, ARC + 1).tolist()), place
+    for ribs_at in (to_diagonal, from_diagonal):
+        yield tuple(np.linspace(0, 1, ARC + 1).tolist()), ribs_at
 
 
-def wall_stretches(part: Part) -> Iterator[tuple[Lines, Place]]:
+def wall_stretches(part: Part) -> Iterator[tuple[Lines, RibsAt]]:
     """Yield the ribs of the wall from the junction to the open end: those of the plain wall, then those of the rim."""
     start, step = part.junction_fillet, part.length - part.rim_length
     corner = part.kind != "cylinder" and not part.junction_fillet
     for low, high, sharp in ((start, step, (corner, part.has_step)), (step, part.length, (part.has_step, False))):
         if high - low > SLACK * part.length:
 
-            def straight(place: Array, low: float = low, high: float = high) -> tuple[Array, Array, Array, Array]:
-                height = low + (high - low) * place
-                return np.full_like(place, part.outside), height, np.full_like(place, part.bore), height
+            def straight(fraction: Array, low: float = low, high: float = high) -> tuple[Array, Array, Array, Array]:
+                height = low + (high - low) * fraction
+                return np.full_like(fraction, part.outside), height, np.full_like(fraction, part.bore), height
 
-            first, last = (step_at(sharp=one, thickness=part.wall) / (high - low) for one in sharp)
+            first, last = (step_at(sharp=is_sharp, thickness=part.wall) / (high - low) for is_sharp in sharp)
             yield graded(0.0, 1.0, first, last, LONG), straight
 
 
-def ribs_of(stretches: Sequence[tuple[Lines, Place]], refinement: int) -> tuple[Array, Array, Array, Array]:
+def ribs_of(stretches: Sequence[tuple[Lines, RibsAt]], refinement: int) -> tuple[Array, Array, Array, Array]:
     """Return outer radius and height, inner radius and height of the ribs of all stretches, end to end."""
-    found: list[tuple[Array, Array, Array, Array]] = []
-    for lines, place in stretches:
-        ribs = place(nodes_on(lines, refinement))
-        found.append(tuple(values[1 if found else 0 :] for values in ribs))  # type: ignore[arg-type]
-    return tuple(np.concatenate(values) for values in zip(*found, strict=True))  # type: ignore[return-value]
+    pieces: list[tuple[Array, Array, Array, Array]] = []
+    for lines, ribs_at in stretches:
+        ribs = ribs_at(nodes_on(lines, refinement))
+        pieces.append(tuple(values[1 if pieces else 0 :] for values in ribs))  # type: ignore[arg-type]
+    return tuple(np.concatenate(values) for values in zip(*pieces, strict=True))  # type: ignore[return-value]

@@ -187,11 +187,11 @@ def _mesh(section: HalfSection) -> tuple[Any, Any]:
     )
     node = np.stack(np.unravel_index(lattice, shape))
     nodes = Dofs(straight, ElementQuad2())
-    places = np.empty((2, nodes.N), dtype=np.int64)
-    places[:, nodes.nodal_dofs[0]] = node
-    places[:, nodes.facet_dofs[0]] = node[:, straight.facets].sum(axis=1) // 2
-    places[:, nodes.interior_dofs[0]] = node[:, straight.t].sum(axis=1) // 4
-    columns, rows = places
+    positions = np.empty((2, nodes.N), dtype=np.int64)
+    positions[:, nodes.nodal_dofs[0]] = node
+    positions[:, nodes.facet_dofs[0]] = node[:, straight.facets].sum(axis=1) // 2
+    positions[:, nodes.interior_dofs[0]] = node[:, straight.t].sum(axis=1) // 4
+    columns, rows = positions
     number = np.full(shape, -1)
     number[columns, rows] = np.arange(nodes.N)
     curved = replace(
@@ -208,8 +208,8 @@ def _end_load(radius: Array) -> Array:
     shapes = ((1 - _POINTS) * (1 - 2 * _POINTS), 4 * _POINTS * (1 - _POINTS), _POINTS * (2 * _POINTS - 1))
     load = np.zeros(len(radius))
     for start, shape in enumerate(shapes):
-        place = slice(start, len(radius) - 2 + start, 2)
-        load[place] += (share * shape).sum(axis=1)
+        nodes = slice(start, len(radius) - 2 + start, 2)
+        load[nodes] += (share * shape).sum(axis=1)
     return load
 
 

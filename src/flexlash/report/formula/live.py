@@ -137,7 +137,7 @@ def _notation(number: float) -> Live | None:
     if number <= 0 or float(f"{number:.{_DIGITS}g}") == number:
         return None
     ways = (write(live(float(f"{plain(number):.6g}"))) for plain, write in _NOTATIONS)
-    return next((found for found in ways if found.value == number), None)
+    return next((formula for formula in ways if formula.value == number), None)
 
 
 def _digits(number: float) -> str:
@@ -145,10 +145,10 @@ def _digits(number: float) -> str:
     return f"{number:.0f}" if number == int(number) and abs(number) < 1e15 else repr(float(number)).replace("e", "E")  # noqa: PLR2004
 
 
-def _both(one: Live, sign: str, other: Operand, kind: int, work: Callable[[Any, Any], Any]) -> Live:
+def _both(left: Live, sign: str, other: Operand, kind: int, work: Callable[[Any, Any], Any]) -> Live:
     """Return two expressions joined by a sign; errors of either pass through, and a text is no number."""
-    second = live(other)
-    values = one.value, second.value
+    right = live(other)
+    values = left.value, right.value
     if failed := [value for value in values if is_error(value)]:
         value = failed[0]
     elif kind == _COMPARISON:
@@ -158,8 +158,8 @@ def _both(one: Live, sign: str, other: Operand, kind: int, work: Callable[[Any, 
     else:
         value = "#VALUE!" if any(isinstance(value, str) for value in values) else work(*values)
     # Programs differ in which power of several comes first.
-    first = _within(one, kind - 1 if kind == _POWER else kind)
-    return Live(f"{first}{sign}{_within(second, kind - 1)}", value, kind)
+    first = _within(left, kind - 1 if kind == _POWER else kind)
+    return Live(f"{first}{sign}{_within(right, kind - 1)}", value, kind)
 
 
 def _rank(value: Value) -> tuple[int, Value]:
@@ -179,21 +179,21 @@ def is_error(value: Value) -> bool:
     return isinstance(value, str) and value.startswith("#")
 
 
-def _ratio(one: float, two: float) -> Value:
-    return one / two if two else "#DIV/0!"
+def _ratio(dividend: float, divisor: float) -> Value:
+    return dividend / divisor if divisor else "#DIV/0!"
 
 
-def _power(one: float, two: float) -> Value:
+def _power(base: float, exponent: float) -> Value:
     try:
-        found = one**two
+        power = base**exponent
     except (ZeroDivisionError, OverflowError):
         return "#NUM!"
-    return found if isinstance(found, float) else "#NUM!"
+    return power if isinstance(power, float) else "#NUM!"
 
 
 def call(name: str, arguments: Sequence[Operand], value: Value) -> Live:
     """Return a worksheet function of expressions with the value it has."""
-    return Live(f"{name}({','.join(live(one).text for one in arguments)})", value)
+    return Live(f"{name}({','.join(live(argument).text for argument in arguments)})", value)
 
 
 def put(sheet: Any, row: int, column: int, what: Live, style: Any) -> Live:

@@ -1,4 +1,4 @@
-"""Data sheets behind the sheets that move: one row per drawn variant, looked up by its place."""
+"""Data sheets behind the sheets that move: one row per drawn variant, looked up by its number."""
 
 from __future__ import annotations
 
@@ -41,28 +41,24 @@ class Stored:
         self.name = name
         self.rows = rows
         self.headings = list(rows[0]) if rows else []
-        self._places = {heading: place for place, heading in enumerate(self.headings)}
-
-    def place(self, heading: str) -> int:
-        """Return the place of a column, from 0."""
-        return self._places[heading]
+        self._columns = {heading: column for column, heading in enumerate(self.headings)}
 
     def cells(self, heading: str) -> Range:
         """Return the range of a column, the variants alone."""
-        letter = xl_col_to_name(self._places[heading])
+        letter = xl_col_to_name(self._columns[heading])
         values = ["" if (value := row[heading]) is None else value for row in self.rows]
         return Range(f"{self.name}!${letter}${FIRST_ROW + 1}:${letter}${FIRST_ROW + len(self.rows)}", values)
 
     def series(self, heading: str, count: int | None = None) -> list[Any]:
         """Return a column's range as charts want it, of all variants or the first few."""
-        place = self._places[heading]
+        column = self._columns[heading]
         last = FIRST_ROW + (len(self.rows) if count is None else count) - 1
-        return [self.name, FIRST_ROW, place, last, place]
+        return [self.name, FIRST_ROW, column, last, column]
 
-    def pick(self, place: Live, heading: str, times: Live | None = None) -> Live:
-        """Return what a column holds for the variant at a place, from 1, times a factor; a blank is an empty text."""
+    def pick(self, number: Live, heading: str, times: Live | None = None) -> Live:
+        """Return what a column holds for the variant of a number, from 1, times a factor; a blank is an empty text."""
         cells = self.cells(heading)
-        entry = INDEX(cells, place)
+        entry = INDEX(cells, number)
         scaled = entry if times is None else entry * times
         return IF(entry.equals(""), "", scaled) if "" in cells.values else scaled
 
@@ -70,16 +66,16 @@ class Stored:
         """Write the sheet."""
         sheet = book.sheet(self.name, tab="stored")
         self._write_note(book, sheet, f"{note} {_NOT_PRINTED}")
-        for place, heading in enumerate(self.headings):
-            sheet.write_string(1, place, heading, book.format("header"))
+        for column, heading in enumerate(self.headings):
+            sheet.write_string(1, column, heading, book.format("header"))
         sheet.set_row(1, 15.5 * max((1 + len(heading) // _HEADING for heading in self.headings), default=1))
         text, number = book.format("text"), book.format("text", "general")
         for row, values in enumerate(self.rows, start=FIRST_ROW):
-            for place, value in enumerate(values.values()):
+            for column, value in enumerate(values.values()):
                 if isinstance(value, str):
-                    sheet.write_string(row, place, value, text)
+                    sheet.write_string(row, column, value, text)
                 elif value is not None:
-                    sheet.write_number(row, place, value, number)
+                    sheet.write_number(row, column, value, number)
         sheet.freeze_panes(FIRST_ROW, 1)
 
     def _write_note(self, book: Book, sheet: Any, note: str) -> None:
@@ -87,16 +83,16 @@ class Stored:
         widths: list[float] = []
         while sum(widths) < _PAGE:
             widths.append(self._width(len(widths)))
-        for place in range(max(len(widths), len(self.headings))):
-            sheet.set_column(place, place, self._width(place))
+        for column in range(max(len(widths), len(self.headings))):
+            sheet.set_column(column, column, self._width(column))
         last = len(widths) - 1
         sheet.merge_range(0, 0, 0, last, note, book.format("wrap"))
         sheet.set_row(0, LINE_HEIGHT * lines_of(note, merged_width(widths)))
         sheet.print_area(0, 0, FIRST_ROW + min(max(len(self.rows), 1), _PRINTED) - 1, last)
 
-    def _width(self, place: int) -> float:
+    def _width(self, column: int) -> float:
         """Return the width of a column: of its longest text, if it has one."""
-        heading = self.headings[place] if place < len(self.headings) else ""
+        heading = self.headings[column] if column < len(self.headings) else ""
         texts = [len(value) for row in self.rows if isinstance(value := row.get(heading), str)]
-        least = _NAME if place < 1 else _NUMBER
+        least = _NAME if column < 1 else _NUMBER
         return min(max([least, *texts]), _LONGEST)

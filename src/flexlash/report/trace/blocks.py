@@ -55,8 +55,8 @@ class Block:
 
     def column(self, column: int) -> Range:
         """Return a column of the table, which ends with the current row."""
-        values, place = self._table[column], self.left + column
-        return Range(xl_range_abs(self.row - len(values) + 1, place, self.row, place), values)
+        values, across = self._table[column], self.left + column
+        return Range(xl_range_abs(self.row - len(values) + 1, across, self.row, across), values)
 
     def _put(self, column: int, value: Live) -> Live:
         style = self.book.format("text", "general")

@@ -68,11 +68,11 @@ PROGRAM: dict[str, tuple[str, float]] = {
 
 def stored_inputs(computed: Sequence[Computed], lost_motion_percent: float) -> Stored:
     """Return the Inputs of variants in their order."""
-    return Stored("Inputs", [_row(one, lost_motion_percent) for one in computed])
+    return Stored("Inputs", [_row(variant, lost_motion_percent) for variant in computed])
 
 
-def _row(one: Computed, lost_motion_percent: float) -> dict[str, str | float | None]:
-    variant = one.variant
+def _row(computed: Computed, lost_motion_percent: float) -> dict[str, str | float | None]:
+    variant = computed.variant
     sizes = _sizes(variant, lost_motion_percent)
     row: dict[str, str | float | None] = {
         "Variant": variant.name,
@@ -81,7 +81,7 @@ def _row(one: Computed, lost_motion_percent: float) -> dict[str, str | float | N
     }
     row |= {column.label: _printed(sizes.get(name), column) for name, column in ENTERED.items()}
     for key, (heading, size) in PROGRAM.items():
-        number = one.nominal.get(key) or None
+        number = computed.nominal.get(key) or None
         row[heading] = number / size if isinstance(number, float) else number
     return row
 

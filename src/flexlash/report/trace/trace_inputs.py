@@ -151,5 +151,5 @@ def _otherwise(page: Page, name: str) -> Operand:
     if name in same_as:
         return page[same_as[name]]
     if name == "disk_cone_angle":
-        return IF(page.place > 0, 90.0, LEFT_OUT)
+        return IF(page.number > 0, 90.0, LEFT_OUT)
     return LEFT_OUT if name in _MAY_BE_ZERO else 0.0

@@ -51,12 +51,12 @@ Words = tuple[str, str, str, str]
 
 
 class Page:
-    """The lines of Trace; what a line comes to is found by its key."""
+    """The lines of Trace; the value of a line is found by its key."""
 
-    def __init__(self, book: Book, sheet: Any, place: Live, stored: Stored) -> None:
+    def __init__(self, book: Book, sheet: Any, number: Live, stored: Stored) -> None:
         self.book = book
         self.sheet = sheet
-        self.place = place
+        self.number = number
         self.stored = stored
         self.row = HEADER
         self.lines: dict[str, Live] = {}
@@ -76,8 +76,8 @@ class Page:
 
     def judge(self, fault: Live) -> None:
         """Let all that follows say none where a variant is missing or the inputs have this fault; "" is none."""
-        found = IF(AND(self.place > 0, fault.equals("")), 1.0, 0.0)
-        self._is_part = put(self.sheet, HEADER - 1, CHANGE, found, self.book.format("quiet", _PART_LOOK))
+        is_part = IF(AND(self.number > 0, fault.equals("")), 1.0, 0.0)
+        self._is_part = put(self.sheet, HEADER - 1, CHANGE, is_part, self.book.format("quiet", _PART_LOOK))
 
     def of_part(self, value: Live, instead: str = LEFT_OUT, sheet: str = "") -> Live:
         """Return a number, or another text where the inputs make no part; as this or another sheet writes it."""
@@ -87,7 +87,7 @@ class Page:
 
     def submitted(self, heading: str) -> Live:
         """Return what was submitted, an empty text where that is blank or no variant is picked."""
-        return IF(self.place > 0, self.stored.pick(self.place, heading), "")
+        return IF(self.number > 0, self.stored.pick(self.number, heading), "")
 
     def section(self, title: str) -> None:
         """Begin a section."""
@@ -113,8 +113,7 @@ class Page:
         return self.lines[key]
 
     def _write_words(self, words: Words) -> None:
-        places = (_NAME, _SYMBOL, _UNIT, _EQUATION)
-        for column, text in zip(places, words, strict=True):
+        for column, text in zip((_NAME, _SYMBOL, _UNIT, _EQUATION), words, strict=True):
             if text:
                 self.sheet.write_string(self.row, column, text, self.book.format(_SHAPES.get(column, "text")))
 
@@ -126,11 +125,11 @@ class Page:
 
     def _write_program(self, traced: Live, heading: str, style: Any, *, is_word: bool) -> None:
         """Write what the program found and how far the traced value is from it."""
-        submitted = self.of_part(self.stored.pick(self.place, heading))
-        found = put(self.sheet, self.row, SUBMITTED, submitted, style)
-        off = IF(traced.equals(found), 0.0, 1.0) if is_word else traced / found - 1
+        submitted = self.of_part(self.stored.pick(self.number, heading))
+        program = put(self.sheet, self.row, SUBMITTED, submitted, style)
+        off = IF(traced.equals(program), 0.0, 1.0) if is_word else traced / program - 1
         nothing = "none" if is_word else 0.0
-        difference = IF(found.equals(""), IF(traced.equals(nothing), "", 1.0), off)
+        difference = IF(program.equals(""), IF(traced.equals(nothing), "", 1.0), off)
         shown = put(
             self.sheet, self.row, CHANGE, self.of_part(difference, ""), self.book.format("figure", _LOOKS["difference"])
         )

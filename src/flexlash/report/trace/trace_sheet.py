@@ -45,7 +45,7 @@ def trace_sheet(book: Book) -> Any:
 
 
 def write_trace(book: Book, sheet: Any, inputs: Stored, total: int, picked: int = 0) -> Mapping[str, Live]:
-    """Write Trace, and its steps on a new sheet, with the variant at a place, from 0, picked; return lines by key."""
+    """Write Trace, and its steps on a new sheet, with the variant of this index picked; return lines by key."""
     sheet.write_string(0, 0, "Trace: one variant from its inputs to backlash and stress", book.format("title"))
     sheet.set_row(0, 28)
     note = (
@@ -77,7 +77,7 @@ def write_trace(book: Book, sheet: Any, inputs: Stored, total: int, picked: int 
 
 
 def _pick(book: Book, sheet: Any, inputs: Stored, picked: int) -> Live:
-    """Write the drop-down and return the reference to the place of the variant."""
+    """Write the drop-down and return the reference to the number of the variant."""
     names = inputs.cells("Variant")
     sheet.write_string(2, 0, "Variant", book.format("label"))
     style = book.format("input")
@@ -125,8 +125,8 @@ def _write_verdict(page: Page, changes: Range) -> Live:
 def _write_headline(page: Page, fault: Live, verdict: Live) -> None:
     """Write the backlash beside the drop-down, or why there is none."""
     backlash = page["backlash"]
-    found = CONCATENATE("◄ backlash ", FIXED(backlash / (PI / 10800), 4), "′, ", verdict)
+    answer = CONCATENATE("◄ backlash ", FIXED(backlash / (PI / 10800), 4), "′, ", verdict)
     is_unreal = OR(backlash <= _LEAST, backlash >= _MOST)
-    told = IF(fault.equals(""), IF(is_unreal, UNREAL, found), CONCATENATE(NO_PART, fault))
-    said = IF(page.place.equals(0.0), NOT_LISTED, told)
+    told = IF(fault.equals(""), IF(is_unreal, UNREAL, answer), CONCATENATE(NO_PART, fault))
+    said = IF(page.number.equals(0.0), NOT_LISTED, told)
     put(page.sheet, HEADER - 2, _EQUATION, said, page.book.format("label"))

@@ -142,7 +142,7 @@ class Steps:
         slope = block.entry("b/a", worked(tapered_disk.relative_slope, start, inner_thickness, on_axis))
         closed = worked(tapered_disk.closed_integral, low, high, first, last, on_axis, slope)
         closed = block.entry("Closed form", closed)
-        block.heads("node u", "weight w", "v", "w v²/(t v)")
+        block.heads("place u", "weight w", "v", "w v²/(v t)")
         for node_, weight_ in zip(TAPER_NODES.tolist(), TAPER_WEIGHTS.tolist(), strict=True):
             block.row += 1
             node, weight = block.cell(0, node_), block.cell(1, weight_)
@@ -181,15 +181,15 @@ class Steps:
                     block.entry("from place", MAX(centre - step, 0.0)),
                     block.entry("to place", MIN(centre + step, 1.0)),
                 )
-        found = block.entry("Greatest shear", MAX(stresses))
+        greatest = block.entry("Greatest shear", MAX(stresses))
         radius = block.entry("at radius", INDEX(radii, best))
-        return on_sheet(STEPS, found), on_sheet(STEPS, radius)
+        return on_sheet(STEPS, greatest), on_sheet(STEPS, radius)
 
 
 def _hub_widths(block: Block, fillet: Live, inner: Live, profile: Sequence[Live], last: Live) -> tuple[Live, Live]:
     """Write over which widths of m the hub fillet's integrand changes, at its thin end and at its steep one."""
     even = block.entry("Thin end: w_1 of an even disk", SQRT(last / (last + 2 * fillet)))
-    radius = block.entry("r at m = w_1/2", worked(arc_radius, inner, fillet, even / 2, 1 - even / 2))
+    radius = worked(arc_radius, inner, fillet, even / 2, 1 - even / 2)
     rise = block.entry("(t − t_e)/w_1 at m = w_1/2", MAX(thickness_at(radius, inner, *profile) - last, 0.0) / even)
     thin = block.entry("Thin end: width of m", last / (last + rise + SQRT(rise**2 + 2 * fillet * last)))
     whole = profile[0] + fillet
@@ -205,7 +205,7 @@ def graded(
     for end, width in zip(("m", "1 − m"), widths, strict=True):
         half = 0.5 / width
         reach = block.entry(f"v at {end} = 1/2, {end} = width sinh v", LN(half + SQRT(half**2 + 1)))
-        block.heads("node u", "weight w", end, *heads, "summand")
+        block.heads("place u", "weight w", end, *heads, "summand")
         for node_, weight_ in GRADED_RULE:
             block.row += 1
             node, weight = block.cell(0, node_), block.cell(1, weight_)

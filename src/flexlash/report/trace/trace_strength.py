@@ -47,7 +47,7 @@ def _write_shears(page: Page, steps: Steps) -> None:
     page.line("start_shear", at_start, ("Disk at r_s: shear", "", "MPa", "T / (2π r_s² t_s)"))
     at_outer = in_disk(page, shear(torque, outer, page["outer_thickness"]))
     page.line("outer_shear", at_outer, ("Disk at r_co: shear", "", "MPa", "T / (2π r_co² t_o)"))
-    in_fillet, place = steps.hub_fillet_shear()
+    in_fillet, radius_in_fillet = steps.hub_fillet_shear()
     in_fillet = in_disk(page, only(page["hub_fillet_radius"] > 0, in_fillet))
     words = ("Hub fillet: greatest shear", "", "MPa", "searched along the fillet, see Trace steps")
     page.line("fillet_shear", in_fillet, words)
@@ -56,7 +56,7 @@ def _write_shears(page: Page, steps: Steps) -> None:
     page.line("hub_shear", greatest, words)
     at_end = IF(page["start_shear"] >= page["outer_shear"], start, outer)
     is_end = page["fillet_shear"] < MAX(page["start_shear"], page["outer_shear"])
-    acts = only(page["hub_shear"] > 0, IF(is_end, at_end, place))
+    acts = only(page["hub_shear"] > 0, IF(is_end, at_end, radius_in_fillet))
     page.line("shear_radius", acts, ("Radius where it acts", "", "mm", "its place in the disk"))
 
 
