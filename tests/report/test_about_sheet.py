@@ -35,6 +35,7 @@ def _section(sheet, title):
     return rows
 
 
+@pytest.mark.slow
 def test_every_sheet_is_listed_with_its_line(book):
     """The index names every visible sheet in order, says in a line what it is for, and leads to it."""
     visible = [sheet.title for sheet in book.worksheets if sheet.sheet_state == "visible"]
@@ -71,6 +72,7 @@ def test_long_texts_have_rows_high_enough(book):
             assert sheet.row_dimensions[row[0].row].height >= 15 * (1 + (len(text) - 3) // width)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["csv", "parquet"])
 def test_what_tells_whether_a_file_came_through_unchanged(kind, tmp_path, book):
     """About names the digest of what was read, and says whether a file of its kind carries checksums."""

@@ -53,6 +53,7 @@ def _saved_by_openpyxl(path, folder):
     return folder / "saved.xlsx"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["b3-160-study", "needs-fixing"])
 def test_what_was_read_comes_back(name, tmp_path):
     """The report's sheet holds exactly the sheets that were read, their dates and properties, and the run's options."""
@@ -68,6 +69,7 @@ def test_what_was_read_comes_back(name, tmp_path):
     ]
 
 
+@pytest.mark.slow
 def test_numbers_keep_the_digits_that_cells_lose(table, sound, tmp_path):
     """A number of seventeen digits, which a cell cuts to sixteen, is carried whole."""
     length = 160.00000000000003
@@ -76,6 +78,7 @@ def test_numbers_keep_the_digits_that_cells_lose(table, sound, tmp_path):
     assert repr(length) in text
 
 
+@pytest.mark.slow
 def test_the_sheet_is_last_and_can_only_be_unhidden_on_purpose(table, sound, tmp_path):
     """The sheet is the last one, in no list of hidden sheets, in pieces that a cell holds, in plain letters."""
     rows = [{**sound, "variant": f"v{number}", "notes": "µ" * 300} for number in range(40)]
@@ -148,6 +151,7 @@ def _ready(submission):
     return ReadReport(name=submission.name, submission=submission, results=None, version="")
 
 
+@pytest.mark.slow
 def test_openpyxl_keeps_the_sheet(tmp_path):
     """Saved by openpyxl, the report still carries the same submission."""
     run(regenerate.ROOT / "data" / "b3-160-study.xlsx", tmp_path / "r.xlsx", **OPTIONS)

@@ -82,6 +82,7 @@ def test_the_axis_holds_all_whiskers_and_limits(study):
     assert all(low < row["backlash_limit_arcmin"] < high for row in rows)
 
 
+@pytest.mark.slow
 def test_the_worst_of_many_have_boxes(many):
     """Of more variants than can be read the worst have boxes, and the sheet says so; without limits no limit."""
     path = many[1]
@@ -95,6 +96,7 @@ def test_the_worst_of_many_have_boxes(many):
     )
 
 
+@pytest.mark.slow
 def test_a_single_variant_has_its_box(table, sound, tmp_path):
     """One variant alone is drawn, and not called all of them."""
     path = tmp_path / "report.xlsx"

@@ -77,6 +77,7 @@ def test_points_of_the_disk_share_stand_under_their_type(drawn):
     assert by_name["B3-160 bore"]["l/r"] == pytest.approx(160 / 80.8, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_without_scatter_a_box_is_a_line(table, sound, tmp_path):
     """Of a variant whose dimensions are exact all percentiles are one number and there is no margin without limit."""
     tolerances = tmp_path / "tolerances.csv"

@@ -54,6 +54,7 @@ def test_the_heat_map_is_the_shares(study):
     assert blanks
 
 
+@pytest.mark.slow
 def test_the_columns_over_all_variants_are_over_all(table, sound, tmp_path):
     """Beyond the variants of the map, mean, greatest share and count are over every computed one."""
     rows = [
@@ -119,6 +120,7 @@ def test_the_disk_share_chart_has_a_point_per_disk(study):
     assert 'formatCode="0%"' in chart
 
 
+@pytest.mark.slow
 def test_cylinders_alone_have_no_disk_share_chart(table, sound, tmp_path):
     """Where no variant has a disk the chart is left out and the map stays."""
     rows = [
@@ -132,6 +134,7 @@ def test_cylinders_alone_have_no_disk_share_chart(table, sound, tmp_path):
     assert "Wall thickness" in _table(_sheet(path))[1]
 
 
+@pytest.mark.slow
 def test_without_scatter_there_is_a_sentence_and_no_map(table, sound, tmp_path):
     """Where nothing scatters the sheet says so instead of a map."""
     tolerances = tmp_path / "tolerances.csv"

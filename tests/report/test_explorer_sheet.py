@@ -262,6 +262,7 @@ def test_without_limit_or_scatter_nothing_is_an_error(table, sound, tmp_path):
     assert (under[VERDICT], over[VERDICT]) == ("green", "red")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", [{"method": "sobol", "samples": 4096}, {"method": "random", "samples": 16}], ids=str)
 def test_points_tell_no_rarer_share_than_they_hold(table, sound, tmp_path, how):
     """With plain points a share below one in all points is told as a bound."""
@@ -316,6 +317,7 @@ def test_nonsense_is_told_and_gives_no_number(study, tmp_path):
             assert words in values[hints[words]], name
 
 
+@pytest.mark.slow
 def test_a_verdict_that_is_not_settled_has_a_question_mark(table, sound, tmp_path):
     """Sixteen plain draws cannot tell 0.135 %: what they show green is green with a question mark."""
     rows = [{**sound, "backlash_limit_arcmin": "99"}]

@@ -25,6 +25,7 @@ def report(table, sound, tmp_path):
     return outcome, openpyxl.load_workbook(tmp_path / "report.xlsx")["Findings"]
 
 
+@pytest.mark.slow
 def test_each_rule_stands_once_on_top(report):
     """A line for each rule tells level, code, count, title, how to learn more and the mend."""
     outcome, sheet = report
@@ -39,6 +40,7 @@ def test_each_rule_stands_once_on_top(report):
     assert sheet.cell(5, 8).value in fixes
 
 
+@pytest.mark.slow
 def test_the_list_is_complete_and_can_be_filtered(report):
     """Below the rules stands every finding, worst first, under a header with filters."""
     outcome, sheet = report
@@ -51,6 +53,7 @@ def test_the_list_is_complete_and_can_be_filtered(report):
     assert codes == [found.code for found in finding_list(outcome)]
 
 
+@pytest.mark.slow
 def test_a_finding_names_its_column_and_leads_to_cell_and_result(report):
     """The column is named by label above key; the cell leads to Submission, the variant to Results."""
     outcome, sheet = report
@@ -68,6 +71,7 @@ def test_a_finding_names_its_column_and_leads_to_cell_and_result(report):
         assert label in {"Torque T [N·m]", "Wall thickness Δ [mm]"}
 
 
+@pytest.mark.slow
 def test_nothing_found_is_said(table, sound, tmp_path):
     """Without findings the sheet says so and has neither rules nor filters."""
     outcome = run(table([sound]), tmp_path / "report.xlsx", samples=256)

@@ -32,6 +32,7 @@ def _trees(depth=4):
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=400, deadline=None, derandomize=True)
 @given(_trees())
 def test_the_text_means_the_value(found):

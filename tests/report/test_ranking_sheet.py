@@ -143,6 +143,7 @@ def test_formulas_move_with_their_row(study):
         assert sheet.cell(number, 12).value == f"=K{number}-I{number}"
 
 
+@pytest.mark.slow
 def test_of_more_variants_than_are_drawn_the_worst_stand_here(table, sound, tmp_path, monkeypatch):
     """Of more variants than are drawn the worst stand here, in order, and the sheet says so."""
     monkeypatch.setattr("flexlash.pipeline.DRAWN", 50)
@@ -158,6 +159,7 @@ def test_of_more_variants_than_are_drawn_the_worst_stand_here(table, sound, tmp_
     assert sheet.cell(BASE_ROW + 1, 2).value == min(shown, key=lambda name: int(name[1:])) == "v10"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scatters", [True, False])
 def test_without_a_limit_there_is_neither_verdict_nor_margin(table, sound, tmp_path, scatters):
     """Without a limit, and without scatter, the cells that would need them are empty and nothing fails."""
@@ -180,6 +182,7 @@ def test_without_a_limit_there_is_neither_verdict_nor_margin(table, sound, tmp_p
         assert sheet.cell(number, differences["sd", "%"]).value == (0 if scatters else None)
 
 
+@pytest.mark.slow
 def test_a_long_name_is_shortened_and_can_be_picked_whole(table, sound, tmp_path):
     """Two names that differ only late are shown short and told apart in the drop-down's list."""
     names = ["a variant with a name longer than thirty, A", "a variant with a name longer than thirty, B"]

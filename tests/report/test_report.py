@@ -77,6 +77,7 @@ def _with_errors():
                     "coverage_high_arcmin": "p97_5_standard_error_arcmin"}  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", [{}, {"method": "sobol"}, {"method": "random", "samples": 64}, {"samples": 8}], ids=str)
 def test_results_show_no_more_digits_than_their_error_justifies(table, sound, tmp_path, how):
     """A cell of Results ends at the first digit of its standard error: one more would be noise, one fewer a loss."""
@@ -99,6 +100,7 @@ def test_results_show_no_more_digits_than_their_error_justifies(table, sound, tm
     assert len({unit for _, unit in seen}) >= 3
 
 
+@pytest.mark.slow
 def test_results_without_scatter_show_their_usual_digits(table, sound, tmp_path):
     """A number without a standard error, since nothing scatters, is shown as the nominal numbers are."""
     tolerances = tmp_path / "tolerances.csv"
@@ -111,6 +113,7 @@ def test_results_without_scatter_show_their_usual_digits(table, sound, tmp_path)
     assert formats["backlash_arcmin"] == formats["mean_arcmin"] == formats["p99_865_arcmin"] == "0.0000"
 
 
+@pytest.mark.slow
 def test_a_cross_check_stands_in_the_report(table, sound, tmp_path):
     """With a cross-check Results has its columns and About says what was compared."""
     run(table([sound]), tmp_path / "report.xlsx", cross_check=True)
@@ -131,6 +134,7 @@ SAID = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", SAID)
 def test_about_and_summary_name_the_method(table, sound, tmp_path, method):
     """About tells the method that was used and no other; the Summary names it with its lines or points."""
@@ -225,6 +229,7 @@ def test_strength_names_the_governing_section(study):
         assert row["Governing section"] == max(stress, key=stress.get)
 
 
+@pytest.mark.slow
 def test_about_repeats_what_the_proof_computes(tmp_path, monkeypatch):
     """The numbers of the proof in About are those of the proof's own run."""
     pytest.importorskip("skfem", reason="scikit-fem is not installed here")
@@ -280,6 +285,7 @@ def test_the_submission_stands_at_its_own_addresses(faulty):
                     assert book[title][cell.coordinate].value == cell.value
 
 
+@pytest.mark.slow
 def test_text_of_a_submission_is_inert(table, sound, tmp_path):
     """Names that look like formulas, links or array formulas stay texts in every sheet."""
     names = ["=1+1", "{=1}", "http://example.org", "+cmd", "@x", "-2", "mailto:a@b.c", "internal:Results!A1"]
@@ -309,6 +315,7 @@ def test_charts_have_cached_points_and_alternative_texts(study):
     assert len(re.findall(r'descr="[^"]+"', texts)) == len(charts)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("sheet", "cell"), [("Explorer", "B4"), ("Ranking", "B5"), ("Trace", "B3")])
 def test_a_variant_is_picked_from_the_drawn_ones(study, sheet, cell):
     """Each drop-down lists all drawn variants, worst first, as its data sheet stores them."""
@@ -334,6 +341,7 @@ def test_stored_curves_rise_and_stored_heights_are_shares(study):
         assert curve == sorted(set(curve))
 
 
+@pytest.mark.slow
 def test_only_the_worst_are_drawn_when_there_are_many(table, sound, tmp_path, monkeypatch):
     """With more variants than can be drawn the report holds the worst and says so."""
     monkeypatch.setattr(pipeline, "DRAWN", 3)
@@ -345,6 +353,7 @@ def test_only_the_worst_are_drawn_when_there_are_many(table, sound, tmp_path, mo
     assert book["Results"].max_row == 7
 
 
+@pytest.mark.slow
 def test_a_report_without_scatter_or_limit(table, sound, tmp_path):
     """Exact dimensions and no limit give a report all the same: no tornado, no verdict, no share."""
     tolerances = tmp_path / "tolerances.csv"
@@ -356,6 +365,7 @@ def test_a_report_without_scatter_or_limit(table, sound, tmp_path):
     assert book["Sensitivity"]["A4"].value is None
 
 
+@pytest.mark.slow
 def test_long_names_do_not_spill(table, sound, tmp_path):
     """A long name is shortened under charts and in the Summary, and whole in Results."""
     name = "pinned sleeve with a really long name for the design review"
@@ -376,6 +386,7 @@ def test_the_same_outcome_gives_the_same_bytes(study):
     assert stamped(report_bytes(study[0]), "report") == study[1].read_bytes()
 
 
+@pytest.mark.slow
 def test_a_table_alone_shows_the_built_in_materials_and_tolerances(table, sound, tmp_path):
     """A CSV submission's report shows the built-in materials and the class standard that were used."""
     run(table([sound]), tmp_path / "report.xlsx", samples=256)
@@ -385,6 +396,7 @@ def test_a_table_alone_shows_the_built_in_materials_and_tolerances(table, sound,
     assert [cell.value for cell in book["Tolerances"][3]][:1] == ["mean_radius"]
 
 
+@pytest.mark.slow
 def test_notes_that_say_row_status_stay(table, sound, tmp_path):
     """Only the header of the status column hides a column, not a note of the same words."""
     run(table([{**sound, "notes": "Row status"}]), tmp_path / "report.xlsx", samples=256)
@@ -412,6 +424,7 @@ def test_every_formula_is_stored_with_its_value(study, recalculated):
     assert count > 1500
 
 
+@pytest.mark.slow
 def test_the_elasticity_sheet_says_what_was_not_checked(table, sound, tmp_path):
     """A row that cannot be checked stands in the Elasticity sheet and says so; one with errors does not stand there."""
     pytest.importorskip("skfem", reason="scikit-fem is not installed here")

@@ -42,6 +42,7 @@ def report(tmp_path_factory):
     return outcome, openpyxl.load_workbook(folder / "report.xlsx")
 
 
+@pytest.mark.slow
 def test_other_columns_of_the_submission_pass_through(report):
     """Columns that flexlash does not know stand at the right end, as they were read, and not in the frame."""
     outcome, book = report
@@ -133,6 +134,7 @@ def test_shares_are_drawn_as_bars(report):
     assert [kinds for kinds in formats.values() if len(kinds) == 3] == [["cellIs"] * 3]
 
 
+@pytest.mark.slow
 def test_the_limit_is_as_entered(table, sound, tmp_path):
     """A limit of 3.8 stands as 3.8 in the frame and in every sheet, not as 3.7999999999999994."""
     outcome = run(table([{**sound, "backlash_limit_arcmin": 3.8}]), tmp_path / "report.xlsx", samples=256)
@@ -154,6 +156,7 @@ def test_a_printed_page_begins_where_another_matter_does(report):
     assert sheet.page_setup.scale == 65
 
 
+@pytest.mark.slow
 def test_long_notes_are_wrapped(table, sound, tmp_path):
     """A long note is wrapped in a row that is high enough; a row without one has the usual height."""
     rows = [{**sound, "notes": "word " * 60}, {**sound, "variant": "b", "notes": "short"}]

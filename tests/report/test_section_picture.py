@@ -30,6 +30,7 @@ def _pixels(data):
     return imread(io.BytesIO(data), format="png")[:, :, :3]
 
 
+@pytest.mark.slow
 def test_the_picture_has_its_size_and_its_bytes(check):
     """The picture is a PNG of the stated size, the same bytes each time, whatever settings matplotlib has."""
     import matplotlib as mpl
@@ -40,6 +41,7 @@ def test_the_picture_has_its_size_and_its_bytes(check):
         assert section_png(check, 60e6) == data
 
 
+@pytest.mark.slow
 def test_colours_follow_the_stress(check):
     """A scale that ends far above the stress gives a dark picture, one that ends far below a bright one."""
     dark, fitting, bright = (_pixels(section_png(check, end)).mean(axis=2) for end in (1e10, 60e6, 1e5))
@@ -65,6 +67,7 @@ def test_the_triangles_cover_the_half_section(check):
     assert stress.min() > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "change", "names"),
     [

@@ -8,6 +8,7 @@ import pytest
 from flexlash.pipeline import run
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("count", "breaks"), [(12, 0), (13, 1)])
 def test_a_long_table_begins_on_a_page_of_its_own(table, sound, tmp_path, count, breaks):
     """Up to twelve variants stand below the chart; more begin on a new page, and names cut alike are told apart."""

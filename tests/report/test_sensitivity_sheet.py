@@ -6,6 +6,7 @@ import re
 import zipfile
 
 import openpyxl
+import pytest
 from written import write_outcome
 
 from flexlash.analysis.run_summary import dimension_words
@@ -13,6 +14,7 @@ from flexlash.pipeline import run
 from flexlash.report.sensitivity_sheet import _HEADER
 
 
+@pytest.mark.slow
 def test_every_variant_has_its_shares_however_few_are_drawn(table, sound, tmp_path):
     """The table holds all computed variants in submitted order, also when curves are kept of one alone."""
     rows = [{**sound, "variant": f"v{number}", "torque_Nm": 700.0 + number} for number in range(5)]
@@ -34,6 +36,7 @@ def test_every_variant_has_its_shares_however_few_are_drawn(table, sound, tmp_pa
     assert sheet.freeze_panes == "B1"
 
 
+@pytest.mark.slow
 def test_the_tornado_names_every_bar(table, sound, tmp_path):
     """Every bar of the tornado has its label, and a long name is shortened in its title."""
     name = "pinned sleeve with a really long name for the design review"

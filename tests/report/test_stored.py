@@ -23,6 +23,7 @@ def _sheet(path, count, columns=60):
     return openpyxl.load_workbook(path)["Data"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("count", "last"), [(0, FIRST_ROW + 1), (3, FIRST_ROW + 3), (600, FIRST_ROW + 12)])
 def test_the_first_rows_alone_are_printed(tmp_path, count, last):
     """However many variants and columns there are, one page is printed; it says why, and its note is whole."""

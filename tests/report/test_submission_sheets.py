@@ -26,6 +26,7 @@ def faulty(table, sound):
     return table(rows)
 
 
+@pytest.mark.slow
 def test_guilty_cells_say_what_is_wrong(faulty, tmp_path):
     """Each guilty cell has its finding's code and message in a comment; no other cell has one."""
     outcome, book = _report(faulty, tmp_path)
@@ -39,6 +40,7 @@ def test_guilty_cells_say_what_is_wrong(faulty, tmp_path):
     assert len(comments) == 4
 
 
+@pytest.mark.slow
 def test_comments_are_no_more_than_can_be_kept(faulty, tmp_path, monkeypatch):
     """With more guilty cells than comments the first cells have one; all are coloured."""
     monkeypatch.setattr(submission_sheets, "MOST_COMMENTS", 2)
@@ -49,6 +51,7 @@ def test_comments_are_no_more_than_can_be_kept(faulty, tmp_path, monkeypatch):
     assert {cell.coordinate for cell in cells if cell.fill.fgColor.rgb == "FFF8CBAD"} == guilty
 
 
+@pytest.mark.slow
 def test_entry_sheets_are_frozen_and_filtered_below_their_headers(workbook, sound, tmp_path):
     """Rows above the header stay on screen, and the table below it can be filtered, on every entry sheet."""
     outcome, book = _report(workbook([sound]), tmp_path)
@@ -60,6 +63,7 @@ def test_entry_sheets_are_frozen_and_filtered_below_their_headers(workbook, soun
         assert int(last.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")) == max(sheet.max_row, header)
 
 
+@pytest.mark.slow
 def test_percentages_look_as_entered(workbook, sound, tmp_path):
     """A cell that showed 5% shows 5% again, whatever was computed of it."""
     path = workbook([sound])
@@ -82,12 +86,14 @@ def test_percentages_look_as_entered(workbook, sound, tmp_path):
     assert shown[0.125] == "0.0%"
 
 
+@pytest.mark.slow
 def test_a_name_that_is_a_number_stays_a_number(workbook, sound, tmp_path):
     """A variant whose name was typed as a number is repeated as a number."""
     _, book = _report(workbook([{**sound, "variant": 12}]), tmp_path)
     assert 12 in [cell.value for cell in book["Submission"]["A"]]
 
 
+@pytest.mark.slow
 def test_nothing_is_cut(workbook, sound, tmp_path):
     """Columns are as wide as their texts below the header; longer ones are wrapped in rows high enough."""
     _, book = _report(workbook([{**sound, "notes": "word " * 40}]), tmp_path)
@@ -104,6 +110,7 @@ def test_nothing_is_cut(workbook, sound, tmp_path):
                     assert 0.9 * len(cell.value) <= dimension.width * height / 15, (name, cell.coordinate)
 
 
+@pytest.mark.slow
 def test_titles_of_our_template_look_like_titles(workbook, table, sound, tmp_path):
     """The first cell of a sheet of our template is a title; that of a table is a header."""
     _, book = _report(workbook([sound]), tmp_path)

@@ -97,6 +97,7 @@ def test_the_table_holds_the_worst_with_their_numbers(study):
         assert cause == f"{main} ({100 * one.row['main_contributor_share']:.0f} %)"
 
 
+@pytest.mark.slow
 def test_links_lead_to_their_variants(table, sound, tmp_path):
     """Each name leads to the cell of Results that holds it, also behind rows with errors; Findings to its sheet."""
     rows = [{**sound, "variant": "bad", "torque_Nm": ""}]
@@ -127,6 +128,7 @@ def test_distances_are_the_same_in_sentence_and_table(study):
     assert shown == ["2.462", "0.480", "0.138"]
 
 
+@pytest.mark.slow
 def test_verdicts_of_few_points_have_a_mark(folder):
     """By 64 draws eight green verdicts have a ? in cell and key figure, in the colour of green, and shares an ≈."""
     study = regenerate.ROOT / "data" / "b3-160-study.xlsx"
@@ -155,6 +157,7 @@ def test_further_sheets_and_a_line_to_sign(study):
     assert sheet.print_area.endswith(f"$I${sheet.max_row}")
 
 
+@pytest.mark.slow
 def test_numbers_have_no_separators(study, folder, table, sound):
     """However many lines or points there are, thousands are written in one way on the whole page."""
     run(table([sound]), folder / "many points.xlsx", method="sobol")
@@ -166,6 +169,7 @@ def test_numbers_have_no_separators(study, folder, table, sound):
     assert any("32768 points per variant" in text for text in texts)
 
 
+@pytest.mark.slow
 def test_long_names_of_the_table_stay_apart(table, sound, tmp_path):
     """Names that begin alike are cut in their middle, so that each row of the table has its own."""
     names = [f"A Name That Is The Same For Thirty Letters, Wall {wall} mm" for wall in ("1.6", "1.7", "1.8")]
@@ -188,6 +192,7 @@ def test_where_the_numbers_come_from(study):
     assert re.search(r"flexlash \d+\.\d+\.\d+, method line, seed 0, \d+ (to \d+ )?lines per variant\.", texts)
 
 
+@pytest.mark.slow
 def test_a_file_without_a_date_has_none(table, sound, tmp_path):
     """A table has no date of its own, so none is told."""
     run(table([sound]), tmp_path / "report.xlsx", samples=64)
@@ -227,6 +232,7 @@ def test_the_chart_holds_every_variant(study):
     assert 0 < low < min(expected[0])
 
 
+@pytest.mark.slow
 def test_more_variants_than_fit_are_said(table, tmp_path, monkeypatch):
     """The table lists the twelve worst and the chart the sixty worst; both say of how many, not of how many drawn."""
     monkeypatch.setattr("flexlash.pipeline.DRAWN", 70)
@@ -237,6 +243,7 @@ def test_more_variants_than_fit_are_said(table, tmp_path, monkeypatch):
     assert _chart(tmp_path / "report.xlsx").count('<c:ptCount val="60"/>') == 8
 
 
+@pytest.mark.slow
 def test_few_decimals_of_an_axis_are_enough(table, sound, tmp_path):
     """Whatever the size of the backlash, the axis has a handful of steps whose numbers differ."""
     for place, torque in enumerate((0.8, 80.0, 8000.0)):

@@ -54,6 +54,7 @@ def everything(tmp_path_factory):
 SUBMISSIONS = ["b3-160-study.xlsx", "catalogue-sizes.xlsx", "b3-160-proof.xlsx", "b3-160-calibrated.xlsx"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SUBMISSIONS)
 def test_every_example_agrees_with_the_program(name):
     """With any variant of the examples picked, every traced number is the program's to 1e-12."""
@@ -71,6 +72,7 @@ def traces(everything):
     return [traced(everything, place) for place in range(len(ROWS))]
 
 
+@pytest.mark.slow
 def test_every_kind_of_row_agrees_with_the_program(everything, traces):
     """Every shape and refinement, wide and narrow, traces to the program's numbers, and no cell holds an error."""
     for one, (lines, data) in zip(everything.computed.values(), traces, strict=True):
@@ -143,6 +145,7 @@ def test_every_variant_can_be_picked(traces):
     assert book["Trace"].freeze_panes == "A6"
 
 
+@pytest.mark.slow
 def test_the_trace_says_when_more_variants_were_computed():
     """With more variants than can be picked the Trace says how many of how many; without any it is empty."""
     outcome = check(DATA / "b3-160-study.xlsx")
