@@ -10,12 +10,14 @@ from functools import partial
 
 import numpy as np
 
+from flexlash.analysis.tolerance_spread import row_statistics
 from flexlash.mechanics.elasticity.twist import elasticity_check
 from flexlash.mechanics.flexspline import backlash
+from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.variant import Variant
 from flexlash.tolerance.dimension_limits import limits_of
-from flexlash.tolerance.row_batches import spread_rows
-from flexlash.tolerance.spread_statistics import SamplingPlan
+from flexlash.tolerance.row_batches import TolerancedRow
+from flexlash.tolerance.sampling import SamplingPlan
 from flexlash.validation.materials_and_classes import standard_class
 
 PLAIN = {
@@ -72,8 +74,12 @@ def spread_time(dimensions, lines=None):
         for row in range(ROWS)
     ]
     model = partial(backlash, "cup")
-    tasks = [(model, one.dimensions, limits_of(one, standard_class())[0], None) for one in variants]
-    return best(lambda: list(spread_rows(tasks, SamplingPlan("line", lines, 0), jobs=1)), 3) / ROWS
+    rows = [
+        TolerancedRow(model=model, nominal=variant.dimensions, limits=limits_of(variant, standard_class())[0])
+        for variant in variants
+    ]
+    plan = SamplingPlan(method="line", inputs=tuple(DIMENSIONS), samples=lines)
+    return best(lambda: list(row_statistics(rows, plan, 1)), 3) / ROWS
 
 
 def model_time(dimensions):

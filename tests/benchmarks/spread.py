@@ -293,14 +293,15 @@ def accuracy(openturns, seeds):
         print("OpenTURNS skipped: name an interpreter that has it by --openturns.")
 
 
-def drawn_tasks(rows):
-    """Return tasks of plausible cups of the standard class, every fifth with fillets and rim."""
+def drawn_rows(rows):
+    """Return plausible cups of the standard class, every fifth with fillets and rim."""
     from dataclasses import replace
     from functools import partial
 
     from flexlash import pipeline
     from flexlash.mechanics.flexspline import backlash
     from flexlash.tolerance.dimension_limits import limits_of, shape_problems
+    from flexlash.tolerance.row_batches import TolerancedRow
 
     with tempfile.TemporaryDirectory() as name:
         path = Path(name, "two.xlsx")
@@ -311,7 +312,7 @@ def drawn_tasks(rows):
     standard = outcome.validated.classes["standard"]
     source = random.Random(1)  # noqa: S311
     model = partial(backlash, "cup")
-    tasks = []
+    toleranced = []
     for number in range(rows):
         diameter = source.uniform(0.035, 0.25)
         wall = diameter * source.uniform(0.01, 0.015)
@@ -327,23 +328,25 @@ def drawn_tasks(rows):
             dimensions |= {"rim_length": diameter / 10, "rim_thickness": 2 * wall}
         variant = replace(template, row=number, dimensions=template.dimensions | dimensions)
         limits, _ = shape_problems(variant, limits_of(variant, standard)[0])
-        tasks.append((model, variant.dimensions, limits, math.radians(source.uniform(1, 5) / 60)))
-    return tasks
+        limit = math.radians(source.uniform(1, 5) / 60)
+        toleranced.append(TolerancedRow(model=model, nominal=variant.dimensions, limits=limits, upper_limit=limit))
+    return toleranced
 
 
 def spread_once(rows):
     """Print seconds, peak memory [MiB] before and after, and by which methods rows were answered, as JSON."""
     from collections import Counter
 
-    from flexlash.tolerance.row_batches import spread_rows
-    from flexlash.tolerance.spread_statistics import SamplingPlan
+    from flexlash.analysis.tolerance_spread import row_statistics
+    from flexlash.schema.columns import DIMENSIONS
+    from flexlash.tolerance.sampling import SamplingPlan
 
-    tasks = drawn_tasks(rows)
-    draws = SamplingPlan(method="line", samples=None, seed=0)
-    list(spread_rows(tasks[:200], draws, jobs=1))
+    toleranced = drawn_rows(rows)
+    plan = SamplingPlan(method="line", inputs=tuple(DIMENSIONS))
+    list(row_statistics(toleranced[:200], plan, 1))
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     start = time.perf_counter()
-    found = list(spread_rows(tasks, draws, jobs=1))
+    found = list(row_statistics(toleranced, plan, 1))
     wall = time.perf_counter() - start
     after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     lines = Counter(f"{one.texts['spread_method']} {one.numbers['spread_points']:.0f}" for _, one in found)

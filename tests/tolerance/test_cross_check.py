@@ -8,15 +8,15 @@ from functools import partial
 
 import pytest
 from b3_160 import CUP, NOMINAL
+from toleranced import plan, row, statistics_of_row
 
 from flexlash.mechanics import flexspline
-from flexlash.tolerance.cross_check import AGREES, cross_checked
+from flexlash.tolerance.cross_check import AGREEMENT, cross_checked
 from flexlash.tolerance.dimension_limits import Limits
 from flexlash.tolerance.distributions import Normal
-from flexlash.tolerance.row_batches import batch_statistics
 from flexlash.tolerance.sampled_spread import SampledSpread
 from flexlash.tolerance.sampling import UnitPoints
-from flexlash.tolerance.spread_statistics import PERCENTILES, SamplingPlan
+from flexlash.tolerance.spread_statistics import PERCENTILES
 
 LIMITS = {
     "wall_thickness": Limits(low=0.00155, high=0.00165, distribution="uniform"),
@@ -27,8 +27,7 @@ COMPARED = (*PERCENTILES, "mean", "sd")
 
 def spread(limit=None, *, limits=LIMITS, method="line", samples=None, seed=0, cross_check=True):
     """Return the cross-checked statistics of the cup."""
-    draws = SamplingPlan(method, samples, seed, cross_check=cross_check)
-    return batch_statistics([(CUP, NOMINAL, limits, limit)], draws)[0]
+    return statistics_of_row(row(CUP, NOMINAL, limits, limit), plan(method, samples, seed, cross_check=cross_check))
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -37,7 +36,7 @@ def test_lines_and_points_agree_with_plain_draws(method, seed):
     """Lines and Sobol' points agree with plain Monte Carlo in mean, sd, percentiles and share over the limit."""
     found = spread(1.09e-3, method=method, seed=seed)
     assert found.texts["cross_check"] == "agrees"
-    assert found.numbers["cross_check_deviation"] <= AGREES
+    assert found.numbers["cross_check_deviation"] <= AGREEMENT
 
 
 @pytest.mark.parametrize("name", COMPARED)
@@ -48,7 +47,7 @@ def test_a_wrong_statistic_is_found(name):
     moved = replace(found, numbers=found.numbers | {name: wrong})
     checked = cross_checked(moved, plain(), None)
     assert checked.texts["cross_check"] == "differs"
-    assert checked.numbers["cross_check_deviation"] > AGREES
+    assert checked.numbers["cross_check_deviation"] > AGREEMENT
 
 
 def plain(size=2**17):
@@ -97,7 +96,7 @@ def test_the_deviation_is_the_greatest_in_combined_standard_errors():
     }
     expected = max(abs(found[name] - found[f"random_{name}"]) / errors[name] for name in COMPARED)
     assert found["cross_check_deviation"] == pytest.approx(expected, rel=1e-14)
-    assert 0 < expected < AGREES
+    assert 0 < expected < AGREEMENT
 
 
 def test_plain_monte_carlo_is_not_checked_against_itself():
@@ -115,7 +114,7 @@ def test_a_row_that_points_answered_is_checked_too():
     def bowl(dimensions):
         return dimensions["torque"] ** 2 + dimensions["cylinder_length"] ** 2
 
-    (found,) = batch_statistics([(bowl, nominal, bowl_limits, 5.0)], SamplingPlan("line", None, 0, cross_check=True))
+    found = statistics_of_row(row(bowl, nominal, bowl_limits, 5.0), plan(cross_check=True))
     assert found.texts["spread_method"] == "sobol"
     assert found.texts["cross_check"] == "agrees"
 
@@ -127,9 +126,7 @@ def test_a_share_too_rare_for_plain_draws_agrees_with_none_seen(share, agrees):
     points = UnitPoints(["a"], method="random", samples=4096, seed=0)
     drawn = SampledSpread(model=lambda a: a, inputs={"a": Normal(mean=0.0, sd=1.0)}, points=points)
     assert drawn.probability_above(limit) == 0
-    (found,) = batch_statistics(
-        [(lambda d: d["a"], {"a": 0.0}, {"a": Limits(low=-3.0, high=3.0)}, limit)], SamplingPlan("line", None, 0)
-    )
+    found = statistics_of_row(row(lambda d: d["a"], {"a": 0.0}, {"a": Limits(low=-3.0, high=3.0)}, limit), plan())
     moved = replace(found, numbers=found.numbers | {"probability_over_limit": share})
     deviation = cross_checked(moved, drawn, limit).numbers["cross_check_deviation"]
     same = cross_checked(found, drawn, limit).numbers["cross_check_deviation"]
@@ -157,10 +154,10 @@ def test_a_tolerance_without_effect_agrees(case, method):
     """A dimension that scatters without any effect gives both methods the same number, which agrees."""
     kind, name, low, high = WITHOUT_EFFECT[case]
     nominal = NOMINAL | {name: (low + high) / 2}
-    task = partial(flexspline.backlash, kind), nominal, {name: Limits(low=low, high=high)}, 1e-3
-    (found,) = batch_statistics([task], SamplingPlan(method, None, 0, cross_check=True))
+    toleranced = row(partial(flexspline.backlash, kind), nominal, {name: Limits(low=low, high=high)}, 1e-3)
+    found = statistics_of_row(toleranced, plan(method, cross_check=True))
     # A hub fillet far below rounding still shakes the last bit.
     assert 0 <= found.numbers["sd"] <= 1e-15 * found.numbers["mean"]
     assert 0 <= found.numbers["random_sd"] <= 1e-15 * found.numbers["mean"]
-    assert found.numbers["cross_check_deviation"] <= AGREES
+    assert found.numbers["cross_check_deviation"] <= AGREEMENT
     assert found.texts["cross_check"] == "agrees"

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from b3_160 import CUP, NOMINAL
 from scipy.special import ndtr, ndtri
+from toleranced import SUM, plan, row, statistics_of_row
 
 from flexlash.tolerance.dimension_limits import Limits
-from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS, curve_of, curves_of
-from flexlash.tolerance.row_batches import batch_statistics
-from flexlash.tolerance.spread_statistics import PERCENTILES, SamplingPlan
+from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS, curve_of
+from flexlash.tolerance.spread_statistics import PERCENTILES
 
 SCORES = np.array(CURVE_SCORES)
 MIDDLE = len(SCORES) // 2
@@ -22,24 +22,16 @@ LIMITS = {
     "wall_thickness": Limits(low=0.00155, high=0.00165),
     "youngs_modulus": Limits(low=207e9, high=215e9),
 }
-NAMES = ("torque", "cylinder_length", "wall_thickness")
-SUM_LIMITS = {name: Limits(low=-3.0 * sd, high=3.0 * sd) for name, sd in zip(NAMES, (1.0, 2.0, 2.0), strict=True)}
 
 
-def total(dimensions):
-    """Return a sum, which is normal with mean 10 and sd 3."""
-    return 10.0 + dimensions["torque"] + dimensions["cylinder_length"] - dimensions["wall_thickness"]
+def _both(toleranced, **options):
+    """Return a row's statistics and its curve."""
+    sampling = plan(**options)
+    statistics = statistics_of_row(toleranced, sampling)
+    return statistics, curve_of(toleranced, statistics, sampling)
 
 
-def _both(task, **draws):
-    """Return a row's spread and its curve."""
-    chosen = SamplingPlan(**{"method": "line", "samples": None, "seed": 0} | draws)
-    (statistics,) = batch_statistics([task], chosen)
-    return statistics, curve_of((task, statistics), chosen)
-
-
-CUP_TASK = (CUP, NOMINAL, LIMITS, 1.08e-3)
-SUM_TASK = (total, dict.fromkeys(NAMES, 0.0), SUM_LIMITS, 16.0)
+CUP_ROW = row(CUP, NOMINAL, LIMITS, 1.08e-3)
 
 
 def test_scores_reach_beyond_one_in_a_million():
@@ -54,7 +46,7 @@ def test_scores_reach_beyond_one_in_a_million():
 @pytest.mark.parametrize("method", METHODS)
 def test_a_normal_has_a_straight_curve(method):
     """The curve of a sum of normals is mean + score × sd, by lines to 1e-8, by points within their errors."""
-    _, curve = _both(SUM_TASK, method=method, samples=2**14)
+    _, curve = _both(SUM, method=method, samples=2**14)
     off = np.abs(curve.outputs - (10.0 + 3.0 * SCORES))
     if method == "line":
         assert off.max() <= 1e-7
@@ -70,7 +62,7 @@ def test_a_normal_has_a_straight_curve(method):
 @pytest.mark.parametrize("method", METHODS)
 def test_the_curve_is_that_of_the_spread(method):
     """The curve passes through the spread's percentiles with their standard errors, and rises."""
-    statistics, curve = _both(CUP_TASK, method=method)
+    statistics, curve = _both(CUP_ROW, method=method)
     assert (np.diff(curve.outputs) > 0).all()
     sd = statistics.numbers["sd"]
     for name, share in PERCENTILES.items():
@@ -89,8 +81,7 @@ def test_the_curve_is_that_of_the_spread(method):
 def test_one_scattering_dimension_is_the_model_itself():
     """With one normal dimension every percentile of the curve is the model at that percentile of the dimension."""
     middle, sd = 211e9, 8e9 / 6
-    task = (CUP, NOMINAL, {"youngs_modulus": LIMITS["youngs_modulus"]}, None)
-    _, curve = _both(task)
+    _, curve = _both(row(CUP, NOMINAL, {"youngs_modulus": LIMITS["youngs_modulus"]}))
     exact = [float(CUP(NOMINAL | {"youngs_modulus": middle - sd * score})) for score in CURVE_SCORES]
     assert curve.outputs == pytest.approx(exact, rel=1e-9)
     shares = [0.5 * math.erfc((exact[MIDDLE] * middle / edge - middle) / sd / math.sqrt(2)) for edge in curve.edges]
@@ -100,7 +91,7 @@ def test_one_scattering_dimension_is_the_model_itself():
 @pytest.mark.parametrize(("method", "samples"), [("sobol", 1024), ("random", 64), ("random", 1)])
 def test_points_go_on_in_a_straight_line_beyond_their_rarest(method, samples):
     """Beyond one in all points the curve of points is straight, and it says how rare a share it can tell."""
-    statistics, curve = _both(SUM_TASK, method=method, samples=samples)
+    statistics, curve = _both(SUM, method=method, samples=samples)
     assert curve.rarest == pytest.approx(1 / statistics.numbers["spread_points"])
     beyond = (np.diff(curve.outputs) / np.diff(SCORES))[ndtr(SCORES[1:]) < curve.rarest]
     assert beyond == pytest.approx(beyond[0])
@@ -109,18 +100,7 @@ def test_points_go_on_in_a_straight_line_beyond_their_rarest(method, samples):
 
 def test_without_scatter_the_curve_is_level():
     """A row that does not scatter has its backlash everywhere and no errors."""
-    statistics, curve = _both((CUP, NOMINAL, {}, None))
+    statistics, curve = _both(row(CUP, NOMINAL, {}))
     assert set(curve.outputs.tolist()) == set(curve.edges.tolist()) == {statistics.numbers["p50"]}
     assert curve.score_errors.max() == curve.rarest == 0
     assert curve.heights.sum() == 1
-
-
-def test_workers_and_neighbours_change_no_bit():
-    """A row's curve has the same bits in a worker process, alone, and among other rows."""
-    draws = SamplingPlan("sobol", 2**17, 3)
-    tasks = [(task, batch_statistics([task], draws)[0]) for task in (CUP_TASK, (CUP, NOMINAL, LIMITS, None))]
-    here = list(curves_of(tasks, draws, jobs=1))
-    there = list(curves_of(tasks[::-1], draws, jobs=2))[::-1]
-    for one, other in zip(here, there, strict=True):
-        for name, values in vars(one).items():
-            assert np.array_equal(values, getattr(other, name))

@@ -11,8 +11,9 @@ from scipy.special import ndtri
 
 from flexlash.tolerance import Normal, Triangular, Uniform
 from flexlash.tolerance.engine.line_direction import Inputs, direction_of
+from flexlash.tolerance.engine.line_moments import moments_of
 from flexlash.tolerance.engine.line_points import line_net
-from flexlash.tolerance.engine.line_quantiles import moments_of, quantiles_at, quantiles_of
+from flexlash.tolerance.engine.line_quantiles import quantiles_at, quantiles_of
 from flexlash.tolerance.engine.line_tables import Lines
 
 each_input = pytest.mark.parametrize(("distribution", "reference"), ONE_INPUT.values(), ids=list(ONE_INPUT))
@@ -26,7 +27,7 @@ def lines_of(function, *rows, lines=64, seed=0):
         return np.broadcast_to(function(**arguments), shape)
 
     inputs = Inputs.of(rows)
-    net = line_net(seed, len(inputs.names) - 1, lines, one_bent=inputs.one_bent)
+    net = line_net(seed, len(inputs.names) - 1, lines, single_curved=inputs.single_curved)
     found = Lines(model, inputs, direction_of(model, inputs), net)
     assert (found.faults == 0).all()
     return found

@@ -11,21 +11,20 @@ from scipy.special import ndtri
 
 from flexlash.tolerance import Normal, Triangular, Uniform, propagate
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES
-from flexlash.tolerance.engine.line_spread import (
+from flexlash.tolerance.engine.line_precision import (
+    DECISIVE,
     FEWEST_LINES,
     MOST_LINES,
     PROBABILITY_PRECISION,
-    RAREST,
+    RAREST_PROBABILITY,
     SD_PRECISION,
-    SETTLED,
-    LineSpread,
-    NoLines,
-    first_lines,
-    lines_wanted,
-    missed,
-    share_interval,
-    unsettled,
+    initial_lines,
+    lines_needed,
+    precision_notes,
+    unresolved,
 )
+from flexlash.tolerance.engine.line_quantiles import probability_interval
+from flexlash.tolerance.engine.line_spread import LineSpread, LinesUnsuitable
 
 thorough = settings(deadline=None, max_examples=100, derandomize=True)
 
@@ -57,7 +56,7 @@ def decided(excess, *, lines=FEWEST_LINES, share=None, relative=0.0, limited=Non
         error = np.array([[relative * PROBABILITY_PRECISION * min(share, 1 - share)]])
         over = SimpleNamespace(above=np.array([[share]]), above_error=error)
     row = SimpleNamespace(lines=lines, scale=np.array([scale]))
-    (wanted,), (margin,) = lines_wanted(row, settled, over, limited)
+    (wanted,), (margin,) = lines_needed(row, settled, over, limited)
     return int(wanted), float(margin)
 
 
@@ -68,14 +67,14 @@ def decided(excess, *, lines=FEWEST_LINES, share=None, relative=0.0, limited=Non
 def test_lines_are_rounded_up(samples, lines):
     """The number of lines is rounded up to 8 replicates times a power of two."""
     assert LINE_REPLICATES == 8
-    assert first_lines(3, samples) == lines
+    assert initial_lines(3, samples) == lines
     assert line_spread(total, TWO, samples=samples).size == lines
 
 
 def test_default_and_single_input():
     """Without a number 64 lines begin; one input alone has one line in each replicate, whatever is asked for."""
-    assert first_lines(2, None) == FEWEST_LINES == 64
-    assert first_lines(1, None) == first_lines(1, 5000) == LINE_REPLICATES
+    assert initial_lines(2, None) == FEWEST_LINES == 64
+    assert initial_lines(1, None) == initial_lines(1, 5000) == LINE_REPLICATES
 
 
 @pytest.mark.parametrize("inputs", [1, 2])
@@ -83,7 +82,7 @@ def test_default_and_single_input():
 def test_no_lines_are_refused(inputs, samples):
     """A number of lines below 1 is refused with the number."""
     with pytest.raises(ValueError, match=rf"^samples = {samples} must be at least 1$"):
-        first_lines(inputs, samples)
+        initial_lines(inputs, samples)
 
 
 def test_precise_lines_are_enough():
@@ -132,7 +131,7 @@ def test_wanted_lines_are_a_power_of_two_and_never_fewer(excess, bits):
     assert (wanted > lines) == (excess * margin > 1)
 
 
-@pytest.mark.parametrize("share", [0.2, 1e-4, 1 - 1e-4, 2 * RAREST])
+@pytest.mark.parametrize("share", [0.2, 1e-4, 1 - 1e-4, 2 * RAREST_PROBABILITY])
 def test_rare_shares_want_lines_too(share):
     """The share over a limit wants lines for its own relative precision, on either side."""
     assert decided(0.0, share=share, relative=0.1)[0] == FEWEST_LINES
@@ -142,8 +141,8 @@ def test_rare_shares_want_lines_too(share):
 
 def test_shares_too_rare_or_not_asked_for_want_no_lines():
     """A share below 1e-9, or of a row without a limit, does not count."""
-    assert RAREST == 1e-9
-    for share in (0.5 * RAREST, 0.0, 1.0):
+    assert RAREST_PROBABILITY == 1e-9
+    for share in (0.5 * RAREST_PROBABILITY, 0.0, 1.0):
         assert decided(0.0, share=share, relative=1e6)[0] == FEWEST_LINES
     assert decided(0.0, share=0.1, relative=3.0, limited=np.array([False]))[0] == FEWEST_LINES
     assert decided(0.0, share=0.1, relative=3.0, limited=np.array([True]))[0] == 8 * FEWEST_LINES
@@ -153,23 +152,23 @@ def test_rows_are_decided_apart():
     """Each row has its own number of lines and margin."""
     settled = SimpleNamespace(output_error=np.array([[0.0, 3e-3, 30.0]]))
     row = SimpleNamespace(lines=64, scale=np.array([1.0, 1.0, 1.0]))
-    wanted, margin = lines_wanted(row, settled)
+    wanted, margin = lines_needed(row, settled)
     assert wanted.tolist() == [64, 512, MOST_LINES]
     assert margin[0] == 1
     assert margin[1] > 1
 
 
 def test_unsettled_rows_are_told():
-    """A row is unsettled where any of its crossings is off by more than the standard error wanted."""
+    """A row is unresolved where any of its crossings is off by more than the standard error wanted."""
     lines = SimpleNamespace(scale=np.array([1.0, 1.0, 100.0]))
     residual = np.array([[0.0, 2 * SD_PRECISION, 2 * SD_PRECISION], [0.5 * SD_PRECISION, 0.0, 0.0]])
-    assert unsettled(lines, SimpleNamespace(residual=residual)).tolist() == [False, True, False]
+    assert unresolved(lines, SimpleNamespace(residual=residual)).tolist() == [False, True, False]
 
 
 def test_missed_precision_is_told():
     """A row whose settled quantiles miss the precision wanted says by how much, others say nothing."""
     settled = SimpleNamespace(output_error=np.array([[0.5e-3, 1e-3, 0.0], [1e-3, 0.0123, 0.0]]))
-    notes = missed(settled, np.array([1.0, 2.0, 0.0]))
+    notes = precision_notes(settled, np.array([1.0, 2.0, 0.0]))
     assert notes == ["", "standard errors reach 0.0062 standard deviations, 0.001 was wanted", ""]
 
 
@@ -178,7 +177,7 @@ def test_missed_precision_is_told():
 def test_narrow_interval_of_a_share_is_even(share, relative):
     """With a small error the interval is the share ± 1.96 standard errors."""
     error = relative * share
-    low, high = share_interval(np.array([share]), np.array([error]))
+    low, high = probability_interval(np.array([share]), np.array([error]))
     assert low[0] == pytest.approx(share - 1.96 * error, abs=0.02 * error)
     assert high[0] == pytest.approx(share + 1.96 * error, abs=0.02 * error)
 
@@ -188,10 +187,10 @@ def test_narrow_interval_of_a_share_is_even(share, relative):
 def test_interval_of_a_share_holds_it_within_0_and_1(share, relative, factor):
     """The interval holds the share to rounding, stays within 0 and 1, and widens with the factor."""
     error = np.array([relative * min(share, 1 - share)])
-    low, high = share_interval(np.array([share]), error, factor)
+    low, high = probability_interval(np.array([share]), error, factor)
     assert 0 <= low[0] <= share * (1 + 1e-9)
     assert share * (1 - 1e-9) <= high[0] <= 1
-    wide_low, wide_high = share_interval(np.array([share]), error, 2 * factor)
+    wide_low, wide_high = probability_interval(np.array([share]), error, 2 * factor)
     assert wide_low[0] <= low[0]
     assert high[0] <= wide_high[0]
 
@@ -201,15 +200,15 @@ def test_interval_of_a_share_holds_it_within_0_and_1(share, relative, factor):
 def test_interval_of_the_rest_is_the_rest_of_the_interval(share, relative):
     """The interval of one less a share is one less its interval."""
     error = np.array([relative * min(share, 1 - share)])
-    low, high = share_interval(np.array([share]), error)
-    rest_low, rest_high = share_interval(np.array([1 - share]), error)
+    low, high = probability_interval(np.array([share]), error)
+    rest_low, rest_high = probability_interval(np.array([1 - share]), error)
     assert rest_low[0] == pytest.approx(1 - high[0], abs=1e-12)
     assert rest_high[0] == pytest.approx(1 - low[0], abs=1e-12)
 
 
 def test_interval_of_no_share():
     """A share told from none by nothing has an interval from exactly 0 to almost 0, and so the rest of one."""
-    low, high = share_interval(np.array([0.0, 1e-17, 1.0]), np.zeros(3))
+    low, high = probability_interval(np.array([0.0, 1e-17, 1.0]), np.zeros(3))
     assert low[:2].tolist() == [0.0, 0.0]
     assert (high[:2] <= 1e-14).all()
     assert low[2] >= 1 - 1e-14
@@ -229,16 +228,16 @@ def test_lines_are_added_until_errors_are_small(seed):
     spread = line_spread(total, UNIFORMS, seed=seed)
     assert FEWEST_LINES < spread.size < MOST_LINES
     assert spread.size & (spread.size - 1) == 0
-    assert (spread.standard_error(SETTLED) <= SD_PRECISION * spread.sd * 1.05).all()
+    assert (spread.standard_error(DECISIVE) <= SD_PRECISION * spread.sd * 1.05).all()
     fixed = line_spread(total, UNIFORMS, samples=64, seed=seed)
-    assert fixed.standard_error(SETTLED).max() > SD_PRECISION * fixed.sd
+    assert fixed.standard_error(DECISIVE).max() > SD_PRECISION * fixed.sd
 
 
 def test_hard_models_stop_at_the_most_lines():
     """A kink across the lines takes all the lines there may be, and its errors still say how far off it is."""
     spread = line_spread(lambda a, b: abs(a) + 0.3 * b, TWO)
     assert spread.size == MOST_LINES
-    assert spread.standard_error(SETTLED).max() > SD_PRECISION * spread.sd
+    assert spread.standard_error(DECISIVE).max() > SD_PRECISION * spread.sd
     (note,) = spread.notes
     assert note.startswith("standard errors reach ")
     assert abs(spread.mean - math.sqrt(2 / math.pi)) <= 4 * spread.mean_standard_error
@@ -275,7 +274,7 @@ def test_stopping_widens_errors():
 )
 def test_models_that_lines_do_not_serve(function, reason):
     """Where lines do not serve, that is raised with the reason."""
-    with pytest.raises(NoLines) as refusal:
+    with pytest.raises(LinesUnsuitable) as refusal:
         line_spread(function, TWO)
     assert str(refusal.value) == reason
 
@@ -292,7 +291,7 @@ def test_no_model_prints_a_warning():
     """Overflow, underflow and division by zero on the way to the tails are no warnings."""
     spread = line_spread(lambda a, b: -np.log(a) + b, {"a": Uniform(0, 1), "b": Normal(0, 1)})
     assert spread.mean == pytest.approx(1, abs=1e-3)
-    with pytest.raises(NoLines):
+    with pytest.raises(LinesUnsuitable):
         line_spread(lambda a, b: np.exp(200 * (a + b)), TWO)
 
 

@@ -10,18 +10,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import ndtr, ndtri
+from toleranced import SUM, SUM_LIMITS, SUM_NAMES, every_number, plan, row, statistics_of_row, total
 
 from flexlash.mechanics import flexspline
 from flexlash.tolerance import propagate
 from flexlash.tolerance.dimension_limits import Limits, distributions
-from flexlash.tolerance.engine.line_spread import MOST_LINES
-from flexlash.tolerance.engine.line_statistics import statistics_of
+from flexlash.tolerance.engine.line_precision import MOST_LINES
 from flexlash.tolerance.row_batches import batch_statistics
-from flexlash.tolerance.spread_statistics import PERCENTILES, SamplingPlan
+from flexlash.tolerance.spread_statistics import PERCENTILES, statistics_of
 
 thorough = settings(deadline=None, max_examples=25, derandomize=True)
 
-LINES = SamplingPlan("line", None, 0)
+LINES = plan()
 cup = partial(flexspline.backlash, "cup")
 CUP = {
     "torque": 800.0,
@@ -46,10 +46,10 @@ BENT = {"poisson_ratio": "uniform", "wall_thickness": "uniform", "rim_length": "
 LENGTHS = {name for name in DETAILED if name.endswith(("length", "diameter", "thickness", "radius"))}
 
 
-def tasks(nominal, count, seed=0):
+def rows_alike(nominal, count, seed=0):
     """Return rows alike in what scatters, unlike in size, tolerances and limits; every third has no limit."""
     generator = np.random.default_rng(seed)
-    found = []
+    rows = []
     for number in range(count):
         size = generator.uniform(0.5, 2.0)
         scaled = {name: value * (size if name in LENGTHS else 1) for name, value in nominal.items()}
@@ -59,23 +59,17 @@ def tasks(nominal, count, seed=0):
             half = value * generator.choice([0.001, 0.01, 0.03])
             limits[name] = Limits(low=value - half, high=value + 1.1 * half, distribution=BENT.get(name, "normal"))
         limit = float(cup(scaled)) * (1 + 0.03 * generator.normal())
-        found.append((cup, scaled, limits, limit if number % 3 else None))
-    return found
+        rows.append(row(cup, scaled, limits, limit if number % 3 else None))
+    return rows
 
 
-def told(spread):
-    """Return everything that a spread tells, so that == compares it to the last bit."""
-    statistics = {name: value for name, value in spread.numbers.items() if value is not None}
-    return [statistics, spread.texts, spread.shares, spread.total_shares, spread.swings]
-
-
-SEVEN, FIFTEEN = tasks(CUP, 30), tasks(DETAILED, 12)
+SEVEN, FIFTEEN = rows_alike(CUP, 30), rows_alike(DETAILED, 12)
 DRAWINGS = {
     "lines as needed": LINES,
-    "64 lines": SamplingPlan("line", 64, 1),
-    "1024 lines": SamplingPlan("line", 1024, 2, coverage=0.9),
-    "sobol": SamplingPlan("sobol", 512, 3),
-    "random": SamplingPlan("random", 512, 4),
+    "64 lines": plan("line", 64, 1),
+    "1024 lines": plan("line", 1024, 2, coverage=0.9),
+    "sobol": plan("sobol", 512, 3),
+    "random": plan("random", 512, 4),
 }
 
 
@@ -84,13 +78,13 @@ def together(request):
     """Return rows alike, how they are drawn, and what is told of each when they are spread together."""
     rows, name = request.param
     alike, draws = SEVEN if rows == "seven" else FIFTEEN, DRAWINGS[name]
-    return alike, draws, [told(one) for one in batch_statistics(alike, draws)]
+    return alike, draws, [every_number(one) for one in batch_statistics(alike, draws)]
 
 
 def test_a_row_alone_has_the_same_bits(together):
     """Every statistic, share, curve and height of a row alone is, to the last bit, that beside other rows."""
     alike, draws, every = together
-    assert [told(batch_statistics([task], draws)[0]) for task in alike] == every
+    assert [every_number(statistics_of_row(each, draws)) for each in alike] == every
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -99,7 +93,7 @@ def test_shuffled_rows_have_the_same_bits(together, seed):
     alike, draws, every = together
     order = np.random.default_rng(seed).permutation(len(alike))
     shuffled = batch_statistics([alike[place] for place in order], draws)
-    assert [told(one) for one in shuffled] == [every[place] for place in order]
+    assert [every_number(one) for one in shuffled] == [every[place] for place in order]
 
 
 @pytest.mark.parametrize("size", [2, 3, 7, 16])
@@ -109,15 +103,15 @@ def test_rows_in_any_batch_have_the_same_bits(together, size):
     found = []
     for start in range(0, len(alike), size):
         found += batch_statistics(alike[start : start + size], draws)
-    assert [told(one) for one in found] == every
+    assert [every_number(one) for one in found] == every
 
 
 @pytest.mark.parametrize("block", [1, 10_000, 1 << 22])
 def test_the_block_of_the_cache_changes_no_bit(monkeypatch, block):
     """However many rows the cache takes at once, every bit stays."""
-    every = [told(one) for one in batch_statistics(SEVEN, LINES)]
+    every = [every_number(one) for one in batch_statistics(SEVEN, LINES)]
     monkeypatch.setattr("flexlash.tolerance.engine.line_statistics._BLOCK", block)
-    assert [told(one) for one in batch_statistics(SEVEN, LINES)] == every
+    assert [every_number(one) for one in batch_statistics(SEVEN, LINES)] == every
 
 
 def test_the_rows_differ_in_how_many_lines_they_take():
@@ -131,7 +125,7 @@ def test_the_rows_differ_in_how_many_lines_they_take():
 def test_every_row_has_the_precision_that_was_wanted():
     """Each row's percentiles are known to 0.001 sd and its share over the limit to 5 %, or a note says what is."""
     every = [*batch_statistics(SEVEN, LINES), *batch_statistics(FIFTEEN, LINES)]
-    for (*_, limit), one in zip((*SEVEN, *FIFTEEN), every, strict=True):
+    for toleranced, one in zip((*SEVEN, *FIFTEEN), every, strict=True):
         found = one.numbers
         reached = max(found[f"{name}_standard_error"] for name in ("p0_135", "p2_5", "p50", "p97_5", "p99_865"))
         if reached > 1.1e-3 * found["sd"]:
@@ -140,7 +134,7 @@ def test_every_row_has_the_precision_that_was_wanted():
             assert said == pytest.approx(reached / found["sd"], rel=0.1)
         elif reached < 1e-3 * found["sd"]:
             assert one.texts["spread_note"] is None
-        if limit is not None and 1e-9 < found["probability_over_limit"] < 1 - 1e-9:
+        if toleranced.upper_limit is not None and 1e-9 < found["probability_over_limit"] < 1 - 1e-9:
             rarer = min(found["probability_over_limit"], 1 - found["probability_over_limit"])
             width = found["probability_over_limit_high"] - found["probability_over_limit_low"]
             assert width / 3.92 <= 0.06 * rarer or found["spread_points"] == MOST_LINES
@@ -148,34 +142,22 @@ def test_every_row_has_the_precision_that_was_wanted():
 
 def test_lines_of_many_rows_agree_with_plain_monte_carlo():
     """Each of many rows agrees with plain Monte Carlo in every statistic within 4.5 combined standard errors."""
-    plain = batch_statistics(SEVEN, SamplingPlan("random", 2**16, 7))
-    for (*_, limit), line, other in zip(SEVEN, batch_statistics(SEVEN, LINES), plain, strict=True):
+    plain = batch_statistics(SEVEN, plan("random", 2**16, 7))
+    for toleranced, line, other in zip(SEVEN, batch_statistics(SEVEN, LINES), plain, strict=True):
         for name in (*PERCENTILES, "mean", "sd", "skewness"):
             error = math.hypot(line.numbers[f"{name}_standard_error"], other.numbers[f"{name}_standard_error"])
             # One in 50 runs of 300 comparisons has one beyond four.
             assert abs(line.numbers[name] - other.numbers[name]) <= 4.5 * error
-        if limit is not None:
+        if toleranced.upper_limit is not None:
             share = line.numbers["probability_over_limit"]
             error = max(math.sqrt(share * (1 - share) / 2**16), 0.5 / 2**16)
             assert abs(share - other.numbers["probability_over_limit"]) <= 4.5 * error
 
 
-NAMES = ("torque", "cylinder_length", "wall_thickness")
-SUM_LIMITS = {name: Limits(low=-3.0 * sd, high=3.0 * sd) for name, sd in zip(NAMES, (1.0, 2.0, 2.0), strict=True)}
-
-
-def total(dimensions):
-    """Return a sum, which is normal with mean 10 and sd 3."""
-    return 10.0 + dimensions["torque"] + dimensions["cylinder_length"] - dimensions["wall_thickness"]
-
-
 @pytest.fixture(scope="module", params=["line", "sobol", "random"])
 def of_a_sum(request):
     """Return the spread of a sum of normals and its method."""
-    (found,) = batch_statistics(
-        [(total, dict.fromkeys(NAMES, 0.0), SUM_LIMITS, 16.0)], SamplingPlan(request.param, None, 0)
-    )
-    return found, request.param
+    return statistics_of_row(SUM, plan(request.param)), request.param
 
 
 def test_statistics_of_a_normal_output(of_a_sum):
@@ -202,7 +184,7 @@ def test_shares_of_a_sum(of_a_sum):
     """The shares of a sum are the parts of its variance, first-order and total alike."""
     found, method = of_a_sum
     allowed = {"line": 1e-9, "sobol": 0.02, "random": 0.1}[method]
-    exact = dict(zip(NAMES, (1 / 9, 4 / 9, 4 / 9), strict=True))
+    exact = dict(zip(SUM_NAMES, (1 / 9, 4 / 9, 4 / 9), strict=True))
     assert found.shares == pytest.approx(exact, abs=allowed)
     assert found.total_shares == pytest.approx(exact, abs=allowed)
 
@@ -218,8 +200,10 @@ def faulty_among_sound(model, faulty, count=9):
     """Return rows alike of which those named by `faulty` meet the model's fault."""
     limits = {name: Limits(low=-3.0, high=3.0) for name in ("torque", "cylinder_length")}
     return [
-        (model, {"torque": 0.0, "cylinder_length": 0.0, "mean_radius": 1.0 if row in faulty else -1.0}, limits, 2.0)
-        for row in range(count)
+        row(
+            model, {"torque": 0.0, "cylinder_length": 0.0, "mean_radius": 1.0 if index in faulty else -1.0}, limits, 2.0
+        )
+        for index in range(count)
     ]
 
 
@@ -255,28 +239,28 @@ def test_a_faulty_row_falls_back_to_sobol_alone(model, faulty):
     """A row that lines do not serve gets Sobol' points and a note; the sound rows around it keep their lines' bits."""
     rows = faulty_among_sound(model, faulty)
     found = batch_statistics(rows, LINES)
-    sound = told(batch_statistics(faulty_among_sound(model, set(), 1), LINES)[0])
+    sound = every_number(statistics_of_row(*faulty_among_sound(model, set(), 1), LINES))
     assert sound[1]["spread_method"] == "line"
-    for row, one in enumerate(found):
-        if row in faulty:
+    for index, one in enumerate(found):
+        if index in faulty:
             assert one.texts["spread_method"] == "sobol"
             assert one.texts["spread_note"] == f"Sobol' points instead of lines: {FAULTY[model]}"
             assert one.numbers["spread_points"] == 2**15
-            (points,) = batch_statistics([rows[row]], SamplingPlan("sobol", None, 0))
-            assert told(one)[0] == told(points)[0]
-            assert told(one)[2:] == told(points)[2:]
+            points = statistics_of_row(rows[index], plan("sobol"))
+            assert every_number(one)[0] == every_number(points)[0]
+            assert every_number(one)[2:] == every_number(points)[2:]
         else:
-            assert told(one) == sound
+            assert every_number(one) == sound
 
 
 def test_the_fallback_takes_as_many_points_as_were_asked_for_lines():
     """A row that falls back with a number of lines given is answered by the default number of Sobol' points."""
-    (found,) = batch_statistics(faulty_among_sound(hinged, {0}, 1), SamplingPlan("line", 64, 0))
+    found = statistics_of_row(*faulty_among_sound(hinged, {0}, 1), plan("line", 64))
     assert found.texts["spread_method"] == "sobol"
     assert found.numbers["spread_points"] == 2**15
 
 
-def test_many_lines_that_do_not_suffice_are_told():
+def test_many_lines_that_do_not_suffice_are_every_number():
     """Where the greatest number of lines does not give the precision wanted, the note says which was reached."""
     limits = {name: Limits(low=-3.0, high=3.0) for name in list(DETAILED)[:12]}
     names = list(limits)
@@ -284,11 +268,12 @@ def test_many_lines_that_do_not_suffice_are_told():
     def strongly_curved(dimensions):
         return sum(np.exp(1.2 * dimensions[name]) for name in names)
 
-    (found,) = batch_statistics([(strongly_curved, dict.fromkeys(names, 0.0), limits, None)], LINES)
+    curved = row(strongly_curved, dict.fromkeys(names, 0.0), limits)
+    found = statistics_of_row(curved, LINES)
     assert found.texts["spread_method"] == "line"
     assert found.numbers["spread_points"] == MOST_LINES
     assert found.texts["spread_note"].endswith(" standard deviations, 0.001 was wanted")
-    (few,) = batch_statistics([(strongly_curved, dict.fromkeys(names, 0.0), limits, None)], SamplingPlan("line", 64, 0))
+    few = statistics_of_row(curved, plan("line", 64))
     assert few.texts["spread_note"] is None
 
 
@@ -296,10 +281,9 @@ def test_many_lines_that_do_not_suffice_are_told():
 @given(limit=st.floats(-6, 6), seed=st.integers(0, 5))
 def test_an_interval_holds_its_share(limit, seed):
     """The interval of a share over any limit holds that share, below 1 and above 0 at its ends."""
-    limits = {name: Limits(low=-3.0, high=3.0, distribution="uniform") for name in NAMES}
-    (found,) = batch_statistics(
-        [(total, dict.fromkeys(NAMES, 0.0), limits, 10.0 + limit)], SamplingPlan("line", 64, seed)
-    )
+    limits = {name: Limits(low=-3.0, high=3.0, distribution="uniform") for name in SUM_NAMES}
+    uniform = row(total, dict.fromkeys(SUM_NAMES, 0.0), limits, 10.0 + limit)
+    found = statistics_of_row(uniform, plan("line", 64, seed))
     share = found.numbers["probability_over_limit"]
     assert 0 <= found.numbers["probability_over_limit_low"] <= share
     assert share <= found.numbers["probability_over_limit_high"] <= 1
@@ -307,9 +291,9 @@ def test_an_interval_holds_its_share(limit, seed):
 
 def test_statistics_of_points_are_those_of_their_spread():
     """What is told of one row by points is what the engine alone tells of the same points."""
-    (found,) = batch_statistics([(total, dict.fromkeys(NAMES, 0.0), SUM_LIMITS, 16.0)], SamplingPlan("random", 4096, 5))
+    found = statistics_of_row(SUM, plan("random", 4096, 5))
     spread = propagate(lambda **varied: total(varied), distributions(SUM_LIMITS), method="random", samples=4096, seed=5)
-    own = statistics_of(spread, 16.0, SamplingPlan("random", 4096, 5))
+    own = statistics_of(spread, 16.0, coverage=0.95)
     assert set(own.numbers) <= set(found.numbers)
     for name, share in PERCENTILES.items():
         assert own.numbers[name] == spread.quantile(share)
@@ -321,4 +305,4 @@ def test_statistics_of_points_are_those_of_their_spread():
     assert own.shares == spread.shares
     assert own.total_shares == spread.total_shares
     assert own.texts == {"spread_method": "random", "spread_note": None}
-    assert statistics_of(spread, None, LINES, "why").texts["spread_note"] == "why"
+    assert statistics_of(spread, None, coverage=0.95, note="why").texts["spread_note"] == "why"

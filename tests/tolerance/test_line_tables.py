@@ -32,7 +32,7 @@ def lines_of(function, *rows, lines=64, seed=0):
     """Return lines through rows whose distributions have the same names and shapes."""
     model, inputs = row_model(function), Inputs.of(rows)
     with np.errstate(all="ignore"):
-        net = line_net(seed, len(inputs.names) - 1, lines, one_bent=inputs.one_bent)
+        net = line_net(seed, len(inputs.names) - 1, lines, single_curved=inputs.single_curved)
         return Lines(model, inputs, direction_of(model, inputs), net)
 
 
@@ -92,7 +92,7 @@ def test_means_over_lines_weigh_every_line():
     """The mean over lines is the mean of the replicates' means, weighted as the net says, row by row."""
     for row in (MIXED, {"a": Normal(0, 1), "b": Uniform(0, 1), "c": Normal(0, 1)}):
         lines = lines_of(curved, row, row)
-        net = line_net(0, 2, 64, one_bent=Inputs.of([row]).one_bent)
+        net = line_net(0, 2, 64, single_curved=Inputs.of([row]).single_curved)
         values = np.random.default_rng(1).random((3, 128))
         by_row = values.reshape(3, 2, 64)
         assert lines.mean_over_lines(values) == pytest.approx((by_row * net.weights).sum(axis=2) / LINE_REPLICATES)
@@ -137,7 +137,7 @@ def test_places_invert_known_functions(function, inverse, slope):
     outputs = lines.outputs(wanted)
     if inverse:
         assert inverse(outputs) == pytest.approx(wanted, abs=1e-9)
-    found, steepness = lines.places(outputs)
+    found, steepness = lines.crossings(outputs)
     assert found == pytest.approx(wanted, abs=1e-4)
     assert steepness == pytest.approx(slope(wanted), rel=5e-3)
 
@@ -146,7 +146,7 @@ def test_places_invert_a_bounded_input():
     """The place at which a line through a uniform input passes a probability is its score."""
     lines = lines_of(lambda a: a, {"a": Uniform(0, 1)}, lines=8)
     wanted = np.linspace(-2, 2, 41)[:, None] * np.ones(8)
-    found, slopes = lines.places(ndtr(wanted))
+    found, slopes = lines.crossings(ndtr(wanted))
     assert found == pytest.approx(wanted, abs=5e-3)
     assert slopes == pytest.approx(np.exp(-wanted * wanted / 2) / np.sqrt(2 * np.pi), rel=0.05)
 
@@ -155,11 +155,11 @@ def test_places_beyond_the_table_are_far():
     """An output that no line reaches is passed at ±8.5, one at a node at the node."""
     lines = lines_of(linear, NORMALS, lines=8)
     below, above = lines.table[0].min() - 1, lines.table[-1].max() + 1
-    places, slopes = lines.places(np.array([[below], [above]]) * np.ones(8))
+    places, slopes = lines.crossings(np.array([[below], [above]]) * np.ones(8))
     assert (places[0] == -FAR).all()
     assert (places[1] == FAR).all()
     assert (slopes > 0).all()
-    assert lines.places(lines.table[5:-5])[0] == pytest.approx(NODES[5:-5, None] * np.ones(8), abs=1e-9)
+    assert lines.crossings(lines.table[5:-5])[0] == pytest.approx(NODES[5:-5, None] * np.ones(8), abs=1e-9)
 
 
 @thorough
@@ -169,7 +169,7 @@ def test_places_rise_with_the_output(power, first, second):
     lines = lines_of(lambda a, b: np.exp(a * power / 4) + b, {"a": Normal(0, 1), "b": Uniform(0, 1)})
     low, high = sorted([first, second])
     outputs = np.exp(np.array([[low], [high]]) * power / 4) * np.ones(64)
-    places, slopes = lines.places(outputs)
+    places, slopes = lines.crossings(outputs)
     assert (places[1] >= places[0] - 1e-9).all()
     assert (slopes > 0).all()
 
@@ -246,7 +246,7 @@ def test_faults_are_told_row_by_row():
         return np.choose(np.broadcast_to(rows, values[0].shape), values)
 
     inputs = Inputs.of([TWO] * len(kinds))
-    net = line_net(0, 1, 64, one_bent=False)
+    net = line_net(0, 1, 64, single_curved=False)
     together = Lines(model, inputs, direction_of(model, inputs), net)
     assert [FAULTS[fault] for fault in together.faults] == ["", NO_GRADIENT, NOT_FINITE, NOT_RISING, STEPS, ""]
     for row in (0, 5):

@@ -10,6 +10,7 @@ from b3_160 import CUP, NOMINAL
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import ndtr
+from toleranced import plan, row, statistics_of_row
 
 from flexlash.mechanics import flexspline
 from flexlash.schema.units import ARCMIN
@@ -17,7 +18,7 @@ from flexlash.tolerance.dimension_limits import Limits
 from flexlash.tolerance.distribution_curves import CURVE_SCORES, curve_of
 from flexlash.tolerance.row_batches import batch_statistics
 from flexlash.tolerance.sensitivity import first_order_valid
-from flexlash.tolerance.spread_statistics import PERCENTILES, SamplingPlan
+from flexlash.tolerance.spread_statistics import PERCENTILES
 
 thorough = settings(deadline=None, max_examples=30, derandomize=True)
 
@@ -35,9 +36,7 @@ ERRORS = [f"{name}_standard_error" for name in (*PERCENTILES, "mean", "sd", "ske
 
 def spread(limits=LIMITS, *, nominal=NOMINAL, limit=None, method="line", samples=None, seed=0, coverage=0.95):
     """Return the statistics of the cup over its limits."""
-    draws = SamplingPlan(method=method, samples=samples, seed=seed, coverage=coverage)
-    (found,) = batch_statistics([(CUP, nominal, limits, limit)], draws)
-    return found
+    return statistics_of_row(row(CUP, nominal, limits, limit), plan(method, samples, seed, coverage=coverage))
 
 
 @each_method
@@ -76,7 +75,7 @@ def test_coverage_interval_is_symmetric_in_probability(method, coverage):
     """The coverage interval leaves the same share of units below and above."""
     found = spread(coverage=coverage, method=method)
     ends = [found.numbers["coverage_low"], found.numbers["coverage_high"]]
-    curve = curve_of(((CUP, NOMINAL, LIMITS, None), found), SamplingPlan(method=method, samples=None, seed=0))
+    curve = curve_of(row(CUP, NOMINAL, LIMITS), found, plan(method))
     order = ndtr(np.interp(ends, curve.outputs, CURVE_SCORES))
     assert order == pytest.approx([(1 - coverage) / 2, (1 + coverage) / 2], abs=0.003)
     if coverage == 0.95:
@@ -270,8 +269,10 @@ def test_points_belong_to_names(method):
     dead = {"disk_thickness": Limits(low=0.0015, high=0.0017)}
     tube = partial(flexspline.backlash, "cylinder")
     nominal = NOMINAL | {"disk_thickness": 0.0016}
-    draws = SamplingPlan(method=method, samples=2**13, seed=0)
-    first, second = (batch_statistics([(tube, nominal, one, None)], draws)[0].numbers for one in (alone, dead | alone))
+    sampling = plan(method, 2**13)
+    first, second = (
+        statistics_of_row(row(tube, nominal, limits), sampling).numbers for limits in (alone, dead | alone)
+    )
     for key in ("mean", "sd", "p50", "p99_865", "p97_5_standard_error"):
         assert first[key] == second[key]
 
@@ -332,12 +333,12 @@ def _valid_as_printed(one, centre):
 
 def test_first_order_verdicts_follow_from_the_figures_in_arcmin():
     """Over many sizes of tolerance, every verdict is that of the printed figures, and in radians some would differ."""
-    tasks = []
+    rows = []
     for size in np.geomspace(0.002, 0.1, 200):
         wall = NOMINAL["wall_thickness"]
         limits = {"wall_thickness": Limits(low=wall * (1 - size), high=wall * (1 + size))}
-        tasks.append((CUP, NOMINAL, limits, None))
-    found = batch_statistics(tasks, SamplingPlan(method="line", samples=64, seed=0))
+        rows.append(row(CUP, NOMINAL, limits))
+    found = batch_statistics(rows, plan("line", 64))
     verdicts = [one.texts["first_order_valid"] for one in found]
     assert verdicts == [_valid_as_printed(one, EXACT) for one in found]
     assert set(verdicts) == {"yes", "no"}

@@ -79,7 +79,7 @@ def test_links_lead_to_files(path):
 def test_the_readme_counts_right():
     """The figures that the README states in words are those of the program."""
     from flexlash.tolerance.engine.line_points import LINE_REPLICATES
-    from flexlash.tolerance.engine.line_spread import SD_PRECISION
+    from flexlash.tolerance.engine.line_precision import SD_PRECISION
 
     words = " ".join(README.split())
     assert LINE_REPLICATES == 8

@@ -13,9 +13,9 @@ import regenerate
 
 import flexlash
 from flexlash import workers
+from flexlash.analysis import tolerance_spread
 from flexlash.pipeline import Options, check, run
 from flexlash.schema.result_columns import CROSS_CHECK, RESULTS
-from flexlash.tolerance import row_batches as spreading
 
 SAMPLES = 512
 
@@ -87,7 +87,7 @@ def test_worker_processes_change_no_bit(table, sound, monkeypatch, how):
     here = run(path, **HOW[how]).results
     asked = []
     start = workers.started
-    monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
+    monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 1)
     monkeypatch.setattr(workers, "started", lambda count: asked.append(count) or start(count))
     assert run(path, **HOW[how], jobs=2).results.equals(here)
     assert asked == [2]
@@ -95,7 +95,7 @@ def test_worker_processes_change_no_bit(table, sound, monkeypatch, how):
 
 def test_the_number_of_jobs_changes_nothing(table, sound, tmp_path, monkeypatch):
     """Computed here or by three worker processes, the report has the same bytes."""
-    monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
+    monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 1)
     path = table(_many(sound))
     for jobs in (1, 3):
         run(path, tmp_path / f"{jobs}.xlsx", samples=SAMPLES, jobs=jobs)
@@ -366,7 +366,7 @@ def test_progress_counts_up_to_all_rows(table, sound):
 
 def test_progress_of_workers_counts_up_too(table, sound, monkeypatch):
     """With worker processes the progress callback is told of every row all the same."""
-    monkeypatch.setattr(spreading, "WORTH_A_WORKER", 1)
+    monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 1)
     told = []
     rows = [{**sound, "variant": f"v{number}"} for number in range(5)]
     run(table(rows), samples=SAMPLES, jobs=2, progress=lambda done, total: told.append((done, total)))

@@ -2,47 +2,77 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
 from flexlash.analysis.assessment import Computed
 from flexlash.analysis.options import Options, Progress
 from flexlash.mechanics.flexspline import backlash
+from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.variant import Settings
-from flexlash.tolerance.distribution_curves import Curve, curves_of
-from flexlash.tolerance.row_batches import spread_rows
-from flexlash.tolerance.spread_statistics import SamplingPlan, Task
+from flexlash.tolerance.distribution_curves import Curve, curve_of
+from flexlash.tolerance.row_batches import TolerancedRow, batch_statistics, batches_alike
+from flexlash.tolerance.sampling import SamplingPlan
+from flexlash.tolerance.spread_statistics import SpreadStatistics
+from flexlash.workers import mapped
 
-__all__ = ["drawn_curves", "scattered"]
+__all__ = ["drawn_curves", "row_curves", "row_statistics", "scattered"]
 
 _MODELS = {kind: partial(backlash, kind) for kind in ("cup", "hat", "cylinder")}
+
+ROWS_PER_WORKER, POINTS_PER_WORKER = 1000, 100_000
+"""Rows to be spread, lines or points of curves, below which starting a worker costs more than it saves."""
 
 
 def scattered(
     computed: dict[int, Computed], settings: Settings, options: Options, progress: Progress | None
 ) -> dict[int, Computed]:
     """Return the variants with their spread; the same points serve all rows."""
-    rows = list(computed.values())
-    found = dict(computed)
-    spreads = spread_rows([_task(one) for one in rows], _draws(settings, options), jobs=options.jobs)
-    for done, (place, spread) in enumerate(spreads, start=1):
-        found[rows[place].variant.row] = replace(rows[place], spread=spread)
+    variants = list(computed.values())
+    spread = dict(computed)
+    rows = [_toleranced(variant) for variant in variants]
+    for done, (index, statistics) in enumerate(row_statistics(rows, _plan(settings, options), options.jobs), start=1):
+        spread[variants[index].variant.row] = replace(variants[index], spread=statistics)
         if progress:
-            progress(done, len(rows))
-    return found
+            progress(done, len(variants))
+    return spread
+
+
+def row_statistics(
+    rows: Sequence[TolerancedRow], plan: SamplingPlan, jobs: int
+) -> Iterator[tuple[int, SpreadStatistics]]:
+    """Yield each row's index and statistics, rows alike together, by up to `jobs` processes where there are enough."""
+    batches = list(batches_alike(rows))
+    work = [[rows[index] for index in batch] for batch in batches]
+    statistics = mapped(partial(batch_statistics, plan=plan), work, min(jobs, len(rows) // ROWS_PER_WORKER))
+    for batch, of_batch in zip(batches, statistics, strict=True):
+        yield from zip(batch, of_batch, strict=True)
 
 
 def drawn_curves(drawn: Sequence[Computed], settings: Settings, options: Options) -> dict[int, Curve]:
     """Return the curves of variants by row number."""
-    tasks = [(_task(one), one.spread) for one in drawn if one.spread]
-    curves = curves_of(tasks, _draws(settings, options), jobs=options.jobs)
-    return dict(zip((one.variant.row for one in drawn), curves, strict=True))
+    rows = [(_toleranced(variant), variant.spread) for variant in drawn if variant.spread]
+    curves = row_curves(rows, _plan(settings, options), options.jobs)
+    return dict(zip((variant.variant.row for variant in drawn), curves, strict=True))
 
 
-def _draws(settings: Settings, options: Options) -> SamplingPlan:
+def row_curves(
+    rows: Sequence[tuple[TolerancedRow, SpreadStatistics]], plan: SamplingPlan, jobs: int
+) -> Iterator[Curve]:
+    """Yield the curve of each row, by up to `jobs` processes where there are lines or points enough."""
+    points = sum(int(statistics.numbers.get("spread_points") or 0) for _, statistics in rows)
+    return mapped(partial(_curve, plan=plan), rows, min(jobs, points // POINTS_PER_WORKER))
+
+
+def _curve(row: tuple[TolerancedRow, SpreadStatistics], plan: SamplingPlan) -> Curve:
+    return curve_of(*row, plan)
+
+
+def _plan(settings: Settings, options: Options) -> SamplingPlan:
     return SamplingPlan(
         method=settings.method,
+        inputs=tuple(DIMENSIONS),
         samples=settings.samples,
         seed=settings.seed,
         coverage=settings.coverage_percent / 100,
@@ -50,6 +80,11 @@ def _draws(settings: Settings, options: Options) -> SamplingPlan:
     )
 
 
-def _task(one: Computed) -> Task:
-    model = _MODELS[one.variant.flexspline_type]
-    return model, one.variant.dimensions, one.limits, one.variant.backlash_limit
+def _toleranced(variant: Computed) -> TolerancedRow:
+    """Return what the spread of a variant takes."""
+    return TolerancedRow(
+        model=_MODELS[variant.variant.flexspline_type],
+        nominal=variant.variant.dimensions,
+        limits=variant.limits,
+        upper_limit=variant.variant.backlash_limit,
+    )

@@ -16,7 +16,7 @@ from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, SETTINGS
 from flexlash.schema.result_columns import result_columns
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES
-from flexlash.tolerance.engine.line_spread import MOST_LINES, PROBABILITY_PRECISION, SD_PRECISION
+from flexlash.tolerance.engine.line_precision import MOST_LINES, PROBABILITY_PRECISION, SD_PRECISION
 from flexlash.tolerance.sampling import REPLICATES
 
 __all__ = ["CHECKSUMS", "ERRATA", "LEFT_OUT", "MODEL", "PROOF", "SHEETS", "TABS", "write_about"]

@@ -1,13 +1,18 @@
-"""From tolerances to a spread: limits, distributions, sampling, statistics. Knows no mechanics.
+"""From tolerances to a spread: limits, distributions, sampling, statistics. Knows no mechanics and no processes.
 
 >>> from flexlash.tolerance import Uniform, propagate
 >>> spread = propagate(lambda a: 2 * a, {"a": Uniform(low=0, high=1)})
 >>> f"{spread.quantile(0.95):.9f}"
 '1.900000000'
+
+Limits of a dimension are a `Distribution` that it scatters by; a `SamplingPlan` says how many lines or points are
+taken; a `Spread` is the output's whole distribution, `SpreadStatistics` the numbers of it that are kept for a row, a
+`Curve` what is drawn of it.
 """
 
-from flexlash.tolerance.distributions import Normal, Triangular, TruncatedNormal, Uniform
+from flexlash.tolerance.distributions import Normal, Triangular, Uniform
 from flexlash.tolerance.propagate import propagate
 from flexlash.tolerance.spread import Spread
+from flexlash.tolerance.truncated_normal import TruncatedNormal
 
 __all__ = ["Normal", "Spread", "Triangular", "TruncatedNormal", "Uniform", "propagate"]

@@ -1,4 +1,4 @@
-"""How sure one can be of staying below a limit: Ppk and the interval of a counted share."""
+"""How sure one can be of staying below a limit: Ppk and the interval of a counted probability."""
 
 from __future__ import annotations
 
@@ -10,7 +10,12 @@ __all__ = ["clopper_pearson", "ppk_normal", "ppk_upper"]
 
 
 def clopper_pearson(count: int, total: int, confidence: float = 0.95) -> tuple[float, float]:
-    """Return the exact two-sided interval of a share of which `count` in `total` were seen.
+    """Return the ends of the exact two-sided interval of a probability of which `count` in `total` were seen.
+
+    Equation: the ends p with P(X ≥ count | p) = P(X ≤ count | p) = (1 − confidence)/2, by the inverse beta function
+    Arguments: 0 ≤ count ≤ total, total ≥ 1; confidence between 0 and 1.
+    Valid: independent draws; it holds the probability at least as often as `confidence` says.
+    Source: Clopper and Pearson 1934.
 
     >>> f"{clopper_pearson(0, 10_000)[1] * 1e6:.1f} ppm"
     '368.8 ppm'
@@ -22,9 +27,12 @@ def clopper_pearson(count: int, total: int, confidence: float = 0.95) -> tuple[f
 
 
 def ppk_upper(limit: float, median: float, upper: float) -> float | None:
-    """Return the performance index against an upper limit, ISO 22514-2: (limit − x50)/(x99.865 − x50).
+    """Return the performance index against an upper limit, None when nothing scatters.
 
-    None when nothing scatters.
+    Equation: Ppk = (limit − x50)/(x99.865 − x50)
+    Arguments: limit, median x50 and percentile x99.865 in one unit.
+    Valid: any distribution.
+    Source: ISO 22514-2.
 
     >>> ppk_upper(3.0, 1.0, 2.0)
     2.0
@@ -34,9 +42,12 @@ def ppk_upper(limit: float, median: float, upper: float) -> float | None:
 
 
 def ppk_normal(limit: float, mean: float, sd: float) -> float | None:
-    """Return the performance index against an upper limit as if the output were normal: (limit − mean)/(3 sd).
+    """Return the performance index against an upper limit by normal theory, None when nothing scatters.
 
-    None when nothing scatters.
+    Equation: Ppk = (limit − mean)/(3 sd)
+    Arguments: limit, mean and sd in one unit.
+    Valid: right only for a normal output.
+    Source: ISO 22514-2.
 
     >>> ppk_normal(3.0, 1.0, 0.5)
     1.3333333333333333

@@ -29,17 +29,17 @@ Words = npt.NDArray[np.uint32]
 def _directions() -> Words:
     """Return the direction numbers (coordinates, bits) of Joe and Kuo 2008, the first bit uppermost."""
     table = np.zeros((COORDINATES, _BITS), dtype=np.uint32)
-    for place, row in enumerate(rows("sobol_directions")):
+    for coordinate, row in enumerate(rows("sobol_directions")):
         polynomial = int(row["polynomial"])
         degree = max(polynomial.bit_length() - 1, 1)
         numbers = [int(number) << (_BITS - 1 - bit) for bit, number in enumerate(row["initial_numbers"].split())]
         for bit in range(degree, _BITS):
-            number = numbers[bit - degree] ^ numbers[bit - degree] >> degree if place else 1 << (_BITS - 1 - bit)
+            number = numbers[bit - degree] ^ numbers[bit - degree] >> degree if coordinate else 1 << (_BITS - 1 - bit)
             for back in range(1, degree):
                 if polynomial >> (degree - back) & 1:
                     number ^= numbers[bit - back]
             numbers.append(number)
-        table[place] = numbers
+        table[coordinate] = numbers
     return table
 
 
@@ -55,7 +55,12 @@ def _strata(count: int) -> npt.NDArray[np.intp]:
 
 
 def scrambled_net(width: int, replicates: int, count: int, generator: np.random.Generator) -> Array:
-    """Return points inside the unit cube, (width, replicates, count); count is a power of two.
+    """Return points inside the unit cube, (width, replicates, count).
+
+    Equation: the digital net of Joe and Kuo's direction numbers, its binary digits permuted nestedly at random
+    Arguments: coordinates, independent replicates, points in each, a power of two; the source of randomness.
+    Valid: the first 64 coordinates are a net; beyond them points are independent.
+    Source: Joe and Kuo 2008; Owen 1995.
 
     >>> points = scrambled_net(1, 2, 4, np.random.default_rng(0))
     >>> np.sort(points * 4, axis=2).astype(int).tolist()
@@ -64,15 +69,15 @@ def scrambled_net(width: int, replicates: int, count: int, generator: np.random.
     known = min(width, COORDINATES)
     flips = generator.integers(2, size=(known, replicates, count), dtype=np.int32)
     points = generator.random((width, replicates, count))
-    places = np.zeros((known, replicates, 1), dtype=np.int32)
-    while (filled := places.shape[2]) < count:
+    strata = np.zeros((known, replicates, 1), dtype=np.int32)
+    while (filled := strata.shape[2]) < count:
         # Each stratum is halved, and its halves are exchanged or not by a coin of its own.
         split = np.empty((known, replicates, 2 * filled), dtype=np.int32)
-        split[:, :, 0::2] = 2 * places + flips[:, :, filled : 2 * filled]
-        split[:, :, 1::2] = 2 * places + 1 - flips[:, :, filled : 2 * filled]
-        places = split
-    strata = _strata(count)
+        split[:, :, 0::2] = 2 * strata + flips[:, :, filled : 2 * filled]
+        split[:, :, 1::2] = 2 * strata + 1 - flips[:, :, filled : 2 * filled]
+        strata = split
+    order = _strata(count)
     for coordinate in range(known):
-        points[coordinate] += places[coordinate].take(strata[coordinate], axis=1)
+        points[coordinate] += strata[coordinate].take(order[coordinate], axis=1)
     points[:known] /= count
     return np.clip(points, 2.0**-53, 1 - 2.0**-53)

@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.tolerance_grades import deviations
 from flexlash.schema.variant import ToleranceRow, Variant
-from flexlash.tolerance.distributions import Distribution, Normal, Triangular, TruncatedNormal, Uniform
+from flexlash.tolerance.distributions import Distribution, Normal, Triangular, Uniform
 from flexlash.tolerance.gaps import Gap, gaps
+from flexlash.tolerance.truncated_normal import TruncatedNormal
 
 __all__ = ["Limits", "LimitsProblem", "distributions", "limits_of", "shape_problems"]
 

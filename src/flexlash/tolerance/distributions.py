@@ -1,7 +1,12 @@
-"""How a dimension scatters: four distributions, each a standard shape, a location and a scale.
+"""How a dimension scatters: distributions, each a standard shape, a location and a scale.
 
-`standard` maps probabilities to the shape without location and scale, so that variants whose tolerances
-differ only in size share one array of standard values.
+    location, scale     value = location + scale × standard value
+    standard value      quantile of the shape alone, so that variants whose tolerances differ only in size share one
+                        array of standard values
+    score               quantile of the standard normal with the same probability: Φ(score) = probability
+    break               score at which the standard value has a kink
+
+The normal cut at both ends is in `truncated_normal`.
 """
 
 from __future__ import annotations
@@ -16,7 +21,7 @@ from scipy.special import ndtr, ndtri
 from flexlash.schema.argument_checks import number
 from flexlash.schema.arrays import Array
 
-__all__ = ["Distribution", "Normal", "Triangular", "TruncatedNormal", "Uniform"]
+__all__ = ["Distribution", "Normal", "Triangular", "Uniform", "require_order", "require_scale"]
 
 
 @runtime_checkable
@@ -48,47 +53,37 @@ class Distribution(Protocol):
         """Standard deviation of the distribution."""
 
     def standard(self, probability: Array) -> Array:
-        """Return the standard values at these probabilities."""
+        """Return the standard values at these probabilities, in their shape."""
 
     def standard_at(self, score: Array) -> Array:
         """Return the standard values at the probabilities of standard normal scores, exact in both tails."""
 
 
-def _require_order(low: float, high: float) -> None:
+def require_order(low: float, high: float, *, finite: bool = True) -> None:
+    """Raise TypeError or ValueError unless both are numbers and low is less than high."""
     number("low", low, finite=False)
     number("high", high, finite=False)
     if not low < high:
         raise ValueError(f"low = {low:g} must be less than high = {high:g}")
+    number("low", low, finite=finite)
+    number("high", high, finite=finite)
 
 
-def _require_finite(low: float, high: float) -> None:
-    number("low", low)
-    number("high", high)
-
-
-def _require_normal(mean: float, sd: float) -> None:
+def require_scale(mean: float, sd: float) -> None:
+    """Raise TypeError or ValueError unless the mean is a finite number and sd one greater than 0."""
     number("mean", mean)
     if not number("sd", sd) > 0:
         raise ValueError(f"sd = {sd:g} must be a finite number greater than 0")
 
 
-_NARROW = 2.0
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
-
-
-def _narrow_moments(first: float, last: float) -> tuple[float, float]:
-    """Return mean and variance of a standard normal cut to a narrow range, where the closed form cancels."""
-    middle, half = (first + last) / 2, (last - first) / 2
-    offset = half * _NODES
-    weight = _WEIGHTS * np.exp(-middle * offset - offset * offset / 2)
-    weight = weight / weight.sum()
-    shift = float((weight * offset).sum())
-    return middle + shift, float((weight * (offset - shift) ** 2).sum())
-
-
 @dataclass(frozen=True)
 class Normal:
     """Normal distribution, unbounded.
+
+    Equation: x = mean + sd · Φ⁻¹(p)
+    Arguments: mean and sd > 0 in the unit of the dimension.
+    Valid: any finite mean and sd.
+    Source: definition.
 
     >>> Normal(mean=80, sd=0.02).standard(np.array([0.5]))
     array([0.])
@@ -98,7 +93,7 @@ class Normal:
     sd: float
 
     def __post_init__(self) -> None:
-        _require_normal(self.mean, self.sd)
+        require_scale(self.mean, self.sd)
 
     shape = ("normal",)
     breaks = ()
@@ -132,85 +127,6 @@ class Normal:
         return score
 
 
-@dataclass(frozen=True)
-class TruncatedNormal:
-    """Normal distribution of this mean and sd, cut at low and high; either may be infinite."""
-
-    mean: float
-    sd: float
-    low: float
-    high: float
-    breaks = ()
-
-    def __post_init__(self) -> None:
-        _require_normal(self.mean, self.sd)
-        _require_order(self.low, self.high)
-        if not self._mass > 0:
-            raise ValueError("low and high leave no part of the normal distribution")
-
-    @property
-    def _cuts(self) -> tuple[float, float]:
-        return (self.low - self.mean) / self.sd, (self.high - self.mean) / self.sd
-
-    @property
-    def _mass(self) -> float:
-        first, last = self._cuts
-        return float(ndtr(-first) - ndtr(-last) if first > 0 else ndtr(last) - ndtr(first))
-
-    @property
-    def _moments(self) -> tuple[float, float]:
-        """Mean and variance of the standard shape."""
-        first, last = self._cuts
-        if last - first < _NARROW:
-            return _narrow_moments(first, last)
-        density = [math.exp(-cut * cut / 2) / math.sqrt(2 * math.pi) for cut in (first, last)]
-        weighted = [cut * d if math.isfinite(cut) else 0.0 for cut, d in zip((first, last), density, strict=True)]
-        mean = (density[0] - density[1]) / self._mass
-        return mean, 1 + (weighted[0] - weighted[1]) / self._mass - mean * mean
-
-    @property
-    def shape(self) -> tuple[str | float, ...]:
-        """The cuts in units of sd."""
-        return ("truncated normal", *self._cuts)
-
-    @property
-    def location(self) -> float:
-        """The mean before cutting."""
-        return self.mean
-
-    @property
-    def scale(self) -> float:
-        """The standard deviation before cutting."""
-        return self.sd
-
-    @property
-    def expectation(self) -> float:
-        """The mean after cutting."""
-        return self.mean + self.sd * self._moments[0]
-
-    @property
-    def standard_deviation(self) -> float:
-        """The standard deviation after cutting."""
-        return self.sd * math.sqrt(self._moments[1])
-
-    def standard(self, probability: Array) -> Array:
-        """Return quantiles of the cut standard normal, from the tail that keeps the digits."""
-        first, last = self._cuts
-        if first > 0:
-            inside = -ndtri(ndtr(-first) - probability * self._mass)
-        else:
-            inside = ndtri(ndtr(first) + probability * self._mass)
-        return np.clip(inside, first, last)
-
-    def standard_at(self, score: Array) -> Array:
-        """Return quantiles of the cut standard normal, counted from the nearer end."""
-        first, last = self._cuts
-        mass = self._mass
-        from_below = ndtri(ndtr(first) + ndtr(score) * mass)
-        from_above = -ndtri(ndtr(-last) + ndtr(-score) * mass)
-        return np.clip(np.where(from_below < 0, from_below, from_above), first, last)
-
-
 class _Interval:
     """What distributions between two finite ends share."""
 
@@ -230,14 +146,22 @@ class _Interval:
 
 @dataclass(frozen=True)
 class Uniform(_Interval):
-    """Every value between low and high equally likely."""
+    """Every value between low and high equally likely.
+
+    Equation: x = low + (high − low) p
+    Arguments: low < high in the unit of the dimension.
+    Valid: any finite ends.
+    Source: definition.
+
+    >>> Uniform(low=1.0, high=3.0).expectation
+    2.0
+    """
 
     low: float
     high: float
 
     def __post_init__(self) -> None:
-        _require_order(self.low, self.high)
-        _require_finite(self.low, self.high)
+        require_order(self.low, self.high)
 
     shape = ("uniform",)
     breaks = ()
@@ -263,15 +187,23 @@ class Uniform(_Interval):
 
 @dataclass(frozen=True)
 class Triangular(_Interval):
-    """Triangle between low and high with its peak at mode, by default in the middle."""
+    """Triangle between low and high with its peak at mode, by default in the middle.
+
+    Equation: with f = (mode − low)/(high − low), the standard value is √(p f) for p < f, else 1 − √((1 − p)(1 − f))
+    Arguments: low < high and low ≤ mode ≤ high in the unit of the dimension.
+    Valid: any finite ends.
+    Source: definition.
+
+    >>> Triangular(low=0.0, high=4.0, mode=1.0).standard(np.array([0.25]))
+    array([0.25])
+    """
 
     low: float
     high: float
     mode: float | None = None
 
     def __post_init__(self) -> None:
-        _require_order(self.low, self.high)
-        _require_finite(self.low, self.high)
+        require_order(self.low, self.high)
         if self.mode is not None:
             number("mode", self.mode)
         if not self.low <= self._peak <= self.high:
@@ -287,7 +219,7 @@ class Triangular(_Interval):
 
     @property
     def shape(self) -> tuple[str | float, ...]:
-        """The place of the peak as a fraction of the width."""
+        """The position of the peak as a fraction of the width."""
         return ("triangular", self._fraction)
 
     @property
@@ -308,15 +240,13 @@ class Triangular(_Interval):
 
     def standard(self, probability: Array) -> Array:
         """Return quantiles of the triangle on [0, 1]."""
-        fraction = self._fraction
-        rising = np.sqrt(probability * fraction)
-        falling = 1 - np.sqrt((1 - probability) * (1 - fraction))
-        return np.where(probability < fraction, rising, falling)
+        return self._quantiles(probability, 1 - probability)
 
     def standard_at(self, score: Array) -> Array:
         """Return quantiles of the triangle on [0, 1], counted from the nearer end."""
+        return self._quantiles(ndtr(score), ndtr(-score))
+
+    def _quantiles(self, below: Array, above: Array) -> Array:
+        """Return quantiles of the triangle on [0, 1] from the probabilities below and above them."""
         fraction = self._fraction
-        below = ndtr(score)
-        rising = np.sqrt(below * fraction)
-        falling = 1 - np.sqrt(ndtr(-score) * (1 - fraction))
-        return np.where(below < fraction, rising, falling)
+        return np.where(below < fraction, np.sqrt(below * fraction), 1 - np.sqrt(above * (1 - fraction)))

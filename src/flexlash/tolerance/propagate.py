@@ -10,8 +10,8 @@ import numpy as np
 from flexlash.schema.argument_checks import function, named_arguments, of_type, one_of, whole_number
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution
-from flexlash.tolerance.engine.line_direction import RowModel, Rows
-from flexlash.tolerance.engine.line_spread import LineSpread, NoLines
+from flexlash.tolerance.engine.line_direction import Indices, RowModel
+from flexlash.tolerance.engine.line_spread import LineSpread, LinesUnsuitable
 from flexlash.tolerance.sampled_spread import Model, SampledSpread
 from flexlash.tolerance.sampling import UnitPoints
 from flexlash.tolerance.spread import Method, Spread
@@ -55,8 +55,8 @@ def propagate(
         raise ValueError("at least one input must vary")
     if method == "line":
         try:
-            return LineSpread(_of_one_row(model), inputs, samples=samples, seed=seed)
-        except NoLines as reason:
+            return LineSpread(_row_model(model), inputs, samples=samples, seed=seed)
+        except LinesUnsuitable as reason:
             notes: tuple[str, ...] = (f"{NOT_LINES}: {reason}.",)
             method = "sobol"
     else:
@@ -65,18 +65,18 @@ def propagate(
     return SampledSpread(model=model, inputs=inputs, points=points, notes=notes)
 
 
-def _of_one_row(model: Model) -> RowModel:
+def _row_model(model: Model) -> RowModel:
     """Return a model of keyword arrays as the model of a single row."""
 
-    def of_row(arguments: Mapping[str, Array], rows: Rows) -> Array:  # noqa: ARG001
+    def outputs_of(arguments: Mapping[str, Array], rows: Indices) -> Array:  # noqa: ARG001
         shape = np.broadcast_shapes(*(values.shape for values in arguments.values()))
         flat = {
             name: (values if values.shape == shape else np.broadcast_to(values, shape)).reshape(-1)
             for name, values in arguments.items()
         }
-        found = np.asarray(model(**flat), dtype=float)
-        if found.shape != (shape[0] * shape[1],):
-            raise ValueError(f"the model returned shape {found.shape}, not that of its inputs")
-        return found.reshape(shape)
+        outputs = np.asarray(model(**flat), dtype=float)
+        if outputs.shape != (shape[0] * shape[1],):
+            raise ValueError(f"the model returned shape {outputs.shape}, not that of its inputs")
+        return outputs.reshape(shape)
 
-    return of_row
+    return outputs_of

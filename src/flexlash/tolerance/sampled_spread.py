@@ -1,4 +1,8 @@
-"""The spread of an output from its values at points of the inputs: plain Monte Carlo, or scrambled Sobol' points."""
+"""The spread of an output from its values at points of the inputs: plain Monte Carlo, or scrambled Sobol' points.
+
+replicate           one of the independent sets of points, whose scatter gives the standard errors
+standard value      quantile of a distribution's shape at a point, before location and scale
+"""
 
 from __future__ import annotations
 
@@ -28,7 +32,8 @@ class SampledSpread(Spread):
 
     `values` has the shape (replicates, points); quantiles are of type 7 (Excel's PERCENTILE.INC, numpy's default).
     Standard errors of Sobol' points come from the replicates, which are independent of one another; those of
-    plain Monte Carlo from the theory of independent draws.
+    plain Monte Carlo from the theory of independent draws. Raises ValueError for a model that returns another shape or
+    a number that is not finite.
     """
 
     def __init__(
@@ -120,47 +125,47 @@ class SampledSpread(Spread):
         return float(product.mean())
 
     def _quantiles(self, probability: Array) -> Array:
-        place = probability * (self.size - 1)
-        below = np.floor(place).astype(int)
+        rank = probability * (self.size - 1)
+        below = np.floor(rank).astype(int)
         above = np.minimum(below + 1, self.size - 1)
         self._selected.partition(np.unique(np.concatenate([below, above])))
         low, high = self._selected[below], self._selected[above]
-        return np.asarray(low + (high - low) * (place - below))
+        return np.asarray(low + (high - low) * (rank - below))
 
     def _quantile_errors(self, probability: Array) -> Array:
-        """Return the standard errors of quantiles: the error of the share below, over the slope (Woodruff)."""
+        """Return the standard errors of quantiles: the error of the probability below, over the density (Woodruff)."""
         if self._independent:
-            of_share = np.sqrt(probability * (1 - probability) / self.size)
+            error = np.sqrt(probability * (1 - probability) / self.size)
         else:
             quantiles = self._quantiles(probability)
             below = [(self.values <= quantile).mean(axis=1) for quantile in quantiles]
-            of_share = standard_error(np.reshape(below, (len(quantiles), len(self.values))))
-        of_share = np.maximum(of_share, 0.5 / self.size)
-        reach = np.maximum(0.5 * np.minimum(probability, 1 - probability), of_share)
+            error = standard_error(np.reshape(below, (len(quantiles), len(self.values))))
+        error = np.maximum(error, 0.5 / self.size)
+        reach = np.maximum(0.5 * np.minimum(probability, 1 - probability), error)
         low, high = np.maximum(probability - reach, 0.0), np.minimum(probability + reach, 1.0)
         ends = self._quantiles(np.concatenate([low, high]))
-        inside = of_share * (ends[len(low) :] - ends[: len(low)]) / (high - low)
+        inside = error * (ends[len(low) :] - ends[: len(low)]) / (high - low)
         # A quantile rarer than one point in all lies beyond the points, by a normal tail as far as this.
         rarer = np.clip(np.minimum(probability, 1 - probability), np.finfo(float).tiny, 0.5)
         beyond = np.maximum(ndtri(min(1 / self.size, 0.5)) - ndtri(rarer), 0.0)
         return np.asarray(inside + beyond * self.sd)
 
-    def _shares_above(self, value: Array) -> Array:
-        return np.array([self._count_above(one) for one in value]) / self.size
+    def _probabilities_above(self, value: Array) -> Array:
+        return np.array([self._count_above(limit) for limit in value]) / self.size
 
     def _count_above(self, value: float) -> int:
         return int(np.count_nonzero(self._selected > value))
 
     def _interval(self, value: float, confidence: float) -> tuple[float, float]:
-        """Return the Clopper–Pearson interval of the share above a value; wide for Sobol' points."""
+        """Return the Clopper–Pearson interval of the probability above a value; wide for Sobol' points."""
         return clopper_pearson(self._count_above(value), self.size, confidence)
 
     @cached_property
     def _both_shares(self) -> tuple[dict[str, float], dict[str, float]]:
         """First-order and total indices: both point sets crossed one input at a time (Saltelli et al. 2010)."""
         if len(self._inputs) == 1 or self.sd == 0:
-            alone = dict.fromkeys(self._inputs, float(self.sd > 0))
-            return alone, alone
+            whole = dict.fromkeys(self._inputs, float(self.sd > 0))
+            return whole, whole
         count = self._points.share_count
         first = {name: self._points.standard(name, self._inputs[name], "leading") for name in self._inputs}
         second = {name: self._points.standard(name, self._inputs[name], "second") for name in self._inputs}
@@ -191,15 +196,15 @@ class SampledSpread(Spread):
 def _evaluate(model: Model, standard: Mapping[str, Array], inputs: Mapping[str, Distribution]) -> Array:
     """Return the model at standard values of shape (replicates, points), in blocks that fit the cache."""
     shape = next(iter(standard.values())).shape
-    flat = {name: values.ravel() for name, values in standard.items()}
+    flat = {name: column.ravel() for name, column in standard.items()}
     output = np.empty(shape[0] * shape[1])
     for start in range(0, output.size, _BLOCK):
         block = slice(start, start + _BLOCK)
-        arguments = {name: inputs[name].location + inputs[name].scale * values[block] for name, values in flat.items()}
-        found = np.asarray(model(**arguments), dtype=float)
-        if found.shape != output[block].shape:
-            raise ValueError(f"the model returned shape {found.shape}, not that of its inputs")
-        output[block] = found
+        arguments = {name: inputs[name].location + inputs[name].scale * column[block] for name, column in flat.items()}
+        values = np.asarray(model(**arguments), dtype=float)
+        if values.shape != output[block].shape:
+            raise ValueError(f"the model returned shape {values.shape}, not that of its inputs")
+        output[block] = values
     if not np.isfinite(output).all():
         raise ValueError("the model returned a number that is not finite within the range of its inputs")
     return output.reshape(shape)

@@ -1,13 +1,14 @@
-"""Points in the unit cube: independent replicates, the same points for every variant.
+"""How rows are sampled: the plan, and points in the unit cube that are the same for every row.
 
-A coordinate belongs to a *name*, not to a place in a list, so that two variants with different dimensions
-meet the same wall thickness in the same draw.
+A coordinate belongs to a *name*, not to a position in a list, so that two rows with different dimensions meet the same
+wall thickness in the same draw. Points come in independent replicates, whose scatter gives the standard errors.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, lru_cache
 from typing import Literal
 
 import numpy as np
@@ -16,25 +17,61 @@ from scipy.special import ndtri, stdtrit
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.digital_nets import scrambled_net
 from flexlash.tolerance.distributions import Distribution
+from flexlash.tolerance.spread import Method
 
-__all__ = ["DEFAULT_SAMPLES", "REPLICATES", "UnitPoints", "standard_error"]
+__all__ = ["DEFAULT_SAMPLES", "REPLICATES", "PointMethod", "SamplingPlan", "UnitPoints", "standard_error"]
 
 REPLICATES = 16
 """Independent replicates behind every standard error: 15 degrees of freedom."""
 
 DEFAULT_SAMPLES = {"sobol": 2**15, "random": 2**17}
-"""Points per variant when none are asked for."""
+"""Points per row when none are asked for."""
 
+PointMethod = Literal["sobol", "random"]
 PointSet = Literal["all", "leading", "second"]
 
 _SHARE_POINTS = 512
 _CACHED_SHAPES = 256
 
 
-def standard_error(replicates: Array) -> Array:
-    """Return the standard errors of means over independent replicates, the last axis.
+@dataclass(frozen=True, kw_only=True)
+class SamplingPlan:
+    """How the spread of rows is sampled; two equal plans give every row the same numbers.
 
-    They are widened for the small number of replicates, so that ± 1.96 of them is Student's 95 % interval.
+    `inputs` names all that may vary in any row; `samples` counts the lines or points in all, None for as many as the
+    method needs. `coverage` is the probability of the coverage interval. `cross_check` puts plain Monte Carlo beside
+    the method.
+    """
+
+    method: Method
+    inputs: tuple[str, ...]
+    samples: int | None = None
+    seed: int = 0
+    coverage: float = 0.95
+    cross_check: bool = False
+
+    def points(self, method: PointMethod) -> UnitPoints:
+        """Return the points of a method, drawn once a process; another method than the plan's takes its default."""
+        samples = self.samples if method == self.method else None
+        return _drawn(self.inputs, method=method, samples=samples, seed=self.seed)
+
+
+@lru_cache(maxsize=2)
+def _drawn(names: tuple[str, ...], *, method: PointMethod, samples: int | None, seed: int) -> UnitPoints:
+    """Return points; those of one plan's two methods are kept."""
+    return UnitPoints(names, method=method, samples=samples, seed=seed)
+
+
+def standard_error(replicates: Array) -> Array:
+    """Return the standard errors of means over independent replicates.
+
+    Equation: t₀.₉₇₅(n − 1)/z₀.₉₇₅ · √(Σ (xᵢ − x̄)²/((n − 1) n)): widened, so that ± 1.96 of them is Student's interval
+    Arguments: replicates (..., n), in the unit of the result (...).
+    Valid: at least two replicates, each a mean close to normal.
+    Source: Student's t for the mean of few replicates.
+
+    >>> round(float(standard_error(np.array([1.0, 3.0])) * 1.959963985 / 12.70620474), 9)
+    1.0
     """
     count = replicates.shape[-1]
     deviation = replicates - np.add.reduce(replicates, axis=-1, keepdims=True) / count
@@ -52,30 +89,24 @@ class UnitPoints:
     """Points in the unit cube, one coordinate per name, as arrays of shape (replicates, points).
 
     `all` of them make the spread. The shares of variance cross their leading part, `leading`, with a second
-    independent set of the same length, `second`.
+    independent set of the same length, `second`. Raises ValueError for less than one sample.
     """
 
-    def __init__(
-        self, names: Sequence[str], *, method: Literal["sobol", "random"], samples: int | None, seed: int
-    ) -> None:
-        wanted = DEFAULT_SAMPLES[method] if samples is None else samples
-        if wanted < 1:
-            raise ValueError(f"samples = {wanted} must be at least 1")
+    def __init__(self, names: Sequence[str], *, method: PointMethod, samples: int | None, seed: int) -> None:
+        total = DEFAULT_SAMPLES[method] if samples is None else samples
+        if total < 1:
+            raise ValueError(f"samples = {total} must be at least 1")
         self.method = method
-        self.count = 1 << max(0, -(-wanted // REPLICATES) - 1).bit_length()
+        self.count = 1 << max(0, -(-total // REPLICATES) - 1).bit_length()
         self.share_count = min(self.count, _SHARE_POINTS)
         draw = _sobol if method == "sobol" else _random
         width = len(names)
         points = draw(2 * width, self.count, np.random.default_rng(seed))
+        leading = slice(self.share_count)
         self._sets: dict[PointSet, dict[str, Array]] = {
-            "all": {name: points[place] for place, name in enumerate(names)},
-            "second": {
-                name: np.ascontiguousarray(points[width + place, :, : self.share_count])
-                for place, name in enumerate(names)
-            },
-        }
-        self._sets["leading"] = {
-            name: np.ascontiguousarray(values[:, : self.share_count]) for name, values in self._sets["all"].items()
+            "all": dict(zip(names, points[:width], strict=True)),
+            "leading": _contiguous(names, points[:width, :, leading]),
+            "second": _contiguous(names, points[width:, :, leading]),
         }
         self._standard: dict[tuple[PointSet, str, tuple[str | float, ...]], Array] = {}
 
@@ -87,12 +118,17 @@ class UnitPoints:
     def standard(self, name: str, distribution: Distribution, points: PointSet = "all") -> Array:
         """Return the standard values of a distribution at a name's points, (replicates, points)."""
         key = (points, name, distribution.shape)
-        known = self._standard.get(key)
-        if known is None:
-            known = distribution.standard(self._sets[points][name])
+        values = self._standard.get(key)
+        if values is None:
+            values = distribution.standard(self._sets[points][name])
             if len(self._standard) < _CACHED_SHAPES:
-                self._standard[key] = known
-        return known
+                self._standard[key] = values
+        return values
+
+
+def _contiguous(names: Sequence[str], points: Array) -> dict[str, Array]:
+    """Return points by name, each in memory of its own."""
+    return {name: np.ascontiguousarray(values) for name, values in zip(names, points, strict=True)}
 
 
 def _sobol(width: int, count: int, generator: np.random.Generator) -> Array:

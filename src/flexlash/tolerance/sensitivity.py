@@ -27,21 +27,35 @@ def _table(centre: Mapping[str, Number], rows: int) -> dict[str, Array]:
 
 
 def gradient(model: Model, centre: Mapping[str, Number], steps: Mapping[str, Number]) -> dict[str, Number]:
-    """Return the partial derivatives of a model at a point by central differences over ± its steps."""
+    """Return the partial derivatives of a model at a point, in its unit over that of each input.
+
+    Equation: ∂y/∂xᵢ ≈ (y(xᵢ + hᵢ) − y(xᵢ − hᵢ))/(2 hᵢ)
+    Arguments: the model of keyword arrays; centre and steps hᵢ in the units of the inputs, scalars or (rows,).
+    Valid: smooth models and steps far above rounding.
+    Source: central differences.
+
+    >>> gradient(lambda a, b: a * b, {"a": 2.0, "b": 5.0}, {"a": 0.5})["a"].item()
+    5.0
+    """
     arguments = _table(centre, 2 * len(steps))
-    for place, (name, step) in enumerate(steps.items()):
-        arguments[name][2 * place] += step
-        arguments[name][2 * place + 1] -= step
+    for number, (name, step) in enumerate(steps.items()):
+        arguments[name][2 * number] += step
+        arguments[name][2 * number + 1] -= step
     output = model(**arguments)
     return {
-        name: (output[2 * place] - output[2 * place + 1])
-        / (arguments[name][2 * place] - arguments[name][2 * place + 1])
-        for place, name in enumerate(steps)
+        name: (output[2 * number] - output[2 * number + 1])
+        / (arguments[name][2 * number] - arguments[name][2 * number + 1])
+        for number, name in enumerate(steps)
     }
 
 
 def first_order_sd(model: Model, middle: Mapping[str, Number], sds: Mapping[str, Number]) -> Number:
-    """Return the first-order (GUM) standard uncertainty at mid-limits, from each input's true sd.
+    """Return the first-order standard uncertainty at mid-limits, in the unit of the model.
+
+    Equation: u = √Σ (∂y/∂xᵢ · sdᵢ)²
+    Arguments: the model of keyword arrays; middle of the limits and each input's true sd, scalars or (rows,).
+    Valid: independent inputs, a model close to linear over their spread (`first_order_valid`).
+    Source: GUM (JCGM 100) 5.1.2.
 
     >>> model = lambda a, b: a + b * b
     >>> round(float(first_order_sd(model, {"a": 0.0, "b": 2.0}, {"a": 3.0, "b": 1.0})), 9)
@@ -60,10 +74,11 @@ def first_order_valid(
 ) -> Number:
     """Return whether the first-order interval does as well as another to the digits of its uncertainty.
 
-    JCGM 101 clause 8: the ends of estimate ± k·(first-order uncertainty) must each agree with those of the interval
-    within half a unit in the last of `digits` significant digits of the uncertainty. It is rounded in decimal, as it is
-    printed: 0.0996 is 0.10 to two digits, and half a unit 0.005. All are to be in the unit that is printed, since the
-    same angle has its digits elsewhere in radians.
+    Equation: |y ∓ k u − end| ≤ δ at both ends, δ half a unit in the last of `digits` significant digits of u
+    Arguments: estimate y, first-order uncertainty u and interval in the unit that is printed, since the same angle has
+        its digits elsewhere in radians; scalars or (rows,).
+    Valid: intervals of the same coverage; u is rounded in decimal as printed: 0.0996 is 0.10, and δ 0.005.
+    Source: JCGM 101 clause 8.
 
     >>> [bool(first_order_valid(0.0, 2.0, (-end, end), 0.95)) for end in (3.92, 3.88)]
     [True, True]
@@ -88,7 +103,7 @@ def _last_digit(value: float, digits: int) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class WorstCase:
-    """Least and greatest output with every input at a limit; `swings` the outputs at one input's limits."""
+    """Least and greatest output with every input at a limit; `swings` the outputs at one input's limits, low first."""
 
     low: Number
     high: Number
@@ -96,20 +111,23 @@ class WorstCase:
 
 
 def worst_case(model: Model, ends: Mapping[str, tuple[Number, Number]]) -> WorstCase:
-    """Return the least and greatest output of a monotone model with every input at one of its limits.
+    """Return the least and greatest output with every input at one of its limits, in the unit of the model.
 
-    Which limit hurts is found with the other inputs at the middle of theirs.
+    Equation: y at the corner of the limits that raises, or lowers, the output in every input
+    Arguments: the model of keyword arrays; low and high limit of each input, scalars or (rows,).
+    Valid: models that rise or fall in each input; which limit raises is seen with the others in the middle of theirs.
+    Source: worst-case tolerancing.
 
-    >>> found = worst_case(lambda a, b: a - b, {"a": (1.0, 2.0), "b": (5.0, 7.0)})
-    >>> float(found.low), float(found.high), [float(end) for end in found.swings["b"]]
+    >>> worst = worst_case(lambda a, b: a - b, {"a": (1.0, 2.0), "b": (5.0, 7.0)})
+    >>> float(worst.low), float(worst.high), [float(end) for end in worst.swings["b"]]
     (-6.0, -3.0, [-3.5, -5.5])
     """
     middle = {name: (low + high) / 2 for name, (low, high) in ends.items()}
     arguments = _table(middle, 2 * len(ends))
-    for place, (name, limits) in enumerate(ends.items()):
-        arguments[name][2 * place], arguments[name][2 * place + 1] = limits
+    for number, (name, limits) in enumerate(ends.items()):
+        arguments[name][2 * number], arguments[name][2 * number + 1] = limits
     output = model(**arguments)
-    swings = {name: (output[2 * place], output[2 * place + 1]) for place, name in enumerate(ends)}
+    swings = {name: (output[2 * number], output[2 * number + 1]) for number, name in enumerate(ends)}
     corners = _table(middle, 2)
     for name, (low, high) in ends.items():
         at_low, at_high = swings[name]

@@ -1,4 +1,12 @@
-"""The spread of an output: what every statistic is read from, however it was found."""
+"""The spread of an output: its whole distribution, of which any statistic can be asked.
+
+    spread              the distribution of a model's output that follows from the distributions of its inputs
+    statistic           one number of it: mean, sd, skewness, a quantile, a probability above a value
+    share               of variance: the Sobol' index of an input, first-order or total
+    standard error      how well a statistic is known; ± 1.96 of them are its 95 % interval
+
+By lines it is a `LineSpread`, by points a `SampledSpread`; `SpreadStatistics` are what a report keeps of it.
+"""
 
 from __future__ import annotations
 
@@ -74,7 +82,10 @@ class Spread(ABC):
     @overload
     def quantile(self, probability: npt.ArrayLike) -> Any: ...
     def quantile(self, probability: npt.ArrayLike) -> Any:
-        """Return the values that this share of the output stays below; scalar in, scalar out."""
+        """Return the values that the output stays below with these probabilities; scalar in, scalar out.
+
+        Raises TypeError or ValueError for a probability that is no number between 0 and 1.
+        """
         return _shaped(self._quantiles, numbers("probability", probability, least=0, most=1))
 
     @overload
@@ -82,7 +93,7 @@ class Spread(ABC):
     @overload
     def standard_error(self, probability: npt.ArrayLike) -> Any: ...
     def standard_error(self, probability: npt.ArrayLike) -> Any:
-        """Return the standard errors of quantiles."""
+        """Return the standard errors of the quantiles at these probabilities; scalar in, scalar out."""
         return _shaped(self._quantile_errors, numbers("probability", probability, least=0, most=1))
 
     @overload
@@ -90,21 +101,21 @@ class Spread(ABC):
     @overload
     def probability_above(self, value: npt.ArrayLike) -> Any: ...
     def probability_above(self, value: npt.ArrayLike) -> Any:
-        """Return the share of the output greater than a value; scalar in, scalar out."""
-        return _shaped(self._shares_above, numbers("value", value))
+        """Return the probability that the output is greater than a value; scalar in, scalar out."""
+        return _shaped(self._probabilities_above, numbers("value", value))
 
     def probability_interval(self, value: float, confidence: float = 0.95) -> tuple[float, float]:
-        """Return an interval of the share above a value, which holds it with this confidence."""
-        sure = number("confidence", confidence)
-        if not 0 < sure < 1:
+        """Return the ends of an interval that holds the probability above a value with this confidence."""
+        level = number("confidence", confidence)
+        if not 0 < level < 1:
             raise ValueError(f"confidence = {confidence!r}: a number between 0 and 1 is required")
-        return self._interval(number("value", value, finite=False), sure)
+        return self._interval(number("value", value, finite=False), level)
 
     def histogram(self, bins: int = 40, cut: float = 0.0005) -> tuple[Array, Array]:
-        """Return the edges (bins + 1,) between two tail quantiles and the share of the output in each bin."""
+        """Return the edges (bins + 1,) between the quantiles at cut and 1 − cut, and the probability of each bin."""
         whole_number("bins", bins, least=1)
         edges = np.linspace(self.quantile(cut), self.quantile(1 - cut), bins + 1)
-        return edges, -np.diff(self._shares_above(edges))
+        return edges, -np.diff(self._probabilities_above(edges))
 
     @abstractmethod
     def _interval(self, value: float, confidence: float) -> tuple[float, float]: ...
@@ -116,12 +127,12 @@ class Spread(ABC):
     def _quantile_errors(self, probability: Array) -> Array: ...
 
     @abstractmethod
-    def _shares_above(self, value: Array) -> Array: ...
+    def _probabilities_above(self, value: Array) -> Array: ...
 
 
-def _shaped(of: Callable[[Array], Array], wanted: Array) -> Any:
-    """Return what a function of a row of numbers finds, in the shape wanted, a float for a scalar."""
-    if not wanted.size:
-        return np.empty(wanted.shape)
-    found = of(wanted.ravel())
-    return float(found[0]) if wanted.ndim == 0 else found.reshape(wanted.shape)
+def _shaped(function: Callable[[Array], Array], arguments: Array) -> Any:
+    """Return a function of a row of numbers at an array of any shape, in that shape; a float for a scalar."""
+    if not arguments.size:
+        return np.empty(arguments.shape)
+    values = function(arguments.ravel())
+    return float(values[0]) if arguments.ndim == 0 else values.reshape(arguments.shape)

@@ -1,19 +1,24 @@
-"""The tolerance spread of one variant as a record, and how it is to be sampled."""
+"""The numbers of a row's spread that are kept: those of the report, by name, in SI.
+
+numbers        by result key without unit: `mean`, `p97_5`, `p97_5_standard_error`, `probability_over_limit`, …
+texts          by result key: `spread_method`, `spread_note`, `first_order_valid`, `cross_check`
+shares         first-order Sobol' index of each dimension; `total_shares` the total ones
+swings         output with one dimension at its lower and upper limit, the others in the middle of theirs
+limit          greatest output allowed
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Literal, TypeAlias
 
-from flexlash.schema.arrays import Array
-from flexlash.schema.columns import DIMENSIONS
-from flexlash.tolerance.dimension_limits import Limits
-from flexlash.tolerance.sampling import UnitPoints
-from flexlash.tolerance.spread import Method
+import numpy as np
 
-__all__ = ["PERCENTILES", "SamplingPlan", "SpreadStatistics", "Task"]
+from flexlash.tolerance.capability import ppk_normal, ppk_upper
+from flexlash.tolerance.spread import Method, Spread
+
+__all__ = ["PERCENTILES", "SpreadStatistics", "exact_statistics", "named_probabilities", "statistics_of"]
 
 PERCENTILES = {
     "p0_135": 0.00135,
@@ -25,52 +30,81 @@ PERCENTILES = {
     "p99_865": 0.99865,
 }
 
-Task: TypeAlias = tuple[
-    Callable[[Mapping[str, Array | float]], Array], Mapping[str, float], Mapping[str, Limits], float | None
-]
-"""A row to spread: its backlash model, entered dimensions, limits of dimensions, and greatest backlash allowed."""
-
-
-@dataclass(frozen=True)
-class SamplingPlan:
-    """How the spread is sampled; each process draws its points for itself, the same ones.
-
-    `cross_check` puts plain Monte Carlo beside the method. `coverage` is the share of units inside the coverage
-    interval.
-    """
-
-    method: Method
-    samples: int | None
-    seed: int
-    coverage: float = 0.95
-    cross_check: bool = False
-
-    @cached_property
-    def sobol(self) -> UnitPoints:
-        """Sobol' points, one coordinate per dimension that may have a tolerance."""
-        return self._points("sobol")
-
-    @cached_property
-    def random(self) -> UnitPoints:
-        """Points of plain Monte Carlo."""
-        return self._points("random")
-
-    def _points(self, method: Literal["sobol", "random"]) -> UnitPoints:
-        samples = self.samples if method == self.method else None
-        return UnitPoints(list(DIMENSIONS), method=method, samples=samples, seed=self.seed)
-
 
 @dataclass(frozen=True, kw_only=True)
 class SpreadStatistics:
-    """Spread of one variant [SI]: `numbers` by result key without unit, shares by dimension.
-
-    `texts` are what is said in words: by which method, with which note. `total_shares` are the total indices beside the
-    first-order `shares`. `swings` is the backlash with one dimension at its lower and upper limit and the others in the
-    middle of theirs.
-    """
+    """What is kept of one row's spread; a number that the row does not have is left out or None."""
 
     numbers: dict[str, float | None]
     texts: dict[str, str | None] = field(default_factory=dict)
     shares: dict[str, float] = field(default_factory=dict)
     total_shares: dict[str, float] = field(default_factory=dict)
     swings: dict[str, tuple[float, float]] = field(default_factory=dict)
+
+    @classmethod
+    def of(
+        cls,
+        numbers: Mapping[str, float],
+        *,
+        limit: float | None,
+        method: Method,
+        size: int,
+        note: str,
+        shares: dict[str, float],
+        total_shares: dict[str, float],
+    ) -> SpreadStatistics:
+        """Return the statistics with the numbers that follow from others; NaN is none, `size` lines or points."""
+        kept: dict[str, float | None] = {name: value for name, value in numbers.items() if not math.isnan(value)}
+        if limit is not None:
+            kept["ppk"] = ppk_upper(limit, numbers["p50"], numbers["p99_865"])
+            kept["ppk_normal"] = ppk_normal(limit, numbers["mean"], numbers["sd"])
+        return cls(
+            numbers=kept | {"spread_points": float(size)},
+            texts={"spread_method": method, "spread_note": note or None},
+            shares=shares,
+            total_shares=total_shares,
+        )
+
+
+def named_probabilities(coverage: float) -> dict[str, float]:
+    """Return the probabilities whose quantiles are kept, by name: percentiles and ends of the coverage interval."""
+    return PERCENTILES | {"coverage_low": (1 - coverage) / 2, "coverage_high": (1 + coverage) / 2}
+
+
+def statistics_of(spread: Spread, limit: float | None, *, coverage: float, note: str = "") -> SpreadStatistics:
+    """Return the statistics of a spread; `note` says why it was not made otherwise."""
+    probabilities = named_probabilities(coverage)
+    levels = np.array(list(probabilities.values()))
+    numbers: dict[str, float] = dict(zip(probabilities, spread.quantile(levels).tolist(), strict=True))
+    errors = spread.standard_error(levels).tolist()
+    numbers |= {f"{name}_standard_error": error for name, error in zip(probabilities, errors, strict=True)}
+    for name in ("mean", "sd", "skewness"):
+        numbers |= {name: getattr(spread, name), f"{name}_standard_error": getattr(spread, f"{name}_standard_error")}
+    if limit is not None:
+        low, high = spread.probability_interval(limit)
+        numbers |= {
+            "probability_over_limit": spread.probability_above(limit),
+            "probability_over_limit_low": low,
+            "probability_over_limit_high": high,
+        }
+    return SpreadStatistics.of(
+        numbers,
+        limit=limit,
+        method=spread.method,
+        size=spread.size,
+        note=note,
+        shares=spread.shares,
+        total_shares=spread.total_shares,
+    )
+
+
+def exact_statistics(value: float, limit: float | None) -> SpreadStatistics:
+    """Return the statistics of a row none of whose dimensions scatters."""
+    quantiles = named_probabilities(0.95)
+    numbers: dict[str, float | None] = dict.fromkeys((*quantiles, "mean", "worst_case_low", "worst_case_high"), value)
+    numbers |= dict.fromkeys((f"{name}_standard_error" for name in (*quantiles, "mean", "sd", "skewness")), 0.0)
+    numbers |= dict.fromkeys(("sd", "skewness", "first_order_sd"), 0.0)
+    if limit is not None:
+        over = float(value > limit)
+        numbers |= dict.fromkeys((f"probability_over_limit{end}" for end in ("", "_low", "_high")), over)
+    return SpreadStatistics(numbers=numbers, texts={"first_order_valid": "yes"})

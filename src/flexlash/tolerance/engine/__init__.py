@@ -1,1 +1,16 @@
-"""The line engine: a model tabulated along lines through the space of its inputs."""
+"""The line engine: a model tabulated along lines through the space of its inputs.
+
+    line_direction      which way the lines of a row run
+    line_points         where they pass: scores across the direction
+    line_tables         the model along the lines, and what keeps lines from a row
+    line_quantiles      outputs and the probabilities above them
+    line_moments        mean, sd and skewness
+    line_shares         shares of variance
+    line_precision      how many lines a row needs
+    line_spread         the spread of one model by lines
+    line_statistics     the statistics of many rows by lines
+
+Every input is a function of a standard normal *score*. A *position* on a line is a score as well. *Rows alike* have
+the same model and the same shapes of distribution; arrays hold them all: (inputs, rows), (levels, rows), or with all
+lines side by side (k, rows × lines). A *level* is one probability or one output that is asked for.
+"""

@@ -11,7 +11,7 @@ from scipy.special import ndtr, ndtri
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.digital_nets import scrambled_net
 
-__all__ = ["LINE_REPLICATES", "Net", "line_net", "mirrored_net"]
+__all__ = ["LINE_REPLICATES", "Net", "line_net", "mirrored_net", "normal_density"]
 
 LINE_REPLICATES = 8
 """Independent replicates behind every standard error: 7 degrees of freedom."""
@@ -19,21 +19,30 @@ LINE_REPLICATES = 8
 _SHARE_POINTS = 64, 2048
 """Fewest and most points over the other inputs behind each share of variance."""
 
-_ROW = {8: 4.0, 16: 5.0}
-"""Points in an even row of scores, and how far it reaches to both sides."""
+_SPACED = {8: 4.0, 16: 5.0}
+"""Points of an evenly spaced coordinate, and how far it reaches to both sides."""
+
+
+def normal_density(score: Array) -> Array:
+    """Return the standard normal density at scores, in their shape.
+
+    >>> round(float(normal_density(np.array(0.0))), 9)
+    0.39894228
+    """
+    return np.asarray(np.exp(score * score * -0.5) * (1 / np.sqrt(2 * np.pi)))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Net:
     """Scores (coordinates, lines) and the weights (lines,) of the lines, which sum to 1 in each replicate.
 
-    `row` counts the places of an evenly spaced first coordinate, or is 0; `beyond` is the probability that it leaves
-    out at both ends.
+    `spaced` counts the points of an evenly spaced first coordinate, or is 0; `beyond` is the probability that it
+    leaves out at both ends.
     """
 
     scores: Array
     weights: Array
-    row: int = 0
+    spaced: int = 0
     beyond: float = 0.0
 
     @property
@@ -43,29 +52,34 @@ class Net:
 
 
 @lru_cache(maxsize=64)
-def line_net(seed: int, width: int, lines: int, *, one_bent: bool) -> Net:
-    """Return a net of so many coordinates, another one for each number of lines.
+def line_net(seed: int, width: int, lines: int, *, single_curved: bool) -> Net:
+    """Return a net of `width` coordinates, another one for each number of lines.
 
-    Where but one input is bent, the first coordinate, which serves it, is an evenly spaced row of scores, shifted at
+    Where the output curves with one score alone, the first coordinate, which serves it, is evenly spaced, shifted at
     random and weighted by the normal density: the trapezoidal rule, which converges faster than any net. A coordinate
-    that is alone is such a row too.
+    that is alone is spaced too.
+
+    Equation: uᵢⱼ = Φ⁻¹ of scrambled Sobol' points, LINE_REPLICATES independent ones
+    Arguments: seed; lines in all, LINE_REPLICATES times a power of two.
+    Valid: any width; beyond 64 coordinates the points are independent.
+    Source: Owen 1995; L'Ecuyer and others on conditional Monte Carlo with randomized quasi-Monte Carlo.
     """
     generator = np.random.default_rng([seed, lines])
     count = lines // LINE_REPLICATES
-    row = max((points for points in _ROW if points <= count), default=0)
-    if not (row and (width == 1 or (one_bent and width))):
+    spaced = max((points for points in _SPACED if points <= count), default=0)
+    if not (spaced and (width == 1 or (single_curved and width))):
         points = scrambled_net(width, LINE_REPLICATES, count, generator).reshape(width, lines)
         return Net(scores=np.asarray(ndtri(points)), weights=np.full(lines, 1 / count))
     points = scrambled_net(width - 1, LINE_REPLICATES, count, generator).reshape(width - 1, lines)
-    shifted = (np.arange(row) + generator.random((LINE_REPLICATES, 1))) / row
-    first = np.repeat((2 * shifted - 1) * _ROW[row], count // row, axis=1)
+    shifted = (np.arange(spaced) + generator.random((LINE_REPLICATES, 1))) / spaced
+    first = np.repeat((2 * shifted - 1) * _SPACED[spaced], count // spaced, axis=1)
     weights = np.exp(-first * first / 2)
     weights = weights / weights.sum(axis=1, keepdims=True)
     return Net(
         scores=np.concatenate([first.reshape(1, lines), ndtri(points)]),
         weights=weights.reshape(lines),
-        row=row,
-        beyond=2 * float(ndtr(-_ROW[row])),
+        spaced=spaced,
+        beyond=2 * float(ndtr(-_SPACED[spaced])),
     )
 
 
@@ -73,7 +87,7 @@ def line_net(seed: int, width: int, lines: int, *, one_bent: bool) -> Net:
 def mirrored_net(seed: int, width: int, lines: int) -> Array:
     """Return scores (width, points), half of them mirrored so that linear effects cancel; about as many as lines.
 
-    A row that takes many lines has inputs that act together, so its shares take many points too.
+    A row that takes many lines has inputs that act together, so its shares take many points too: 64 to 2048.
     """
     points = min(max(lines, _SHARE_POINTS[0]), _SHARE_POINTS[1])
     generator = np.random.default_rng([seed, points, width])

@@ -18,24 +18,29 @@ __all__ = ["gauss_rule", "variance_shares"]
 _POINTS = 5
 _SCORES = np.linspace(-REACH, REACH, 1661)
 _MASS = np.exp(-_SCORES * _SCORES / 2) / np.exp(-_SCORES * _SCORES / 2).sum()
-_KNOWN: dict[tuple[str | float, ...], tuple[Array, Array]] = {}
-_MOST_KNOWN = 256
+_RULES: dict[tuple[str | float, ...], tuple[Array, Array]] = {}
+_MOST_RULES = 256
 
 
 def gauss_rule(distribution: Distribution) -> tuple[Array, Array]:
-    """Return nodes and weights of the Gauss rule for a distribution's standard shape.
+    """Return the five nodes and weights of the Gauss rule for a distribution's standard shape, (5,) each.
+
+    Equation: ∫ f(x) dF(x) = Σ wᵢ f(xᵢ)
+    Arguments: a distribution, whose shape alone matters.
+    Valid: exact for a polynomial of degree 9.
+    Source: Stieltjes' recurrence on a fine grid of scores; Golub and Welsch 1969.
 
     >>> from flexlash.tolerance.distributions import Normal
     >>> nodes, weights = gauss_rule(Normal(0, 1))
     >>> round(float((weights * nodes**8).sum()), 6)
     105.0
     """
-    known = _KNOWN.get(distribution.shape)
-    if known is None:
-        known = _stieltjes(distribution.standard_at(_SCORES))
-        if len(_KNOWN) < _MOST_KNOWN:
-            _KNOWN[distribution.shape] = known
-    return known
+    rule = _RULES.get(distribution.shape)
+    if rule is None:
+        rule = _stieltjes(distribution.standard_at(_SCORES))
+        if len(_RULES) < _MOST_RULES:
+            _RULES[distribution.shape] = rule
+    return rule
 
 
 def _stieltjes(values: Array) -> tuple[Array, Array]:
@@ -56,9 +61,13 @@ def _stieltjes(values: Array) -> tuple[Array, Array]:
 
 
 def variance_shares(model: RowModel, inputs: Inputs, net: Array, variance: Array) -> tuple[Array, Array]:
-    """Return first-order and total indices, (inputs, rows) each.
+    """Return first-order and total Sobol' indices, (inputs, rows) each.
 
-    `net` are standard normal scores (inputs, points); `variance` (rows,) is that of the output.
+    Equation: Sᵢ = Var(E[y | xᵢ])/Var y, Sᵢᵀ = E[Var(y | all but xᵢ)]/Var y
+    Arguments: model and inputs of rows alike; net of standard normal scores (inputs, points); variance of the output
+        (rows,) in its squared unit.
+    Valid: the inner variance is exact for a polynomial of degree 4; the outer mean is as good as the points.
+    Source: Sobol' 1993; Homma and Saltelli 1996.
     """
     if len(inputs.names) == 1:
         alone = (variance > 0).astype(float)[None]
@@ -68,21 +77,21 @@ def variance_shares(model: RowModel, inputs: Inputs, net: Array, variance: Array
     location, scale = inputs.location[:, rows], inputs.scale[:, rows]
     everywhere = np.tile(net, inputs.count)
     base = {
-        name: (location[place] + scale[place] * inputs.shapes[place].standard_at(everywhere[place]))[None]
-        for place, name in enumerate(inputs.names)
+        name: (location[index] + scale[index] * inputs.shapes[index].standard_at(everywhere[index]))[None]
+        for index, name in enumerate(inputs.names)
     }
     first, total = np.empty(inputs.location.shape), np.empty(inputs.location.shape)
     size = np.where(variance > 0, variance, 1.0)
-    for place, name in enumerate(inputs.names):
-        nodes, weights = gauss_rule(inputs.shapes[place])
+    for index, name in enumerate(inputs.names):
+        nodes, weights = gauss_rule(inputs.shapes[index])
         weight = weights[:, None]
-        varied = location[place] + scale[place] * nodes[:, None]
+        varied = location[index] + scale[index] * nodes[:, None]
         output = model(base | {name: varied}, rows)
         output = output - output[:1]
         mean = (weight * output).sum(axis=0)
         inner = (weight * (output - mean) ** 2).sum(axis=0).reshape(inputs.count, points)
         by_node = output.reshape(_POINTS, inputs.count, points).mean(axis=2)
         centre = (weight * by_node).sum(axis=0)
-        first[place] = (weight * (by_node - centre) ** 2).sum(axis=0) / size
-        total[place] = inner.mean(axis=1) / size
+        first[index] = (weight * (by_node - centre) ** 2).sum(axis=0) / size
+        total[index] = inner.mean(axis=1) / size
     return np.clip(first, 0, 1), np.clip(total, 0, 1)

@@ -2,10 +2,12 @@
 
 Every input is a function of a standard normal score. Lines run parallel to the direction in which the output
 rises fastest at the median; a scrambled net places them in the directions across. Where a line passes an
-output y at the place t, the share Φ(−t) of the line lies above y: the mean over lines is P(Y > y).
+output y at the position t, the part Φ(−t) of the line lies above y: the mean over lines is P(Y > y).
 
-Koutsourelakis, Pradlwarter and Schuëller 2004 (line sampling); L'Ecuyer and others (conditional Monte Carlo
-with randomized quasi-Monte Carlo).
+Equation: P(Y > y) = E[Φ(−t(y))], the mean over lines of a net
+Valid: an output that only rises along every line; what keeps lines from a row is told by `FAULTS`.
+Source: Koutsourelakis, Pradlwarter and Schuëller 2004 (line sampling); L'Ecuyer and others (conditional Monte Carlo
+    with randomized quasi-Monte Carlo).
 """
 
 from __future__ import annotations
@@ -15,8 +17,9 @@ import numpy.typing as npt
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Normal
-from flexlash.tolerance.engine.line_direction import Inputs, LineDirection, RowModel, Rows, across
+from flexlash.tolerance.engine.line_direction import Indices, Inputs, LineDirection, RowModel, scores_across
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, Net
+from flexlash.tolerance.sampling import standard_error
 
 __all__ = ["FAR", "FAULTS", "NODES", "REACH", "STEP", "STEPS", "Lines"]
 
@@ -25,10 +28,10 @@ REACH = 8.3
 
 STEP = 0.5
 NODES = np.arange(-8.0, 8.0 + STEP / 2, STEP)
-"""Places on each line at which the model is tabulated."""
+"""Positions on each line at which the model is tabulated."""
 
 FAR = 8.5
-"""The place of a crossing that a line does not have: Φ(−FAR) is nothing beside 1."""
+"""The position of a crossing that a line does not have: Φ(−FAR) is nothing beside 1."""
 
 FAULTS = (
     "",
@@ -40,7 +43,6 @@ FAULTS = (
 """Why lines do not serve a row."""
 
 STEPS = len(FAULTS) - 1
-
 
 _PROBED = np.array([-2.0, -1.0, 1.0])
 """Nodes after which the model is looked at once more."""
@@ -69,11 +71,11 @@ _LONE = 4.0
 """A step along a line is a jump if it is this much greater than both its neighbours."""
 
 _FLAT, _HIGH = 1e-12, 0.05
-"""A line is flat where it rises less than the one part of its range, and has an edge where two places on it rises more
-than the other: limits that are approached smoothly take longer."""
+"""A line is flat where it rises less than the one part of its range, and has an edge where two positions on it rises
+more than the other: limits that are approached smoothly take longer."""
 
 _BEYOND = 2.0
-"""How much further from the mean lines beyond an evenly spaced row may be than its last."""
+"""How much further from the mean lines beyond an evenly spaced coordinate may be than its last."""
 
 _BLOCK = 1 << 15
 
@@ -81,37 +83,38 @@ _BLOCK = 1 << 15
 class Lines:
     """Lines through rows alike, tabulated at nodes: `table` (nodes, rows × lines) of outputs that only rise.
 
-    `lines` is the number per row, LINE_REPLICATES times a power of two. `faults` (rows,) holds 0, or the place in
-    `FAULTS` of what keeps line sampling from a row; what else is read of the lines holds for the other rows.
+    `lines` is the number per row, LINE_REPLICATES times a power of two. `faults` (rows,) holds 0, or the index in
+    `FAULTS` of what keeps line sampling from a row; what else is read of the lines holds for the other rows. `scale`
+    (rows,) is about the standard deviation of the output, `roughness` (rows,) how far the model lies off its table.
     """
 
-    def __init__(self, model: RowModel, inputs: Inputs, course: LineDirection, net: Net) -> None:
+    def __init__(self, model: RowModel, inputs: Inputs, direction: LineDirection, net: Net) -> None:
         self._model = model
         self.inputs = inputs
         self.rows = inputs.count
         self.lines = net.lines
         self._net = net
         self._row_of = np.repeat(np.arange(self.rows), self.lines)
-        self._origin = across(course, net.scores).reshape(len(inputs.names), -1)
-        self._direction = course.direction[:, self._row_of]
+        self._origin = scores_across(direction, net.scores).reshape(len(inputs.names), -1)
+        self._direction = direction.vector[:, self._row_of]
         self._location = inputs.location[:, self._row_of]
         self._scale = inputs.scale[:, self._row_of]
         self._far = np.abs(self._origin).max(axis=1) + FAR * np.abs(self._direction).max(axis=1) > REACH
-        for place, shape in enumerate(inputs.shapes):
+        for index, shape in enumerate(inputs.shapes):
             if shape.shape == Normal.shape:
-                self._origin[place] = self._location[place] + self._scale[place] * self._origin[place]
-                self._direction[place] *= self._scale[place]
-        found = self.outputs(np.concatenate([NODES, _PROBED + _ASIDE * STEP])[:, None])
-        table, probes = found[: len(NODES)], found[len(NODES) :]
-        self.faults = self._faults(course.direction, table, probes)
+                self._origin[index] = self._location[index] + self._scale[index] * self._origin[index]
+                self._direction[index] *= self._scale[index]
+        outputs = self.outputs(np.concatenate([NODES, _PROBED + _ASIDE * STEP])[:, None])
+        table, probes = outputs[: len(NODES)], outputs[len(NODES) :]
+        self.faults = self._faults(direction.vector, table, probes)
         self.table = table if (np.diff(table, axis=0) >= 0).all() else np.maximum.accumulate(table, axis=0)
         down, up = np.searchsorted(NODES, [-2.0, 2.0])
         self.scale = self.mean_over_lines(self.table[up : up + 1] - self.table[down : down + 1])[0] / 4
 
-    def _faults(self, direction: Array, table: Array, probes: Array) -> Rows:
-        """Return what keeps line sampling from each row, by its place in `FAULTS`."""
+    def _faults(self, vector: Array, table: Array, probes: Array) -> Indices:
+        """Return what keeps line sampling from each row, by its index in `FAULTS`."""
         step = np.diff(table, axis=0)
-        faults = np.where((direction != 0).any(axis=0), 0, 1)
+        faults = np.where((vector != 0).any(axis=0), 0, 1)
         if not (step.min() >= 0 and np.isfinite(probes).all()):
             # The usual table rises outright; only others are looked at more closely.
             finite = np.isfinite(table).all(axis=0) & np.isfinite(probes).all(axis=0)
@@ -141,32 +144,31 @@ class Lines:
         """Return whether every line (rows × lines,) of a row is sound."""
         return np.asarray(sound.reshape(self.rows, -1).all(axis=1))
 
-    def outputs(self, places: Array) -> Array:
-        """Return the outputs (k, rows × lines) at places (k, 1) or (k, rows × lines) along the lines."""
+    def outputs(self, positions: Array) -> Array:
+        """Return the outputs (k, rows × lines) at positions (k, 1) or (k, rows × lines) along the lines."""
         width = self._origin.shape[1]
-        output = np.empty((len(places), width))
-        step = max(_BLOCK // len(places), 1)
+        output = np.empty((len(positions), width))
+        step = max(_BLOCK // len(positions), 1)
         for start in range(0, width, step):
             block = slice(start, min(start + step, width))
-            here = places if places.shape[1] == 1 else places[:, block]
-            arguments = {}
-            for place, name in enumerate(self.inputs.names):
-                arguments[name] = self._values(place, here, block)
+            along = positions if positions.shape[1] == 1 else positions[:, block]
+            arguments = {name: self._values(index, along, block) for index, name in enumerate(self.inputs.names)}
             output[:, block] = self._model(arguments, self._row_of[block])
         return output
 
-    def _values(self, place: int, here: Array, block: slice) -> Array:
-        """Return an input at places along some lines; that of a normal is a straight line itself."""
-        found = self._direction[place, block] * here
-        found += self._origin[place, block]
-        location, scale = self._location[place, block], self._scale[place, block]
-        if self.inputs.shapes[place].shape == Normal.shape:
-            if self._far[place]:
-                np.minimum(np.maximum(found, location - REACH * scale, out=found), location + REACH * scale, out=found)
-            return found
-        found = self.inputs.shapes[place].standard_at(found) * scale
-        found += location
-        return found
+    def _values(self, index: int, along: Array, block: slice) -> Array:
+        """Return an input at positions along some lines; that of a normal is a straight line itself."""
+        values = self._direction[index, block] * along
+        values += self._origin[index, block]
+        location, scale = self._location[index, block], self._scale[index, block]
+        if self.inputs.shapes[index].shape == Normal.shape:
+            if self._far[index]:
+                low, high = location - REACH * scale, location + REACH * scale
+                np.minimum(np.maximum(values, low, out=values), high, out=values)
+            return values
+        values = self.inputs.shapes[index].standard_at(values) * scale
+        values += location
+        return values
 
     @property
     def bounds(self) -> tuple[Array, Array]:
@@ -188,23 +190,27 @@ class Lines:
         weighted = values.reshape(-1, self.rows, self.lines) * self._net.weights
         return np.asarray(np.add.reduce(weighted.reshape(len(weighted), self.rows, LINE_REPLICATES, -1), axis=3))
 
+    def standard_error(self, values: Array) -> Array:
+        """Return the standard errors (k, rows) of the means over lines of values (k, rows × lines)."""
+        return standard_error(self.replicate_means(values)) + self.left_out(values)
+
     def left_out(self, values: Array) -> Array:
-        """Return how far means (k, rows) of values may be off for want of lines beyond an evenly spaced row."""
-        if not self._net.row:
+        """Return how far means (k, rows) of values may be off for want of lines beyond an evenly spaced coordinate."""
+        spaced = self._net.spaced
+        if not spaced:
             return np.zeros((len(values), self.rows))
         mean = self.mean_over_lines(values)
-        by_place = values.reshape(
-            -1,
-            self.rows,
-            LINE_REPLICATES,
-            self._net.row,
-            values.shape[1] // (self.rows * LINE_REPLICATES * self._net.row),
+        by_point = values.reshape(
+            -1, self.rows, LINE_REPLICATES, spaced, values.shape[1] // (self.rows * LINE_REPLICATES * spaced)
         )
-        first, last = (by_place[:, :, :, end].mean(axis=(2, 3)) for end in (0, -1))
+        first, last = (by_point[:, :, :, end].mean(axis=(2, 3)) for end in (0, -1))
         return np.asarray(_BEYOND * self._net.beyond * (np.abs(first - mean) + np.abs(last - mean)))
 
-    def places(self, outputs: Array) -> tuple[Array, Array]:
-        """Return where lines pass outputs (k, rows × lines), and their slopes there, by cubics through the table."""
+    def crossings(self, outputs: Array) -> tuple[Array, Array]:
+        """Return the positions where lines cross outputs (k, rows × lines), and their slopes there.
+
+        Both are (k, rows × lines), by cubics through the table; beyond it the position is ±FAR.
+        """
         table, width = self.table, self.table.shape[1]
         passed = np.zeros(outputs.shape, dtype=np.int8)
         for node in table:
@@ -221,18 +227,18 @@ class Lines:
         secant = np.where(secant > 0, secant, 1.0)
         bend, twist = third - 2 * second + first, (fourth - 3 * third + 3 * second - first) / 3
         rise = second - first
-        place = low + (outputs - below) / secant
+        part = low + (outputs - below) / secant
         for _ in range(2):
-            value = first + place * (rise + (place - 1) / 2 * (bend + (place - 2) * twist))
-            place = place + (outputs - value) / _slope(place, rise, bend, twist, secant)
-            place = np.minimum(np.maximum(place, low), low + 1)
-        slope = _slope(place, rise, bend, twist, secant) / STEP
-        found = NODES[0] + STEP * (base + place)
+            value = first + part * (rise + (part - 1) / 2 * (bend + (part - 2) * twist))
+            part = part + (outputs - value) / _slope(part, rise, bend, twist, secant)
+            part = np.minimum(np.maximum(part, low), low + 1)
+        slope = _slope(part, rise, bend, twist, secant) / STEP
+        position = NODES[0] + STEP * (base + part)
         outside = np.where(passed == 0, -FAR, FAR)
-        return np.where(inside, found, outside), slope
+        return np.where(inside, position, outside), slope
 
 
-def _slope(place: Array, rise: Array, bend: Array, twist: Array, secant: Array) -> Array:
+def _slope(part: Array, rise: Array, bend: Array, twist: Array, secant: Array) -> Array:
     """Return the slopes of cubics through four values a unit apart, no less than a tenth of the secant's."""
-    slope = rise + (place - 0.5) * bend + (1.5 * place * place - 3 * place + 1) * twist
+    slope = rise + (part - 0.5) * bend + (1.5 * part * part - 3 * part + 1) * twist
     return np.maximum(slope, 0.1 * secant)

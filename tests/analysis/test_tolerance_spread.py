@@ -1,0 +1,103 @@
+"""Rows spread here or in worker processes: the same bits, and no more workers than they are worth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from b3_160 import CUP, NOMINAL
+from toleranced import every_number, plan, row, statistics_of_row
+from unlike_rows import LINES, ROWS
+from worker_tasks import fail
+
+from flexlash import workers
+from flexlash.analysis import tolerance_spread
+from flexlash.analysis.tolerance_spread import row_curves, row_statistics
+from flexlash.tolerance.dimension_limits import Limits
+
+
+def _statistics(sampling=LINES, *, jobs=1):
+    """Return what is told of every row in the order of the rows."""
+    statistics = dict(row_statistics(ROWS, sampling, jobs))
+    assert sorted(statistics) == list(range(len(ROWS)))
+    return [every_number(statistics[index]) for index in range(len(ROWS))]
+
+
+@pytest.fixture(scope="module")
+def here():
+    """Return what is told of every row, computed in this process."""
+    return _statistics()
+
+
+def test_every_index_is_yielded_once_with_its_own_row(here):
+    """Every row's index is yielded once, with the statistics that the row has alone."""
+    assert len([*row_statistics(ROWS, LINES, 1)]) == len(ROWS)
+    assert here == [every_number(statistics_of_row(each, LINES)) for each in ROWS]
+
+
+def test_no_worker_is_started_where_rows_or_jobs_are_few(here, monkeypatch):
+    """Rows fewer than a worker is worth start none whatever jobs says, and one job none however many they are."""
+    monkeypatch.setattr(workers, "started", None)
+    assert _statistics(jobs=8) == here
+    monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 1)
+    assert _statistics(jobs=1) == here
+
+
+@pytest.mark.parametrize(
+    "sampling", [LINES, plan("sobol", 256, 3), plan("line", 64, 3, coverage=0.9, cross_check=True)]
+)
+def test_worker_processes_give_the_same_bits(monkeypatch, sampling):
+    """Two worker processes give every row the bits that it has here."""
+    monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 1)
+    asked = []
+    start = workers.started
+    monkeypatch.setattr(workers, "started", lambda count: asked.append(count) or start(count))
+    elsewhere = _statistics(sampling, jobs=2)
+    assert asked == [2]
+    assert elsewhere == _statistics(sampling)
+
+
+def test_workers_are_no_more_than_are_worth_it(monkeypatch):
+    """There are as many workers as jobs allow and rows are worth, and no more."""
+    asked = []
+
+    def refuse(count):
+        asked.append(count)
+        raise OSError
+
+    monkeypatch.setattr(workers, "started", refuse)
+    monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 7)
+    for jobs in (2, 3, 8):
+        list(row_statistics(ROWS, plan("sobol", 16), jobs))
+    assert asked == [2, 3, 3]
+
+
+def test_any_other_fault_of_a_worker_is_told(monkeypatch):
+    """A defect of the model in a worker is raised, not computed again."""
+    monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 1)
+    with pytest.raises(ValueError, match="the model failed"):
+        list(row_statistics([replace(each, model=fail) for each in ROWS], LINES, 2))
+
+
+def test_no_rows_give_nothing():
+    """Without rows nothing is yielded and nothing is started."""
+    assert list(row_statistics([], LINES, 4)) == []
+
+
+def test_workers_and_neighbours_change_no_bit_of_a_curve():
+    """A row's curve has the same bits in a worker process, alone, and among other rows."""
+    limits = {
+        "cylinder_length": Limits(low=0.1598, high=0.1602, distribution="uniform"),
+        "wall_thickness": Limits(low=0.00155, high=0.00165),
+    }
+    sampling = plan("sobol", 2**17, 3)
+    rows = [
+        (each, statistics_of_row(each, sampling))
+        for each in (row(CUP, NOMINAL, limits, 1.08e-3), row(CUP, NOMINAL, limits))
+    ]
+    here = list(row_curves(rows, sampling, 1))
+    there = list(row_curves(rows[::-1], sampling, 2))[::-1]
+    for one, other in zip(here, there, strict=True):
+        for name, values in vars(one).items():
+            assert np.array_equal(values, getattr(other, name))
