@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from functools import partial
+from functools import cache, partial
+from itertools import chain
 
 import numpy as np
 import pytest
@@ -63,69 +64,59 @@ def rows_alike(nominal, count, seed=0):
     return rows
 
 
-SEVEN, FIFTEEN = rows_alike(CUP, 30), rows_alike(DETAILED, 12)
-DRAWINGS = {
+ROWS = {"seven": rows_alike(CUP, 20), "fifteen": rows_alike(DETAILED, 8, seed=1)}
+PLANS = {
     "lines as needed": LINES,
     "64 lines": plan("line", 64, 1),
-    "1024 lines": plan("line", 1024, 2, coverage=0.9),
+    "512 lines": plan("line", 512, 2, coverage=0.9),
     "sobol": plan("sobol", 512, 3),
     "random": plan("random", 512, 4),
 }
 
 
-@pytest.fixture(scope="module", params=[(rows, name) for rows in ("seven", "fifteen") for name in DRAWINGS], ids=str)
-def together(request):
-    """Return rows alike, how they are drawn, and what is told of each when they are spread together."""
-    rows, name = request.param
-    alike, draws = SEVEN if rows == "seven" else FIFTEEN, DRAWINGS[name]
-    return alike, draws, [every_number(one) for one in batch_statistics(alike, draws)]
+@cache
+def together(rows, sampling):
+    """Return the statistics of rows alike that are spread together."""
+    return batch_statistics(ROWS[rows], PLANS[sampling])
 
 
-def test_a_row_alone_has_the_same_bits(together):
-    """Every statistic, share, curve and height of a row alone is, to the last bit, that beside other rows."""
-    alike, draws, every = together
-    assert [every_number(statistics_of_row(each, draws)) for each in alike] == every
+def told(statistics):
+    """Return everything that is told of rows."""
+    return [every_number(each) for each in statistics]
 
 
-@pytest.mark.parametrize("seed", [1, 2])
-def test_shuffled_rows_have_the_same_bits(together, seed):
-    """Rows in another order keep every bit."""
-    alike, draws, every = together
-    order = np.random.default_rng(seed).permutation(len(alike))
-    shuffled = batch_statistics([alike[place] for place in order], draws)
-    assert [every_number(one) for one in shuffled] == [every[place] for place in order]
+@pytest.mark.parametrize("sampling", PLANS)
+@pytest.mark.parametrize("rows", ROWS)
+def test_any_batch_and_any_order_give_the_same_bits(rows, sampling):
+    """Every number of a row alone, and in another order in batches of 2 or 7, is to the last bit that beside others."""
+    alike, every = ROWS[rows], told(together(rows, sampling))
+    for size in (1, 2, 7):
+        order = np.random.default_rng(size).permutation(len(alike))
+        batches = (order[start : start + size] for start in range(0, len(alike), size))
+        found = [batch_statistics([alike[index] for index in batch], PLANS[sampling]) for batch in batches]
+        assert told(chain.from_iterable(found)) == [every[index] for index in order], size
 
 
-@pytest.mark.parametrize("size", [2, 3, 7, 16])
-def test_rows_in_any_batch_have_the_same_bits(together, size):
-    """Rows cut into batches of any size keep every bit."""
-    alike, draws, every = together
-    found = []
-    for start in range(0, len(alike), size):
-        found += batch_statistics(alike[start : start + size], draws)
-    assert [every_number(one) for one in found] == every
-
-
-@pytest.mark.parametrize("block", [1, 10_000, 1 << 22])
-def test_the_block_of_the_cache_changes_no_bit(monkeypatch, block):
+def test_the_block_of_the_cache_changes_no_bit(monkeypatch):
     """However many rows the cache takes at once, every bit stays."""
-    every = [every_number(one) for one in batch_statistics(SEVEN, LINES)]
-    monkeypatch.setattr("flexlash.tolerance.engine.line_statistics._BLOCK", block)
-    assert [every_number(one) for one in batch_statistics(SEVEN, LINES)] == every
+    every = told(together("seven", "lines as needed"))
+    for block in (1, 10_000, 1 << 22):
+        monkeypatch.setattr("flexlash.tolerance.engine.line_statistics._BLOCK", block)
+        assert told(batch_statistics(ROWS["seven"], LINES)) == every, block
 
 
 def test_the_rows_differ_in_how_many_lines_they_take():
     """The rows above take from few to many lines, so that the claims on bits cover rows drawn again."""
-    for alike in (SEVEN, FIFTEEN):
-        numbers = {one.numbers["spread_points"] for one in batch_statistics(alike, LINES)}
+    for rows in ROWS:
+        numbers = {each.numbers["spread_points"] for each in together(rows, "lines as needed")}
         assert len(numbers) >= 4
         assert all(math.log2(number).is_integer() and 64 <= number <= MOST_LINES for number in numbers)
 
 
 def test_every_row_has_the_precision_that_was_wanted():
     """Each row's percentiles are known to 0.001 sd and its share over the limit to 5 %, or a note says what is."""
-    every = [*batch_statistics(SEVEN, LINES), *batch_statistics(FIFTEEN, LINES)]
-    for toleranced, one in zip((*SEVEN, *FIFTEEN), every, strict=True):
+    every = [statistics for rows in ROWS for statistics in together(rows, "lines as needed")]
+    for toleranced, one in zip(chain.from_iterable(ROWS.values()), every, strict=True):
         found = one.numbers
         reached = max(found[f"{name}_standard_error"] for name in ("p0_135", "p2_5", "p50", "p97_5", "p99_865"))
         if reached > 1.1e-3 * found["sd"]:
@@ -142,8 +133,8 @@ def test_every_row_has_the_precision_that_was_wanted():
 
 def test_lines_of_many_rows_agree_with_plain_monte_carlo():
     """Each of many rows agrees with plain Monte Carlo in every statistic within 4.5 combined standard errors."""
-    plain = batch_statistics(SEVEN, plan("random", 2**16, 7))
-    for toleranced, line, other in zip(SEVEN, batch_statistics(SEVEN, LINES), plain, strict=True):
+    plain = batch_statistics(ROWS["seven"], plan("random", 2**16, 7))
+    for toleranced, line, other in zip(ROWS["seven"], together("seven", "lines as needed"), plain, strict=True):
         for name in (*PERCENTILES, "mean", "sd", "skewness"):
             error = math.hypot(line.numbers[f"{name}_standard_error"], other.numbers[f"{name}_standard_error"])
             # One in 50 runs of 300 comparisons has one beyond four.
@@ -260,7 +251,7 @@ def test_the_fallback_takes_as_many_points_as_were_asked_for_lines():
     assert found.numbers["spread_points"] == 2**15
 
 
-def test_many_lines_that_do_not_suffice_are_every_number():
+def test_many_lines_that_do_not_suffice_are_told():
     """Where the greatest number of lines does not give the precision wanted, the note says which was reached."""
     limits = {name: Limits(low=-3.0, high=3.0) for name in list(DETAILED)[:12]}
     names = list(limits)
