@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from flexlash.analysis.recommendations import recommendations_of
 from flexlash.pipeline import run
 
 TOLERANCES = {"wall_thickness": 0.05, "disk_inner_radius": 0.3, "youngs_modulus": 3.0, "poisson_ratio": 0.01}
@@ -26,9 +27,13 @@ def deviations(tmp_path):
     return write
 
 
+def _recommendations(outcome):
+    return recommendations_of(outcome.computed, outcome.settings)
+
+
 def _only(outcome):
-    (remedy,) = outcome.remedies
-    return remedy
+    (recommendation,) = _recommendations(outcome)
+    return recommendation
 
 
 @pytest.mark.parametrize("place", [0, 1], ids=["main contributor", "all"])
@@ -112,11 +117,13 @@ CHOICES = {
 
 
 @pytest.mark.parametrize("case", CHOICES)
-def test_the_worst_and_the_worst_that_can_be_helped_get_a_remedy(table, sound, case):
-    """The worst failing variant gets a remedy; where its median is over the limit, so does the worst other one."""
+def test_the_worst_and_the_worst_that_can_be_helped_get_a_recommendation(table, sound, case):
+    """The worst failing variant gets a recommendation; where its median is over the limit, the worst other one, too."""
     limits, expected = CHOICES[case]
     rows = [{**sound, "variant": f"v{place}", "backlash_limit_arcmin": limit} for place, limit in enumerate(limits)]
-    found = [(remedy.variant, bool(remedy.halvings)) for remedy in run(table(rows)).remedies]
+    found = [
+        (recommendation.variant, bool(recommendation.halvings)) for recommendation in _recommendations(run(table(rows)))
+    ]
     assert found == expected
 
 
@@ -126,7 +133,7 @@ def test_what_does_not_scatter_cannot_be_tightened(table, sound, tmp_path):
     tolerances.write_text(
         "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n", encoding="utf-8"
     )
-    remedy = _only(run(table([{**sound, "backlash_limit_arcmin": 3.6}]), tolerances=tolerances))
-    assert remedy.halvings == ()
-    assert remedy.levers
-    assert remedy.thickening.wanted > 1.6e-3
+    recommendation = _only(run(table([{**sound, "backlash_limit_arcmin": 3.6}]), tolerances=tolerances))
+    assert recommendation.halvings == ()
+    assert recommendation.levers
+    assert recommendation.thickening.wanted > 1.6e-3

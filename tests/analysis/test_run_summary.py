@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import polars as pl
 import pytest
@@ -31,10 +32,8 @@ def test_cells_are_drawn_together():
 
 def _replaced(outcome, **columns):
     """Return the outcome with some Results columns replaced."""
-    outcome.results = outcome.results.with_columns(
-        *(pl.Series(name, values, dtype=outcome.results.schema[name]) for name, values in columns.items())
-    )
-    return outcome
+    series = [pl.Series(name, values, dtype=outcome.results.schema[name]) for name, values in columns.items()]
+    return replace(outcome, results=outcome.results.with_columns(series))
 
 
 @pytest.fixture
@@ -74,9 +73,9 @@ def test_notes_name_the_first_row_and_count_the_others(three):
     """A note on the spread is told for the first row that has one, with the number of others that have one too."""
     one = list(spread_notes(_replaced(three, spread_note=[None, "why", None])))
     assert one[0] == "Spread of “v1”: why."
-    two = list(spread_notes(_replaced(three, spread_note=["because", "why", None])))
-    assert two[0] == "Spread of “v0”: because and 1 more, see Results."
-    assert "Spread of “v0”: because and 1 more, see Results." in list(summary_lines(three, "x.csv", ran=True))
+    noted = _replaced(three, spread_note=["because", "why", None])
+    assert next(spread_notes(noted)) == "Spread of “v0”: because and 1 more, see Results."
+    assert "Spread of “v0”: because and 1 more, see Results." in list(summary_lines(noted, "x.csv", ran=True))
 
 
 def test_cross_check_is_told(three):
@@ -140,7 +139,7 @@ def test_what_could_not_be_read_has_no_marked_copy(tmp_path, content):
     path.write_bytes(content)
     outcome = check(path, marked_copy=tmp_path / "broken-checked.xlsx")
     lines = list(summary_lines(outcome, "broken.xlsx", ran=False))
-    assert lines[1] == f"Findings alone, since your file itself could not be marked: {outcome.marked_copy}"
+    assert lines[1] == f"Findings alone, since your file itself could not be marked: {outcome.written.marked_copy}"
 
 
 def test_what_was_marked_is_a_marked_copy(table, sound, tmp_path):

@@ -9,13 +9,16 @@ import polars as pl
 import pytest
 import regenerate
 
-from flexlash import pipeline
 from flexlash.analysis import verification
+from flexlash.analysis.examination import Examined
+from flexlash.analysis.options import Options
 from flexlash.cli import cli
 from flexlash.mechanics import elasticity
 from flexlash.mechanics.elasticity import MISSING
 from flexlash.mechanics.elasticity.twist import ElasticityCheck
 from flexlash.pipeline import run
+from flexlash.reading.raw import Submission
+from flexlash.report import report_data
 from flexlash.schema.result_columns import ELASTICITY, RESULTS
 
 pytest.importorskip("skfem", reason="scikit-fem is not installed here")
@@ -141,7 +144,7 @@ def test_calibration_has_no_part_in_the_difference(workbook, sound):
     scaled = _rows(outcome)[sound["variant"]]
     assert [scaled[key] for key in keys[:3]] == pytest.approx([plain[key] for key in keys[:3]], rel=1e-9)
     assert scaled["windup_rad"] < 0.9 * plain["windup_rad"]
-    assert outcome.findings == []
+    assert outcome.findings == ()
 
 
 @pytest.mark.parametrize(("torque", "told"), [(8500, False), (9800, True)])
@@ -231,12 +234,16 @@ def test_progress_counts_spread_and_check(table, sound):
 
 def test_only_the_worst_are_pictured_and_only_in_a_report(table, sound, tmp_path, monkeypatch):
     """The report pictures the worst few; the other forms and a run without output solve nothing twice."""
-    monkeypatch.setattr(pipeline, "PICTURED", 2)
+    monkeypatch.setattr(report_data, "PICTURED", 2)
     rows = [{**sound, "variant": f"T {torque}", "torque_Nm": torque} for torque in (500, 800, 700)]
     path = table(rows)
-    assert list(run(path, tmp_path / "r.xlsx", elasticity=True, **QUICK).pictured) == ["T 800", "T 700"]
-    assert run(path, tmp_path / "r.csv", elasticity=True, **QUICK).pictured == {}
-    assert run(path, elasticity=True, **QUICK).pictured == {}
+    asked = []
+    solve = verification.pictured
+    monkeypatch.setattr(verification, "pictured", lambda worst: asked.append(worst) or solve(worst))
+    run(path, tmp_path / "r.xlsx", elasticity=True, **QUICK)
+    run(path, tmp_path / "r.csv", elasticity=True, **QUICK)
+    run(path, elasticity=True, **QUICK)
+    assert [[one.variant.name for one in worst] for worst in asked] == [["T 800", "T 700"]]
     assert pl.read_csv(tmp_path / "r.csv")["elasticity_windup_rad"].null_count() == 0
 
 
@@ -255,7 +262,7 @@ def test_absent_libraries_are_named_before_anything_is_read(table, sound, tmp_pa
     with pytest.raises(ModuleNotFoundError, match="pip install 'flexlash\\[elasticity\\]'"):
         run(path, tmp_path / "report.xlsx", elasticity=True)
     with pytest.raises(ModuleNotFoundError, match="scikit-fem"):
-        verification.verified(None, {}, jobs=1)
+        verification.verified_by_elasticity(Examined(submission=Submission(name="", sha256="", kind="csv")), Options())
     from click.testing import CliRunner
 
     shown = CliRunner().invoke(cli, ["run", str(path), "--elasticity"])

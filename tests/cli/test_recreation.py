@@ -115,7 +115,7 @@ def test_the_report_is_made_anew_to_the_byte(what, tmp_path, sound):
     assert (tmp_path / "anew.xlsx").read_bytes() == (tmp_path / "original.xlsx").read_bytes()
     assert found.different == 0
     assert found.numbers > 30
-    assert found.outcome.outputs == [tmp_path / f"{path.stem}-recreated.xlsx", tmp_path / "anew.xlsx"]
+    assert found.outcome.outputs == (tmp_path / f"{path.stem}-recreated.xlsx", tmp_path / "anew.xlsx")
     kept = {key: value for key, value in options.items() if key not in {"tolerances", "materials"}}
     again = run(found.outcome.outputs[0], **kept)
     numbers = [name for name in original.results.columns if name not in {"findings", "status"}]

@@ -66,16 +66,16 @@ CODES = {"fine": 0, "partly": 3, "nothing": 4, "refused": 4, "missing": 5, "fail
 @pytest.fixture
 def _fails(monkeypatch):
     """Let the submission failing.csv meet an internal error."""
-    from flexlash.analysis import examination
+    from flexlash.validation import validate as validation
 
-    validate = examination.validate
+    validate = validation.validate
 
     def failing(submission, limits):
         if submission.name == "failing.csv":
             raise ZeroDivisionError("secret")
         return validate(submission, limits)
 
-    monkeypatch.setattr(examination, "validate", failing)
+    monkeypatch.setattr(validation, "validate", failing)
 
 
 @pytest.mark.usefixtures("_fails")
@@ -163,14 +163,14 @@ def test_whatever_happens_to_one_the_others_are_computed(table, sound, tmp_path,
     paths = [table([sound], f"{name}.csv") for name in "abc"]
     from flexlash import pipeline
 
-    spread = pipeline._spread
+    examined = pipeline.examined
 
-    def failing(outcome, options):
-        if outcome.submission.name == "b.csv":
+    def failing(source, options):
+        if source.name == "b.csv":
             raise fault
-        spread(outcome, options)
+        return examined(source, options)
 
-    monkeypatch.setattr(pipeline, "_spread", failing)
+    monkeypatch.setattr(pipeline, "examined", failing)
     done = _call("run", "--samples", 64, *paths)
     assert done.exit_code == 1
     assert [line for line in done.stderr.splitlines() if "Internal error" in line] == [

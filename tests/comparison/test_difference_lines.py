@@ -8,16 +8,13 @@ from flexlash.comparison.difference import Change, Difference, Differing
 from flexlash.comparison.difference_lines import comparison_line, difference_lines
 from flexlash.comparison.sides import Name, Side
 from flexlash.reading.raw import Submission
-from flexlash.validation.ledger import Ledger
-from flexlash.validation.validate import Validated
+from flexlash.validation.validated import Validated
 
 
 def _side(file, *, is_report=True, version="1", **run_with):
     submission = Submission(name=file, sha256="", kind="csv", run_with=run_with if is_report else None)
     results = {} if is_report else None
-    return Side(
-        file=file, submission=submission, validated=Validated(ledger=Ledger("")), results=results, version=version
-    )
+    return Side(file=file, submission=submission, validated=Validated(), results=results, version=version)
 
 
 def _lines(variants=(), common=3, removed=(), added=(), *, reports=True, new=None, **options):

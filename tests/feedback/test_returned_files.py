@@ -36,8 +36,8 @@ def test_a_run_with_findings_marks_the_submission(workbook, sound, tmp_path):
     """Guilty cells and no others are coloured and noted in a copy of the engineer's own file; the rest is computed."""
     path = workbook([sound, {**sound, "variant": "B", "wall_thickness_mm": "1,6 mm"}])
     outcome = run(path, tmp_path / "out.xlsx", marked_copy=tmp_path / "copy.xlsx")
-    assert outcome.outputs == [tmp_path / "out.xlsx", tmp_path / "copy.xlsx"]
-    assert outcome.marked_copy == tmp_path / "copy.xlsx"
+    assert outcome.outputs == (tmp_path / "out.xlsx", tmp_path / "copy.xlsx")
+    assert outcome.written.marked_copy == tmp_path / "copy.xlsx"
     assert _coloured(tmp_path / "copy.xlsx") == {"H6"}
     note = openpyxl.load_workbook(tmp_path / "copy.xlsx")["Variants"]["H6"].comment.text
     assert "E202" in note
@@ -48,7 +48,7 @@ def test_without_errors_and_warnings_no_copy(workbook, sound, tmp_path):
     """What was merely converted or assumed needs no marked copy."""
     outcome = check(workbook([{**sound, "variant": " B3-160 "}]), marked_copy=tmp_path / "copy.xlsx")
     assert [found.level for found in outcome.findings] == ["info"]
-    assert outcome.outputs == []
+    assert outcome.outputs == ()
     assert not (tmp_path / "copy.xlsx").exists()
 
 
@@ -75,7 +75,7 @@ def test_what_cannot_be_marked_gets_its_findings_alone(workbook, sound, tmp_path
     assert _titles(tmp_path / "copy.xlsx") == ["Findings"]
     assert "to be marked" in _text(tmp_path / "copy.xlsx")
     assert "E201" in _text(tmp_path / "copy.xlsx")
-    assert outcome.outputs == [tmp_path / "copy.xlsx"]
+    assert outcome.outputs == (tmp_path / "copy.xlsx",)
 
 
 @pytest.mark.parametrize("kind", ["csv", "parquet"])
@@ -121,7 +121,7 @@ def test_certain_repairs_are_made_and_listed(workbook, sound, tmp_path):
     assert path.read_bytes() == before
     assert [(one.place, one.value) for one in repairs] == [("Variants!H5", 1.6), ("Variants!V6", "standard")]
     assert [(found.code, found.cell) for found in outcome.findings] == [("E202", "D7")]
-    assert outcome.outputs == [tmp_path / "new.xlsx"]
+    assert outcome.outputs == (tmp_path / "new.xlsx",)
     counts = check(tmp_path / "new.xlsx").counts
     assert [counts[one] for one in ("rows", "computed", "errors", "warnings")] == [3, 2, 1, 0]
     assert "Variants!H5" in _text(tmp_path / "new.xlsx", "Fixes")
@@ -139,7 +139,7 @@ def test_one_repair_uncovers_another(table, sound, tmp_path):
 def test_nothing_to_mend_writes_nothing(table, sound, tmp_path):
     """Without a certain repair no file is written."""
     outcome, repairs = mend(table([{**sound, "torque_Nm": None}]), tmp_path / "new.csv")
-    assert (repairs, outcome.outputs) == ([], [])
+    assert (repairs, outcome.outputs) == ([], ())
     assert not (tmp_path / "new.csv").exists()
 
 
@@ -196,16 +196,16 @@ def test_work_saved_in_a_marked_copy_is_never_overwritten(workbook, sound, tmp_p
     """A marked copy that somebody has saved since keeps its place, and the next one gets a number."""
     path = workbook([{**sound, "torque_Nm": None}])
     copy = tmp_path / "copy.xlsx"
-    assert check(path, marked_copy=copy).outputs == [copy]
-    assert check(path, marked_copy=copy).outputs == [copy]
+    assert check(path, marked_copy=copy).outputs == (copy,)
+    assert check(path, marked_copy=copy).outputs == (copy,)
     book = openpyxl.load_workbook(copy)
     book["Variants"]["D5"] = 800
     book.save(copy)
     outcome = check(path, marked_copy=copy)
-    assert outcome.marked_copy == tmp_path / "copy (2).xlsx"
-    assert outcome.remarks == [
-        f"{copy} was left alone: flexlash did not write it, or somebody has changed it. Written instead: copy (2).xlsx"
-    ]
+    assert outcome.written.marked_copy == tmp_path / "copy (2).xlsx"
+    assert outcome.remarks == (
+        f"{copy} was left alone: flexlash did not write it, or somebody has changed it. Written instead: copy (2).xlsx",
+    )
     assert openpyxl.load_workbook(copy)["Variants"]["D5"].value == 800
     assert check(copy, marked_copies=True).exit_code == 0
 
@@ -216,7 +216,7 @@ def test_a_mended_file_does_not_replace_another(table, sound, tmp_path):
     target = tmp_path / "new.csv"
     target.write_text("mine", encoding="utf-8")
     for _ in range(2):
-        assert mend(path, target)[0].outputs == [tmp_path / "new (2).csv"]
+        assert mend(path, target)[0].outputs == (tmp_path / "new (2).csv",)
     assert target.read_text(encoding="utf-8") == "mine"
 
 
@@ -267,4 +267,4 @@ def test_a_formula_is_left_to_its_author(workbook, sound, tmp_path):
     path.write_bytes(packed(parts))
     outcome, repairs = mend(path, tmp_path / "new.xlsx")
     assert [(found.code, found.cell, found.suggestion) for found in outcome.findings] == [("E202", "H5", "1.6")]
-    assert (repairs, outcome.outputs) == ([], [])
+    assert (repairs, outcome.outputs) == ([], ())

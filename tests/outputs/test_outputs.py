@@ -385,7 +385,7 @@ def test_work_in_a_report_is_kept(tmp_path, table, sound):
     theirs = _worked_in(report)
     for _ in range(2):
         outcome = run(path, report, **FEW)
-        assert outcome.outputs == [tmp_path / "submission-report (2).xlsx"]
+        assert outcome.outputs == (tmp_path / "submission-report (2).xlsx",)
         assert "was left alone" in outcome.remarks[0]
     assert report.read_bytes() == theirs
 
@@ -394,12 +394,12 @@ def test_a_csv_is_replaced_only_by_name_and_header(tmp_path, table, sound):
     """A table has no stamp: it gives way where -o names it and its header row is that of Results."""
     path, target = table([sound]), tmp_path / "out.csv"
     for _ in range(2):
-        assert run(path, target, **FEW).outputs == [target]
+        assert run(path, target, **FEW).outputs == (target,)
     own = target.read_text(encoding="utf-8")
     target.write_text(own.replace(",", ";"), encoding="utf-8")
-    assert run(path, target, **FEW).outputs == [tmp_path / "out (2).csv"]
-    assert run(path, target, **FEW).outputs == [tmp_path / "out (2).csv"], "the same bytes need no number"
-    assert run(path, target, samples=32, method="random").outputs == [tmp_path / "out (3).csv"], "nobody named (2)"
+    assert run(path, target, **FEW).outputs == (tmp_path / "out (2).csv",)
+    assert run(path, target, **FEW).outputs == (tmp_path / "out (2).csv",), "the same bytes need no number"
+    assert run(path, target, samples=32, method="random").outputs == (tmp_path / "out (3).csv",), "nobody named (2)"
     assert target.read_text(encoding="utf-8") == own.replace(",", ";")
 
 
@@ -407,7 +407,7 @@ def test_own_columns_keep_a_csv_ours(tmp_path, table, sound):
     """Further columns behind those of Results do not make a table foreign."""
     path = table([{**sound, "Drawing": "D-17"}])
     for _ in range(2):
-        assert run(path, tmp_path / "out.csv", **FEW).outputs == [tmp_path / "out.csv"]
+        assert run(path, tmp_path / "out.csv", **FEW).outputs == (tmp_path / "out.csv",)
 
 
 def test_json_is_one_object_with_a_stamp(tmp_path, table, sound):
@@ -718,7 +718,7 @@ def test_what_cannot_be_written_is_said_before_computing(what, tmp_path, table, 
     def fail(*_):
         raise AssertionError("computed nevertheless")
 
-    monkeypatch.setattr("flexlash.pipeline._examined", fail)
+    monkeypatch.setattr("flexlash.pipeline.examined", fail)
     with pytest.raises(OSError, match=words) as caught:
         run(path, target)
     assert caught.value.filename == str(target)
@@ -822,7 +822,7 @@ def test_the_next_run_removes_what_a_killed_one_left(sign, tmp_path, table, soun
         process.send_signal(getattr(signal, sign))
         process.wait()
     assert len(_leftovers(tmp_path)) == 1
-    assert run(path, tmp_path / "out.xlsx", **FEW).outputs == [tmp_path / "out.xlsx"]
+    assert run(path, tmp_path / "out.xlsx", **FEW).outputs == (tmp_path / "out.xlsx",)
     assert _leftovers(tmp_path) == []
 
 

@@ -384,7 +384,7 @@ def test_calibration_reproduces_the_finite_elements():
     assert row["cylinder_windup_rad"] == pytest.approx(2.78e-4, rel=1e-3)
     assert row["disk_windup_rad"] == pytest.approx(2.15e-4, rel=1e-3)
     assert row["backlash_rad"] == pytest.approx(9.86e-4, rel=1e-3)
-    assert outcome.findings == []
+    assert outcome.findings == ()
     (computed,) = outcome.computed.values()
     shares = computed.spread.shares
     # Three per cent at three sigma of 4/7 and 3/7 of the backlash, against two of Young's modulus.

@@ -96,7 +96,7 @@ def row(request, submitted):
 def test_submission_is_accepted(submitted):
     """The reference and its tolerance class give no finding."""
     for outcome in submitted.values():
-        assert outcome.findings == []
+        assert outcome.findings == ()
         assert outcome.results["status"].to_list() == ["ok"]
 
 

@@ -19,7 +19,7 @@ from flexlash.report.compare.compared import COMPARED_NOTE, compared_variants
 from flexlash.report.compare.contributions_sheet import write_contributions
 from flexlash.report.compare.ranking_sheet import write_ranking
 from flexlash.report.layout.styles import Book
-from flexlash.report.selection import drawn_variants
+from flexlash.report.report_data import drawn_variants
 
 AROUND = "Spread around the median of each variant"
 

@@ -8,7 +8,7 @@ from scipy.special import ndtri
 
 from flexlash.pipeline import run
 from flexlash.report.compare.compared import compared_variants, percentile_between, share_heading
-from flexlash.report.selection import drawn_variants
+from flexlash.report.report_data import drawn_variants
 from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.distribution_curves import CURVE_SCORES
 

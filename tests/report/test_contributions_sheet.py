@@ -10,7 +10,7 @@ from flexlash.analysis.run_summary import dimension_words
 from flexlash.pipeline import run
 from flexlash.report.compare.causes import cause_sentences, causes_of, ranked_dimensions
 from flexlash.report.compare.contributions_sheet import MAPPED
-from flexlash.report.selection import drawn_variants
+from flexlash.report.report_data import drawn_variants
 
 CHART = "Disk share of the wind-up against the length of the cylinder"
 

@@ -15,7 +15,7 @@ from flexlash.pipeline import run
 from flexlash.report.explorer.curves_sheet import CURVES_NOTE, stored_curves
 from flexlash.report.explorer.explorer_sheet import write_explorer
 from flexlash.report.layout.styles import Book
-from flexlash.report.selection import drawn_variants
+from flexlash.report.report_data import drawn_variants
 from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.distribution_curves import CURVE_SCORES
 
@@ -119,7 +119,7 @@ def test_any_variant_and_any_limit_agree_with_the_program(table, sound, tmp_path
     rows = _five(sound)
     outcome = run(table(rows), tmp_path / "report.xlsx", **given)
     report = _explorer_alone(outcome, tmp_path / "alone.xlsx")
-    curves = {one.variant.name: outcome.curves[one.variant.row] for one in outcome.computed.values()}
+    curves = {one.row["variant"]: one.curve for one in drawn_variants(outcome)}
     asked = [
         (row, float(f"{_at(curves[row['variant']], share):.9g}"))
         for row in rows

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import openpyxl
 import pytest
 
@@ -75,7 +77,7 @@ def test_a_finding_names_its_column_and_leads_to_cell_and_result(report):
 def test_nothing_found_is_said(table, sound, tmp_path):
     """Without findings the sheet says so and has neither rules nor filters."""
     outcome = run(table([sound]), tmp_path / "report.xlsx", samples=256)
-    outcome.findings = []
+    outcome = replace(outcome, findings=())
     from written import write_outcome
 
     sheet = openpyxl.load_workbook(write_outcome(outcome, tmp_path / "bare.xlsx"))["Findings"]

@@ -60,7 +60,7 @@ def test_the_program_stands_beside_in_printed_units(table, sound):
     outcome = check(table([{**sound, "flexspline_type": "cylinder", "disk_inner_radius_mm": ""}]))
     (one,) = outcome.computed.values()
     (row,) = stored_inputs([one], 4.0).rows
-    assert row["Backlash, program [rad]"] == one.nominal["backlash"]
-    assert row["Wall shear, program [MPa]"] == one.nominal["wall_shear"] / 1e6
+    assert row["Backlash, program [rad]"] == one.nominal.backlash
+    assert row["Wall shear, program [MPa]"] == one.nominal.wall_shear / 1e6
     assert row["Governing section, program"] == "wall"
     assert {row[PROGRAM[key][0]] for key in ("hub_shear", "disk_windup", "rim_windup", "lost_motion")} == {None}

@@ -12,7 +12,7 @@ from flexlash.pipeline import run
 from flexlash.report.compare.compared import COMPARED_NOTE, compared_variants
 from flexlash.report.compare.ranking_sheet import BASE_ROW, DIFFERENCES, FIRST_ROW, HEADER, write_ranking
 from flexlash.report.layout.styles import Book
-from flexlash.report.selection import drawn_variants
+from flexlash.report.report_data import drawn_variants
 from flexlash.report.wording.verdict import light
 
 KEYS = {
@@ -146,7 +146,7 @@ def test_formulas_move_with_their_row(study):
 @pytest.mark.slow
 def test_of_more_variants_than_are_drawn_the_worst_stand_here(table, sound, tmp_path, monkeypatch):
     """Of more variants than are drawn the worst stand here, in order, and the sheet says so."""
-    monkeypatch.setattr("flexlash.pipeline.DRAWN", 50)
+    monkeypatch.setattr("flexlash.report.report_data.DRAWN", 50)
     rows = [{**sound, "variant": f"v{number}", "torque_Nm": 700.0 + number} for number in range(60)]
     outcome = run(table(rows), tmp_path / "report.xlsx", method="random", samples=64)
     sheet = _sheet(tmp_path / "report.xlsx", data_only=True)

@@ -10,10 +10,9 @@ import regenerate
 from libreoffice import needs_libreoffice
 from report_entries import opened
 
-from flexlash import pipeline
 from flexlash.analysis.run_summary import dimension_words
 from flexlash.pipeline import run
-from flexlash.report import selection
+from flexlash.report import report_data
 from flexlash.report.about_sheet import PROOF
 from flexlash.report.workbook import report_bytes
 from flexlash.schema.columns import DIMENSIONS
@@ -174,7 +173,7 @@ def test_tornado_has_both_indices_of_the_worst_variant(study):
     """The tornado's table has, by falling share, swings, first-order and total index of the worst variant."""
     outcome, path = study
     sheet = opened(path)["Sensitivity"]
-    worst = selection.drawn_variants(outcome)[0].computed.spread
+    worst = report_data.drawn_variants(outcome)[0].computed.spread
     assert [cell.value for cell in sheet[4]][:5] == [
         "Dimension", "At lower limit", "At upper limit", "Share of variance", "Share with interactions",
     ]  # fmt: skip
@@ -324,7 +323,7 @@ def test_a_variant_is_picked_from_the_drawn_ones(study, sheet, cell):
     rules = {str(rule.sqref): rule.formula1 for rule in book[sheet].data_validations.dataValidation}
     stored, _, cells = rules[cell].partition("!")
     listed = [entry.value for (entry,) in book[stored][cells.replace("$", "")]]
-    assert listed == [one.row["variant"] for one in selection.drawn_variants(outcome)]
+    assert listed == [one.row["variant"] for one in report_data.drawn_variants(outcome)]
     assert book[sheet][cell].value in listed
 
 
@@ -344,7 +343,7 @@ def test_stored_curves_rise_and_stored_heights_are_shares(study):
 @pytest.mark.slow
 def test_only_the_worst_are_drawn_when_there_are_many(table, sound, tmp_path, monkeypatch):
     """With more variants than can be drawn the report holds the worst and says so."""
-    monkeypatch.setattr(pipeline, "DRAWN", 3)
+    monkeypatch.setattr(report_data, "DRAWN", 3)
     rows = [{**sound, "variant": f"v{number}", "torque_Nm": 700.0 + 10 * number} for number in range(5)]
     run(table(rows), tmp_path / "report.xlsx", samples=256)
     book = opened(tmp_path / "report.xlsx")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import polars as pl
 import pytest
+from said import said_of
 
 from flexlash.pipeline import run
-from flexlash.report.wording.sentences import sentences
 
 EXACT = "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n"
 
@@ -25,14 +26,14 @@ def told(table, sound):
 
     def tell(*changes, **options):
         rows = [{**sound, "variant": f"v{place}", **change} for place, change in enumerate(changes)]
-        return dict(sentences(run(table(rows), **options)))
+        return said_of(run(table(rows), **options))
 
     return tell
 
 
 def test_the_topics_are_questions_of_a_review_in_order(outcome):
     """Which fail, how sure, why, what to change: in this order, what leads to further sheets last."""
-    assert [topic for topic, _ in sentences(outcome)] == [
+    assert list(said_of(outcome)) == [
         "Computed", "Which fail", "How sure", "Why", "What to tighten", "What to stiffen", "Cylinder-only formula",
         "Strength", "Findings",
     ]  # fmt: skip
@@ -40,7 +41,7 @@ def test_the_topics_are_questions_of_a_review_in_order(outcome):
 
 def test_the_study_in_words(outcome):
     """Names, percentages and limits of the study's failing variants are those of its results."""
-    told = dict(sentences(outcome))
+    told = said_of(outcome)
     rows = {row["variant"]: row for row in outcome.results.iter_rows(named=True)}
     worst = rows["B3-160 case 5"]
     assert told["Computed"] == "11 of 11 variants were computed."
@@ -189,7 +190,7 @@ def test_a_tube_has_no_disk_to_miss(told):
 def test_the_classical_formula_may_be_too_high(workbook, sound, factor, words):
     """With a calibration of the disk and wall far below 1 the classical formula overstates, which is said."""
     settings = {f"{part}_calibration": factor for part in ("cylinder", "disk")}
-    said = dict(sentences(run(workbook([sound], settings=settings), samples=64)))
+    said = said_of(run(workbook([sound], settings=settings), samples=64))
     assert said["Cylinder-only formula"].endswith(f"% {words}.")
 
 
@@ -222,7 +223,7 @@ def test_odd_names_are_told_short_and_on_one_line(told, name):
 
 def test_all_variants_are_counted_not_only_those_drawn(told, monkeypatch):
     """Counts and the classical formula's range are of all variants, however few the report draws."""
-    monkeypatch.setattr("flexlash.pipeline.DRAWN", 2)
+    monkeypatch.setattr("flexlash.report.report_data.DRAWN", 2)
     said = told(*({"backlash_limit_arcmin": 3.5} for _ in range(5)))
     assert said["Which fail"].startswith("5 of 5 variants with a limit are red: ")
     assert said["Why"].endswith("Main contributor of all 5 variants: Young's modulus.")
@@ -242,7 +243,7 @@ def test_what_yields_first(outcome):
     rows = list(outcome.results.iter_rows(named=True))
     torque = {one.variant.name: one.variant.dimensions["torque"] for one in outcome.computed.values()}
     least = min(row["elastic_limit_torque_Nm"] / torque[row["variant"]] for row in rows)
-    said = dict(sentences(outcome))["Strength"]
+    said = said_of(outcome)["Strength"]
     alike, name, section = re.match(
         r"Nearest to yield, one of (\d+) alike, is “(.*)”: its (.*) yields at ", said
     ).groups()
@@ -279,9 +280,9 @@ def test_how_far_the_formula_is_off(workbook, sound):
     odd = {**sound, "variant": "odd", "disk_outer_radius_mm": 100.0}
     outcome = run(workbook([sound, odd]), elasticity=True, method="random", samples=16)
     difference = outcome.results["elasticity_difference_percent"][0]
-    assert f"is {difference:+.2f} % off (1 checked" in dict(sentences(outcome))["Of the calculation"]
+    assert f"is {difference:+.2f} % off (1 checked" in said_of(outcome)["Of the calculation"]
     outcome = run(workbook([odd]), elasticity=True, method="random", samples=16)
-    assert "elasticity" not in dict(sentences(outcome)).get("Of the calculation", "")
+    assert "elasticity" not in said_of(outcome).get("Of the calculation", "")
 
 
 def test_the_cross_check_is_told(told):
@@ -294,11 +295,11 @@ def test_digits_end_where_the_error_begins(table, sound):
     """Of few plain draws a percentile is told with the digits that its standard error leaves."""
     outcome = run(table([{**sound, "backlash_limit_arcmin": 3.6}]), method="random", samples=64)
     error = outcome.results["p97_5_standard_error_arcmin"][0]
-    (told_tail,) = re.findall(r"stay below ([\d.]+)′", dict(sentences(outcome))["Which fail"])
+    (told_tail,) = re.findall(r"stay below ([\d.]+)′", said_of(outcome)["Which fail"])
     assert len(told_tail.partition(".")[2]) == 2
     assert 1e-3 < error < 0.1
-    outcome.results = outcome.results.with_columns(pl.lit(0.3).alias("p97_5_standard_error_arcmin"))
-    assert re.findall(r"stay below ([\d.]+)′", dict(sentences(outcome))["Which fail"]) == [f"{float(told_tail):.1f}"]
+    outcome = replace(outcome, results=outcome.results.with_columns(pl.lit(0.3).alias("p97_5_standard_error_arcmin")))
+    assert re.findall(r"stay below ([\d.]+)′", said_of(outcome)["Which fail"]) == [f"{float(told_tail):.1f}"]
 
 
 FEW = {"method": "random", "samples": 64}

@@ -11,15 +11,15 @@ import regenerate
 import xlsxwriter
 from libreoffice import convert_all, needs_pages
 from report_entries import opened
+from said import said_of
 
 from flexlash.analysis.run_summary import dimension_words, share_words
 from flexlash.pipeline import run
 from flexlash.report.explorer.curves_sheet import stored_curves
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
-from flexlash.report.selection import drawn_variants
+from flexlash.report.report_data import drawn_variants
 from flexlash.report.summary.summary_sheet import write_summary
-from flexlash.report.wording.sentences import sentences
 from flexlash.report.wording.verdict import RULES, light
 
 _ASCENT_AND_DESCENT = 1.22
@@ -70,7 +70,7 @@ def test_every_sentence_stands_beside_its_topic(study):
     outcome, path = study
     sheet = opened(path)["Summary"]
     merged = {str(area) for area in sheet.merged_cells.ranges}
-    for topic, text in sentences(outcome):
+    for topic, text in said_of(outcome).items():
         row = _row(sheet, topic)
         assert sheet.cell(row, 2).value == text
         assert f"B{row}:I{row}" in merged
@@ -235,7 +235,7 @@ def test_the_chart_holds_every_variant(study):
 @pytest.mark.slow
 def test_more_variants_than_fit_are_said(table, tmp_path, monkeypatch):
     """The table lists the twelve worst and the chart the sixty worst; both say of how many, not of how many drawn."""
-    monkeypatch.setattr("flexlash.pipeline.DRAWN", 70)
+    monkeypatch.setattr("flexlash.report.report_data.DRAWN", 70)
     run(table(_many(80)), tmp_path / "report.xlsx", samples=64)
     texts = [str(cell.value) for cell in opened(tmp_path / "report.xlsx")["Summary"]["A"] if cell.value]
     assert any(text.startswith("The 12 worst of 80 are listed; all are in Results.") for text in texts)
@@ -299,7 +299,7 @@ def test_the_summary_prints_whole_on_one_page_of_either_paper(study, table, soun
         "long": table(long, "long.csv"),
     }
     # The outcomes of reports, with as many curves as the chart can hold; the whole reports are not looked at.
-    monkeypatch.setattr("flexlash.pipeline.DRAWN", 70)
+    monkeypatch.setattr("flexlash.report.report_data.DRAWN", 70)
     monkeypatch.setattr("flexlash.report.workbook.report_bytes", lambda _: b"")
     few = {"method": "random", "samples": 64}
     outcomes = {
@@ -314,7 +314,7 @@ def test_the_summary_prints_whole_on_one_page_of_either_paper(study, table, soun
         facts = subprocess.run(["pdfinfo", document], check=True, capture_output=True, text=True).stdout
         assert re.search(rf"Page size: +{papers[paper]}", facts)
         page = _words(document)
-        for topic, text in sentences(outcomes[name]):
+        for topic, text in said_of(outcomes[name]).items():
             assert "".join(text.split()) in page, topic
         assert "Maincontributor" in page
         assert "Methodandlimitsofthemodel:sheetAbout." in page

@@ -34,7 +34,7 @@ SETTINGS = {"cylinder_calibration": 0.907, "disk_calibration": 0.936, "lost_moti
 def assert_program(found, nominal, name):
     """Assert that values by key are the program's numbers to 1e-12, and none where the program has none."""
     for key, (_, size) in PROGRAM.items():
-        number = nominal.get(key)
+        number = getattr(nominal, key)
         if isinstance(number, float) and number:
             assert found[key] == pytest.approx(number / size, rel=1e-12, abs=0), f"{name}: {key}"
         else:

@@ -65,7 +65,7 @@ def test_an_error_is_never_code_0(table, sound, monkeypatch):
     from flexlash.schema.findings import finding
 
     found = finding("E112", sheet="Variants", cell="Z1", value="Rim lenght", label="Tooth rim length [mm]", name="x")
-    monkeypatch.setattr("flexlash.analysis.examination.in_order", lambda *_: [found])
+    monkeypatch.setattr("flexlash.analysis.run_result.in_order", lambda *_: (found,))
     for command in ("check", "run"):
         done = _call(command, table([sound]))
         assert done.exit_code == 3

@@ -279,7 +279,7 @@ def test_any_cells_of_a_file(cells, write):
         with reading_here():
             outcome = check(Source(name="any.xlsx", data=write(submission)), marked_copy=copy)
         _expect_words(outcome)
-        if outcome.marked_copy and write is not _with_openpyxl:
+        if outcome.written.marked_copy and write is not _with_openpyxl:
             _expect_inert(copy.read_bytes(), (*ENTRY_SHEETS, "Findings"))
 
 
@@ -289,8 +289,8 @@ def test_any_texts_in_the_marked_copy_of_a_table(cells):
     """A table's marked copy holds its texts as texts."""
     with tempfile.TemporaryDirectory() as folder:
         outcome = check(_given(_submission(cells, "csv")), marked_copy=Path(folder, "copy.xlsx"))
-        if outcome.marked_copy:
-            _expect_inert(outcome.marked_copy.read_bytes(), (*ENTRY_SHEETS, "Findings"))
+        if outcome.written.marked_copy:
+            _expect_inert(outcome.written.marked_copy.read_bytes(), (*ENTRY_SHEETS, "Findings"))
 
 
 _NAMED = [("Variants", 1, row, text) for row, text in enumerate(_HOSTILE[:26], start=2)]

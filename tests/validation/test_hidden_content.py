@@ -26,7 +26,7 @@ def _told(sheet, **others):
     """Return (code, cell) of all findings but those of built-in tables, and the rows that are computable."""
     sheets = {"Variants": sheet, **others}
     validated = validate(Submission(name="a.xlsx", sha256="", kind="workbook", sheets=sheets))
-    told = [(found.code, found.cell) for found in validated.ledger.findings if found.code not in {"I505", "I503"}]
+    told = [(found.code, found.cell) for found in validated.findings if found.code not in {"I505", "I503"}]
     return told, [variant.row for variant in validated.variants]
 
 
@@ -102,7 +102,7 @@ def test_a_run_of_hidden_rows_says_how_far_it_goes():
     submission = Submission(
         name="a.xlsx", sha256="", kind="workbook", sheets={"Variants": _sheet(2, 3, 4, hidden_rows=frozenset({3, 4}))}
     )
-    (found,) = [one for one in validate(submission).ledger.findings if one.code == "W425"]
+    (found,) = [one for one in validate(submission).findings if one.code == "W425"]
     assert found.message == "Variants!A3: rows 3 to 4 are hidden, but used."
     assert found.variant == "V3"
 

@@ -55,7 +55,7 @@ def _codes(outcome):
 
 def test_a_full_row_is_usual(judge):
     """A cup in full detail, with its material and tolerance, has no finding."""
-    assert judge().findings == []
+    assert judge().findings == ()
 
 
 @pytest.mark.parametrize("value", ABSURD)

@@ -15,6 +15,7 @@ from flexlash.reading.gate import Refusal
 from flexlash.reading.read import ErrorCell, RawSheet, Submission, Unstored
 from flexlash.schema.columns import VARIANTS, columns_of
 from flexlash.schema.variant import Settings
+from flexlash.validation.consolidation import consolidated
 from flexlash.validation.validate import validate
 
 ROW = {
@@ -53,7 +54,7 @@ def _named(count):
 
 
 def _told(validated, *levels):
-    found = validated.ledger.findings
+    found = consolidated(validated)
     return [(one.code, one.place) for one in found if not levels or one.level in levels]
 
 
@@ -163,7 +164,7 @@ def test_every_fault_has_one_finding_at_its_cell():
     """Twenty-four rows with a fault each have one error each, at the guilty cell; the sound rows are kept."""
     filling = regenerate.needs_fixing()
     validated = validate(_submission(filling.variants))
-    errors = [found for found in validated.ledger.findings if found.level == "error"]
+    errors = [found for found in consolidated(validated) if found.level == "error"]
     expected = {f"fault {code}": (code, column) for code, column, _ in regenerate.FAULTS}
     assert {found.variant: (found.code, found.column) for found in errors} == expected
     assert len(errors) == len(expected)
@@ -184,7 +185,7 @@ def test_all_errors_of_a_row_at_once():
         ("E209", "Variants!B2"),
         ("E304", "Variants!R2"),
     ]
-    assert {found.variant for found in validated.ledger.findings if found.cell} == {"A"}
+    assert {found.variant for found in consolidated(validated) if found.cell} == {"A"}
     assert _kept(validated) == ["V1"]
 
 
@@ -218,7 +219,7 @@ def test_all_errors_of_a_row_at_once():
 def test_each_cell_by_itself(key, value, code):
     """Required cells are filled, numbers lie in their bounds and entries in their list; each fault stops its row."""
     validated = validate(_submission([ROW | {key: value}, *_named(1)]))
-    (found,) = [found for found in validated.ledger.findings if found.level == "error"]
+    (found,) = [found for found in consolidated(validated) if found.level == "error"]
     assert (found.code, found.column, found.cell) == (code, key, f"{chr(65 + KEYS.index(key))}2")
     assert columns_of("Variants")[key].requirement in found.message
     assert _kept(validated) == ["V1"]
@@ -228,7 +229,7 @@ def test_a_list_entry_that_was_meant():
     """A misspelt entry of a list gets the nearest one as suggestion."""
     (found,) = [
         found
-        for found in validate(_submission([ROW | {"flexspline_type": "cylindre"}])).ledger.findings
+        for found in consolidated(validate(_submission([ROW | {"flexspline_type": "cylindre"}])))
         if found.level == "error"
     ]
     assert (found.code, found.suggestion) == ("E209", "cylinder")
@@ -245,7 +246,7 @@ def test_duplicates_name_all_partners():
     """Each row of a name used more than once is marked and names all others; other rows are kept."""
     rows = [ROW | {"variant": name} for name in ("A", "B", "A", "C", "A")]
     validated = validate(_submission(rows))
-    found = {found.cell: found for found in validated.ledger.findings if found.code == "E308"}
+    found = {found.cell: found for found in consolidated(validated) if found.code == "E308"}
     partners = {"A2": "A4, A6", "A4": "A2, A6", "A6": "A2, A4"}
     assert set(found) == set(partners)
     for cell, others in partners.items():
@@ -258,7 +259,7 @@ def test_all_partners_of_a_duplicate_are_named(count, others):
     """However many rows share a name, each names all the others; of more than a hundred the range of all is told."""
     validated = validate(_submission([ROW] * count))
     assert len(_told(validated, "error")) == count
-    assert validated.ledger.findings[-1].message.endswith(f" also stands in {others}.")
+    assert consolidated(validated)[-1].message.endswith(f" also stands in {others}.")
 
 
 def test_only_findings_of_a_row_name_its_variant():
@@ -266,7 +267,7 @@ def test_only_findings_of_a_row_name_its_variant():
     materials = [*MATERIALS, ["20Cr2Ni4", -1, 0.3]]
     headers = [("notes", "Customer")]
     validated = validate(_submission([ROW | {"torque_Nm": 0}], headers=headers, Materials=materials))
-    named = {found.place: found.variant for found in validated.ledger.findings if found.cell}
+    named = {found.place: found.variant for found in consolidated(validated) if found.cell}
     assert named == {"Variants!W1": "", "Variants!D2": "A", "Materials!B2": ""}
 
 
@@ -294,7 +295,7 @@ def test_an_unknown_name_gets_the_nearest(key, value, code, suggestion):
     """A material or class that does not exist stops its row; the nearest that does is suggested."""
     tolerances = [*TOLERANCES, ["fine", "wall_thickness", None, None, "IT7"]]
     validated = validate(_submission([ROW | {key: value}, *_named(1)], Tolerances=tolerances))
-    (found,) = [found for found in validated.ledger.findings if found.level == "error"]
+    (found,) = [found for found in consolidated(validated) if found.level == "error"]
     assert (found.code, found.column, found.suggestion, found.value) == (code, key, suggestion, value)
     assert _kept(validated) == ["V1"]
 
@@ -345,7 +346,7 @@ def test_a_faulty_setting_leaves_nothing():
     """A setting out of bounds leaves no variant, since all would be computed with another value than was meant."""
     validated = validate(_submission(_named(3), Settings=[["Setting", "Value"], ["seed", -1]]))
     assert _told(validated, "error") == [("E207", "Settings!B2")]
-    assert validated.variants == []
+    assert validated.variants == ()
     assert len(validated.submitted) == 3
 
 
@@ -357,7 +358,7 @@ def test_a_missing_or_double_column_leaves_nothing(header):
     validated = validate(_submission(_named(3), headers=[header]))
     codes = [code for code, _ in _told(validated, "error")]
     assert codes in (["E111"], ["E112"], ["E114", "E111"])
-    assert validated.variants == []
+    assert validated.variants == ()
 
 
 def test_no_rows():
@@ -604,20 +605,20 @@ def test_a_blank_cell_under_a_bad_required_header(what):
     """A row that is blank under a misspelt required header is not computed, and nothing breaks."""
     key, header = MISSPELT[what]
     validated = validate(_submission([ROW, ROW | {"variant": "B", key: None}], headers=[(key, header)]))
-    assert validated.variants == []
+    assert validated.variants == ()
 
 
 def test_a_blank_name_under_a_bad_header():
     """A row that is blank under a misspelt Variant header is not computed nameless."""
     rows = [ROW, ROW | {"variant": None, "torque_Nm": 700}]
-    assert validate(_submission(rows, headers=[("variant", "Variannt")])).variants == []
+    assert validate(_submission(rows, headers=[("variant", "Variannt")])).variants == ()
 
 
 def test_a_converted_value_is_told_as_entered():
     """A wall of -0.5 in is told as -0.5, the number that stands in the cell."""
     row = ROW | {"wall_thickness_mm": -0.5}
     validated = validate(_submission([row], headers=[("wall_thickness_mm", "Wall thickness Δ [in]")]))
-    (found,) = [found for found in validated.ledger.findings if found.code == "E207"]
+    (found,) = [found for found in consolidated(validated) if found.code == "E207"]
     assert found.value == "-0.5"
 
 
@@ -631,7 +632,7 @@ def test_a_sheet_without_header_is_not_absent():
     """A Materials sheet whose header row is missing is told so, and not that the file brings no such sheet."""
     validated = validate(_submission([ROW], Materials=[["foo", "bar"], [1, 2]]))
     assert ("E109", "Materials!A1") in _told(validated)
-    assert "sheet Materials" not in {found.value for found in validated.ledger.findings}
+    assert "sheet Materials" not in {found.value for found in consolidated(validated)}
 
 
 def test_decimals_of_parquet_are_numbers(tmp_path, sound):
@@ -661,7 +662,7 @@ def test_materials_without_rows(rows):
     """A Materials sheet that names no material leaves no variant, each of which is told so."""
     materials = [["Material", "youngs_modulus_GPa", "poisson_ratio"], *rows]
     validated = validate(_submission(_named(2), Materials=materials))
-    assert validated.variants == []
+    assert validated.variants == ()
     assert {place for code, place in _told(validated) if code == "E307"} == {"Variants!C2", "Variants!C3"}
 
 
@@ -703,12 +704,12 @@ def _spoilt(draw):
 def test_nasty_cells_never_end_in_an_exception(seed):
     """Whatever stands in a few cells or headers, each fault is a finding with an address, and the rest is computed."""
     validated = validate(_spoilt(np.random.default_rng(seed)))
-    computed = assess(validated, validated.settings)
-    assert all(found.cell for found in validated.ledger.findings if found.level == "error")
+    nominal = assess(validated, validated.settings)
+    assert all(found.cell for found in consolidated(validated) if found.level == "error")
     assert {variant.row for variant in validated.variants} <= {row for row, *_ in validated.submitted}
-    assert set(computed) == {variant.row for variant in validated.variants} - validated.ledger.rows
-    if not any(found.level == "error" for found in validated.ledger.findings):
-        assert len(computed) == len(validated.submitted) > 0
+    assert set(nominal.computed) == {variant.row for variant in validated.variants} - nominal.blocked.rows
+    if not any(found.level == "error" for found in consolidated(validated)):
+        assert len(nominal.computed) == len(validated.submitted) > 0
 
 
 @pytest.mark.parametrize(
@@ -721,7 +722,7 @@ def test_nasty_cells_never_end_in_an_exception(seed):
 )
 def test_one_finding_per_name(entered, told):
     """A name in other case and with spaces is told once, as entered; an unknown one only as unknown."""
-    findings = validate(_submission([ROW | {"material": entered}])).ledger.findings
+    findings = consolidated(validate(_submission([ROW | {"material": entered}])))
     found = [one for one in findings if one.sheet == "Variants"]
     assert [(one.code, one.value, one.suggestion) for one in found] == told
     assert all(f'"{value}"' in one.message for one, (_, value, _) in zip(found, told, strict=True))

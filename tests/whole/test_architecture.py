@@ -32,7 +32,6 @@ ROOMS = (
 ENTRANCES = {"__init__", "__main__"}
 
 CLIMBS = {
-    ("analysis.options", "outputs.plan"),
     ("analysis.run_summary", "feedback.fixing.fix"),
     ("reading.inside_limits", "feedback.annotation.marked_copy"),
     ("reading.inside_limits", "validation.validate"),

@@ -345,7 +345,7 @@ def test_a_refused_file_gives_an_outcome_that_says_why(tmp_path):
     assert [one.code for one in outcome.findings] == ["E101"]
     assert outcome.exit_code == 4
     assert outcome.results.is_empty()
-    assert outcome.outputs == []
+    assert outcome.outputs == ()
 
 
 def test_a_missing_file_raises(tmp_path):

@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from flexlash.mechanics.nominal import Numbers, nominal_numbers
+from flexlash.analysis.computed import Computed, Nominal
+from flexlash.mechanics.nominal import nominal_numbers
+from flexlash.mechanics.nominal_record import NominalNumbers
 from flexlash.mechanics.stiffness import catalogue_torque
 from flexlash.schema.columns import DIMENSIONS, VARIANTS, columns_of
 from flexlash.schema.findings import spelled_out
+from flexlash.schema.spellings import plain
 from flexlash.schema.units import ARCMIN, RPM
 from flexlash.schema.variant import Settings, ToleranceRow, Variant
 from flexlash.tolerance.dimension_limits import Limits, LimitsProblem, limits_of, shape_problems
-from flexlash.tolerance.spread_statistics import SpreadStatistics
-from flexlash.validation.blocking_errors import name_waiting
-from flexlash.validation.headers import plain
-from flexlash.validation.ledger import UnitMistake
-from flexlash.validation.unit_mistakes import settle
-from flexlash.validation.validate import Validated
+from flexlash.validation.ledger import Ledger
+from flexlash.validation.validated import UnitMistake, Validated
 
-__all__ = ["Computed", "assess", "blame"]
+__all__ = ["assess"]
 
 _REFINEMENTS = {column.dimension: column.key for column in VARIANTS if column.group == "Refinements"}
 _LEAST, _GREATEST = 1e-12, 10.0
@@ -43,58 +41,55 @@ _THICKNESSES = frozenset({"wall_thickness", "disk_thickness", "disk_hub_thicknes
 _CODES = {"impossible": "E314", "untabulated": "E315", "cut": "W405", "overlap": "W409"}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Computed:
-    """One computed variant: its record, its limits, its nominal numbers and its spread, all in SI."""
-
-    variant: Variant
-    limits: dict[str, Limits]
-    nominal: Numbers
-    spread: SpreadStatistics | None = None
-
-
-def assess(validated: Validated, settings: Settings) -> dict[int, Computed]:
-    """Return the computable variants by row number; findings go to the ledger."""
+def assess(validated: Validated, settings: Settings) -> Nominal:
+    """Return the computable variants with their limits and nominal numbers, and what these show to be wrong."""
+    ledger = Ledger.after(validated)
     limits: dict[int, dict[str, Limits]] = {}
     for variant in validated.variants:
         rows = validated.classes[plain(variant.tolerance_class)]
         found, untabulated = limits_of(variant, rows)
         kept, misshapen = shape_problems(variant, found)
         for problem in (*untabulated, *misshapen):
-            _blame_limits(validated, variant, problem)
+            _report_limits(ledger, variant, problem)
         kinds = {problem.dimension: problem.kind for problem in (*untabulated, *misshapen) if problem.kind != "overlap"}
-        _judge_widths(validated, variant, rows, found, kinds)
+        _judge_widths(ledger, variant, rows, found, kinds)
         limits[variant.row] = kept
-    _warn_exact(validated)
-    sound = [variant for variant in validated.variants if variant.row not in validated.ledger.rows]
+    _warn_exact(validated, ledger)
+    sound = [variant for variant in validated.variants if variant.row not in ledger.rows]
     numbers = nominal_numbers(sound, settings.lost_motion_percent / 100)
-    mistakes = validated.ledger.unit_mistakes_by_owner()
+    mistakes = _by_owner(validated.unit_mistakes.values())
     for variant, nominal in zip(sound, numbers, strict=True):
         mistaken = [*mistakes.get(variant.row, ()), *mistakes.get(plain(variant.material), ())]
-        if not _LEAST < nominal["backlash"] < _GREATEST:  # type: ignore[operator]
-            _blame_backlash(validated, variant, nominal, mistaken)
+        if not _LEAST < nominal.backlash < _GREATEST:
+            _report_backlash(ledger, variant, nominal, mistaken)
             continue
-        _warn_calibration(validated, variant)
+        _warn_calibration(ledger, variant)
         if not mistaken:
-            _warn_strength(validated, variant, nominal)
-            _warn_stiffness(validated, variant, nominal)
-            _warn_limit(validated, variant, nominal)
-    settle(validated.ledger)
-    name_waiting(validated)
-    return {
+            _warn_strength(ledger, variant, nominal)
+            _warn_stiffness(ledger, variant, nominal)
+            _warn_limit(ledger, variant, nominal)
+    computed = {
         variant.row: Computed(variant=variant, limits=limits[variant.row], nominal=nominal)
         for variant, nominal in zip(sound, numbers, strict=True)
-        if variant.row not in validated.ledger.rows
+        if variant.row not in ledger.rows
     }
+    return Nominal(computed=computed, findings=tuple(ledger.findings), blocked=ledger.blocked)
 
 
-def _blame_limits(validated: Validated, variant: Variant, problem: LimitsProblem) -> None:
+def _by_owner(mistakes: Iterable[UnitMistake]) -> dict[int | str, list[UnitMistake]]:
+    """Return the mistakes of units by row of Variants, or by plain name of the material."""
+    found: dict[int | str, list[UnitMistake]] = defaultdict(list)
+    for mistake in mistakes:
+        found[mistake.material if mistake.schema == "Materials" else mistake.row].append(mistake)
+    return found
+
+
+def _report_limits(ledger: Ledger, variant: Variant, problem: LimitsProblem) -> None:
     """Record what is wrong with a variant's limits at the cell of the dimension, else at its material."""
     column = DIMENSIONS[problem.dimension]
     key = column.key if column.sheet == "Variants" else "material"
     value = variant.dimensions[problem.dimension] / column.si_unit.si
-    blame(
-        validated,
+    ledger.add_at(
         _CODES[problem.kind],
         variant,
         key,
@@ -106,7 +101,7 @@ def _blame_limits(validated: Validated, variant: Variant, problem: LimitsProblem
 
 
 def _judge_widths(
-    validated: Validated,
+    ledger: Ledger,
     variant: Variant,
     rows: Sequence[ToleranceRow],
     limits: Mapping[str, Limits],
@@ -126,8 +121,7 @@ def _judge_widths(
         if not code or (column.sheet == "Settings" and code == "W421") or (told and (told, code) != ("cut", "E333")):
             continue
         unit = "" if column.unit in {"", "-"} else f" {column.unit}"
-        blame(
-            validated,
+        ledger.add_at(
             code,
             variant,
             column.key if column.sheet == "Variants" else "material",
@@ -149,7 +143,7 @@ def _width_code(share: float, *, coarse: bool, meant: bool) -> str:
     return "W441" if meant and share < _EXACT else ""
 
 
-def _warn_exact(validated: Validated) -> None:
+def _warn_exact(validated: Validated, ledger: Ledger) -> None:
     """Warn once of each class that has no row for dimensions which `standard` scatters and one of its variants has."""
     table, standard = validated.tolerances, validated.classes.get("standard", [])
     if table is None:
@@ -163,17 +157,18 @@ def _warn_exact(validated: Validated) -> None:
         if left := exact.pop(plain(name or ""), None):
             words = ", ".join(column.plain_name for one, column in DIMENSIONS.items() if one in left)
             place: dict[str, Any] = {"sheet": table.sheet, "cell": table.address(row, "tolerance_class")}
-            validated.ledger.add("W438", column="tolerance_class", value=name, detail=words, **place)
+            ledger.add("W438", column="tolerance_class", value=name, detail=words, **place)
 
 
-def _blame_backlash(validated: Validated, variant: Variant, nominal: Numbers, mistaken: Sequence[UnitMistake]) -> None:
+def _report_backlash(
+    ledger: Ledger, variant: Variant, nominal: NominalNumbers, mistaken: Iterable[UnitMistake]
+) -> None:
     """Record a backlash that no flexspline has: where a unit is mistaken, once for a material; else here."""
-    value = f"{nominal['backlash']:.3g}"
+    value = f"{nominal.backlash:.3g}"
     cause = next((mistake for mistake in mistaken if mistake.column != "yield_MPa"), None)
     if cause is None:
-        blame(validated, "E324", variant, "torque_Nm", value=value)
+        ledger.add_at("E324", variant, "torque_Nm", value=value)
         return
-    ledger = validated.ledger
     ledger.rows.add(variant.row)
     if cause.material in ledger.materials:
         return
@@ -183,44 +178,42 @@ def _blame_backlash(validated: Validated, variant: Variant, nominal: Numbers, mi
         ledger.spoil("material", cause.material, cause.sheet, cause.row)
 
 
-def _warn_strength(validated: Validated, variant: Variant, nominal: Numbers) -> None:
+def _warn_strength(ledger: Ledger, variant: Variant, nominal: NominalNumbers) -> None:
     """Warn when the part yields or buckles, or else when its torque is above what drives of its size may bear."""
-    stress, strength = nominal["von_mises"], variant.yield_strength
-    if strength is not None and _exceeds(stress, strength):
-        facts = {"value": _megapascals(stress), "other": strength / 1e6, "detail": nominal["governing_section"]}
-        blame(validated, "W402", variant, "torque_Nm", **facts)
-    shear, buckling = nominal["wall_shear"], nominal.get("buckling_shear")
-    if _exceeds(shear, buckling):
-        blame(validated, "W411", variant, "torque_Nm", value=_megapascals(shear), other=_megapascals(buckling))
-    listed, torque = catalogue_torque(float(nominal["mean_radius"] or 0)), variant.dimensions["torque"]
-    if listed and torque > listed.torque and not (_exceeds(stress, strength) or _exceeds(shear, buckling)):
+    stress, strength = nominal.von_mises, variant.yield_strength
+    shear, buckling = nominal.wall_shear, nominal.buckling_shear
+    yields, buckles = strength is not None and stress > strength, buckling is not None and shear > buckling
+    if strength is not None and yields:
+        facts = {"value": _megapascals(stress), "other": strength / 1e6, "detail": nominal.governing_section}
+        ledger.add_at("W402", variant, "torque_Nm", **facts)
+    if buckling is not None and buckles:
+        ledger.add_at("W411", variant, "torque_Nm", value=_megapascals(shear), other=_megapascals(buckling))
+    listed, torque = catalogue_torque(nominal.mean_radius), variant.dimensions["torque"]
+    if listed and torque > listed.torque and not (yields or buckles):
         facts = {"value": f"{torque:.10g}", "other": listed.torque, "detail": listed.size}
-        blame(validated, "W424", variant, "torque_Nm", name=_name("torque_Nm"), **facts)
+        ledger.add_at("W424", variant, "torque_Nm", name=_name("torque_Nm"), **facts)
 
 
-def _warn_stiffness(validated: Validated, variant: Variant, nominal: Numbers) -> None:
+def _warn_stiffness(ledger: Ledger, variant: Variant, nominal: NominalNumbers) -> None:
     """Warn when the flexspline is softer than drives that contain one, or resonates within usual speeds."""
-    stiffness, least = nominal["stiffness"], nominal.get("least_stiffness")
-    if _exceeds(least, stiffness):
+    stiffness, least = nominal.stiffness, nominal.least_stiffness
+    if least is not None and least > stiffness:
         key = "mean_radius_mm" if "mean_radius" in variant.dimensions else "bore_diameter_mm"
-        size = f"{nominal['catalogue_size']:.0f}"
-        blame(validated, "W412", variant, key, value=_digits(stiffness, 4), other=_digits(least, 4), detail=size)
-    speeds = [nominal.get("resonance_speed_low"), nominal.get("resonance_speed")]
-    if _exceeds(_USUAL_SPEED, speeds[0]):
-        low, high = (_digits(float(speed or 0) / RPM, 2) for speed in speeds)
+        size = f"{nominal.catalogue_size:.0f}"
+        ledger.add_at("W412", variant, key, value=spelled_out(stiffness), other=spelled_out(least), detail=size)
+    frequency, speed, least_speed = nominal.natural_frequency, nominal.resonance_speed, nominal.resonance_speed_low
+    if frequency is not None and speed is not None and least_speed is not None and least_speed < _USUAL_SPEED:
+        low, high = (spelled_out(one / RPM, 2) for one in (least_speed, speed))
         span = high if low == high else f"{low} to {high}"
-        value = _digits(nominal["natural_frequency"], 2)
-        blame(validated, "W415", variant, "load_inertia_kg_m2", value=value, other=span)
+        ledger.add_at("W415", variant, "load_inertia_kg_m2", value=spelled_out(frequency, 2), other=span)
 
 
-def _warn_limit(validated: Validated, variant: Variant, nominal: Numbers) -> None:
+def _warn_limit(ledger: Ledger, variant: Variant, nominal: NominalNumbers) -> None:
     """Warn when the nominal backlash is over the limit already."""
-    if _exceeds(nominal["backlash"], variant.backlash_limit):
-        key = "backlash_limit_arcmin"
-        limit, backlash = (
-            f"{float(angle or 0) / ARCMIN:.5g}" for angle in (variant.backlash_limit, nominal["backlash"])
-        )
-        blame(validated, "W423", variant, key, name=_name(key), value=limit, other=backlash)
+    limit, key = variant.backlash_limit, "backlash_limit_arcmin"
+    if limit is not None and nominal.backlash > limit:
+        value, backlash = (f"{angle / ARCMIN:.5g}" for angle in (limit, nominal.backlash))
+        ledger.add_at("W423", variant, key, name=_name(key), value=value, other=backlash)
 
 
 def _name(key: str) -> str:
@@ -228,38 +221,13 @@ def _name(key: str) -> str:
     return columns_of("Variants")[key].name
 
 
-def _digits(value: float | str | None, digits: int) -> str:
-    """Return a number rounded to so many digits, without a power of ten."""
-    return f"{float(f'{float(value or 0):.{digits}g}'):.15g}"
+def _megapascals(stress: float) -> str:
+    return spelled_out(stress / 1e6)
 
 
-def _exceeds(one: float | str | None, other: float | str | None) -> bool:
-    """Whether both are numbers and the first is the greater."""
-    return isinstance(one, float) and isinstance(other, float) and one > other
-
-
-def _megapascals(stress: float | str | None) -> str:
-    return spelled_out(float(stress or 0) / 1e6)
-
-
-def _warn_calibration(validated: Validated, variant: Variant) -> None:
+def _warn_calibration(ledger: Ledger, variant: Variant) -> None:
     """Warn when a calibration meets refinement columns, which it contains already."""
     used = [key for name, key in _REFINEMENTS.items() if name in variant.dimensions]
     factors = (variant.dimensions["cylinder_calibration"], variant.dimensions["disk_calibration"])
     if used and factors != (1.0, 1.0):
-        blame(validated, "W407", variant, used[0])
-
-
-def blame(validated: Validated, code: str, variant: Variant, key: str, **facts: object) -> None:
-    """Record a finding at a cell of a variant."""
-    if validated.table is None:
-        raise LookupError("a variant without its table")
-    validated.ledger.add(
-        code,
-        sheet=validated.table.sheet,
-        cell=validated.table.address(variant.row, key),
-        column=key,
-        variant=variant.name,
-        rows=[variant.row],
-        **facts,
-    )
+        ledger.add_at("W407", variant, used[0])

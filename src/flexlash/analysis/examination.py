@@ -1,36 +1,90 @@
-"""From bytes to findings: read, validate, set the limits, compute at the entered dimensions.
+"""From bytes to nominal numbers: read, validate, set the limits, compute at the entered dimensions.
 
 All of this is done in the limited process, since nothing of it is the program's own before it was judged. What follows
-validation, `assessed`, grows with the number of sound rows alone and has no limits.
+validation, the nominal numbers, grows with the number of sound rows alone and has no limits.
 """
 
 from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 
-from flexlash.analysis.assessment import assess
+from flexlash.analysis.computed import Nominal
 from flexlash.analysis.options import Options
-from flexlash.analysis.outcome import Outcome
-from flexlash.analysis.results import results_frame
+from flexlash.reading.limited_process import ask
 from flexlash.reading.products import require_submission
 from flexlash.reading.raw import Submission
-from flexlash.reading.read import ReadReport, Source, report_of, submission_of, table_of
+from flexlash.reading.read import ReadReport, Source, limits_of_reports, of_table, report_of, submission_of, table_of
 from flexlash.reading.refusal import Refusal
-from flexlash.schema.findings import Finding, finding
+from flexlash.schema.findings import Finding, finding, readable
 from flexlash.schema.variant import Settings
-from flexlash.validation.validate import validate
+from flexlash.validation.validated import Validated
 
-__all__ = ["assessed", "examine", "in_order", "refused"]
+__all__ = ["Examined", "examined", "opened"]
 
 
-def examine(given: Source | ReadReport, tables: Mapping[str, Source], options: Options) -> Outcome:
+@dataclass(frozen=True, kw_only=True)
+class Examined:
+    """A submission with what is wrong with it, and the nominal numbers of its sound rows.
+
+    `refusal` says why a file is no readable submission, or is skipped; then there is nothing else. `settings` are those
+    that hold, the caller's before the submission's; `options` those of an earlier run where the caller's are open.
+    """
+
+    submission: Submission
+    refusal: Finding | None = None
+    settings: Settings = field(default_factory=Settings)
+    options: Options = field(default_factory=Options)
+    validated: Validated | None = None
+    nominal: Nominal = field(default_factory=Nominal)
+    processor_seconds: float = 0.0
+
+
+def opened(given: str | Path | Source | ReadReport, options: Options) -> Source | ReadReport | Refusal:
+    """Return a submission's bytes, or why its name or size alone refuse it; raise OSError when it cannot be opened."""
+    if isinstance(given, Source | ReadReport):
+        return given
+    try:
+        return Source.at(Path(given), options.limits)
+    except Refusal as refusal:
+        return Refusal(refusal.code, **{"file": readable(Path(given).name), **refusal.facts})
+
+
+def examined(source: Source | ReadReport | Refusal, options: Options) -> Examined:
+    """Return what the limited process finds in a submission, with its bytes."""
+    if isinstance(source, Refusal):
+        return _refused(str(source.facts["file"]), b"", source)
+    limits = limits_of_reports(options.limits) if options.from_report else options.limits
+    try:
+        asked = replace(options, progress=None, marked_copy=None)
+        found = ask(_validated, limits, source, _tables(options), asked, then=_with_numbers)
+    except Refusal as refusal:
+        return _refused(source.name, source.data, refusal)
+    return replace(found, submission=replace(found.submission, data=source.data))
+
+
+def _tables(options: Options) -> dict[str, Source]:
+    """Return the tables given beside a submission by the sheet that each replaces."""
+    found = {}
+    for name, path in (("Tolerances", options.tolerances), ("Materials", options.materials)):
+        if path is not None:
+            try:
+                found[name] = Source.at(Path(path), options.limits)
+            except Refusal as refusal:
+                raise of_table(refusal, readable(Path(path).name)) from refusal
+    return found
+
+
+def _validated(given: Source | ReadReport, tables: Mapping[str, Source], options: Options) -> Examined:
     """Return what a submission holds and what is wrong with it; nothing is computed yet.
 
     `tables` stand beside it, by the sheet that each replaces. Raises Refusal when the file is no readable submission.
     """
+    from flexlash.validation.validate import validate
+
     start = time.process_time()
     submission = _submission(given, options)
     options = options.completed(submission.run_with)
@@ -42,10 +96,8 @@ def examine(given: Source | ReadReport, tables: Mapping[str, Source], options: O
     overrides = {
         name: getattr(options, name) for name in ("seed", "method", "samples") if getattr(options, name) is not None
     }
-    return Outcome(
+    return Examined(
         submission=submission,
-        results=results_frame([]),
-        findings=[],
         settings=replace(validated.settings, **overrides),
         options=options,
         validated=validated,
@@ -53,15 +105,16 @@ def examine(given: Source | ReadReport, tables: Mapping[str, Source], options: O
     )
 
 
-def assessed(outcome: Outcome) -> Outcome:
-    """Return an examined submission with nominal numbers and limits of its sound rows, and all its findings."""
-    if outcome.validated is None:
-        raise LookupError("a submission that was not validated")
-    outcome.computed = assess(outcome.validated, outcome.settings)
-    if outcome.options.strict and len(outcome.computed) < len(outcome.validated.submitted):
-        outcome.computed = {}
-    outcome.findings = in_order(outcome.validated.ledger.findings, outcome.submission)
-    return outcome
+def _with_numbers(found: Examined) -> Examined:
+    """Return an examined submission with limits and nominal numbers of its sound rows."""
+    from flexlash.analysis.assessment import assess
+
+    if found.validated is None:
+        return found
+    nominal = assess(found.validated, found.settings)
+    if found.options.strict and len(nominal.computed) < len(found.validated.submitted):
+        nominal = replace(nominal, computed={})
+    return replace(found, nominal=nominal)
 
 
 def _submission(given: Source | ReadReport, options: Options) -> Submission:
@@ -71,30 +124,8 @@ def _submission(given: Source | ReadReport, options: Options) -> Submission:
     return report_of(given, options.limits).submission if options.from_report else submission_of(given, options.limits)
 
 
-def refused(name: str, data: bytes, refusal: Refusal) -> Outcome:
-    """Return the outcome of a file that is no readable submission, or that is skipped: one finding that says why."""
+def _refused(name: str, data: bytes, refusal: Refusal) -> Examined:
+    """Return a file that is no readable submission, or that is skipped, with the finding that says why."""
     digest = hashlib.sha256(data).hexdigest() if data else ""
     found = finding(refusal.code, **{"file": name, **refusal.facts})
-    return Outcome(
-        submission=Submission(name=name, sha256=digest, kind="refused"),
-        results=results_frame([]),
-        findings=[found],
-        settings=Settings(),
-        skipped=found.level == "info",
-    )
-
-
-def in_order(findings: list[Finding], submission: Submission) -> list[Finding]:
-    """Return the findings in the order of the submission."""
-    return sorted(findings, key=_place_order(submission))
-
-
-def _place_order(submission: Submission) -> Callable[[Finding], tuple[int, int, int, str]]:
-    """Return the sort key of findings: sheet, row, column, code."""
-    sheets = {name: place for place, name in enumerate(submission.sheets)}
-
-    def key(found: Finding) -> tuple[int, int, int, str]:
-        row, column = found.address or (0, 0)
-        return sheets.get(found.sheet, -1), row, column, found.code
-
-    return key
+    return Examined(submission=Submission(name=name, sha256=digest, kind="refused"), refusal=found)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from flexlash.outputs.plan import Output
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.argument_checks import file_path, flag, function, known, of_type, one_of, whole_number
 from flexlash.schema.columns import SETTINGS
@@ -41,7 +41,7 @@ class Options:
     tolerances: str | Path | None = None
     materials: str | Path | None = None
     limits: ReadingLimits = field(default_factory=ReadingLimits)
-    marked_copy: str | Path | Output | None = None
+    marked_copy: str | os.PathLike[str] | None = None
     marked_copies: bool = False
     given: Sequence[Path] = ()
     from_report: bool = False
@@ -78,7 +78,8 @@ _CHECKS: dict[str, Callable[[str, object], Any]] = {
     **{key: _setting(key) for key in ("seed", "method", "samples")},
     **dict.fromkeys(("strict", "fail_over_limit", "cross_check", "elasticity", "marked_copies", "from_report"), flag),
     **dict.fromkeys(("tolerances", "materials"), file_path),
-    "marked_copy": lambda name, value: value if isinstance(value, Output) else file_path(name, value),
+    # Where it goes may be planned already, which its path alone does not tell.
+    "marked_copy": lambda name, value: value if isinstance(value, os.PathLike) else file_path(name, value),
     "given": lambda name, value: tuple(
         file_path(name, one) for one in of_type(name, value, Sequence, "a list of paths")
     ),

@@ -3,70 +3,78 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexlash import __version__
-from flexlash.analysis.assessment import Computed
+from flexlash.analysis.computed import Computed
 from flexlash.analysis.options import Options
-from flexlash.reading.read import Submission
+from flexlash.reading.raw import Submission
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.findings import Finding, readable
 from flexlash.schema.limit_verdict import VERDICTS, limit_verdict
 from flexlash.schema.variant import Settings
-from flexlash.validation.validate import Validated
+from flexlash.validation.validated import Blocked, Validated
 
 if TYPE_CHECKING:
     import polars as pl
 
-    from flexlash.analysis.recommendations import Remedy
-    from flexlash.mechanics.elasticity.twist import ElasticityCheck
-    from flexlash.tolerance.distribution_curves import Curve
-
-__all__ = ["DRAWN", "PICTURED", "Outcome"]
-
-DRAWN = 500
-"""Most variants that the report draws, worst first."""
-
-PICTURED = 6
-"""Most variants of which the report shows the half-section."""
+__all__ = ["Outcome", "Written"]
 
 
-@dataclass(kw_only=True)
+@dataclass(frozen=True, kw_only=True)
+class Written:
+    """What was written for a submission: the files in order, and sentences about what stood in their way.
+
+    `marked_copy` is the one of them in which the findings are marked, `not_carried` what of the submission that copy
+    could not take over, None where it holds the findings alone; `fault` says why it could not be written.
+    """
+
+    paths: tuple[Path, ...] = ()
+    remarks: tuple[str, ...] = ()
+    marked_copy: Path | None = None
+    not_carried: tuple[str, ...] | None = ()
+    fault: OSError | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class Outcome:
     """What came out of one submission.
 
-    `results` is the Results table; `findings` all findings in the order of the submission; `outputs` the
-    files written; `options` what was decided beside the settings.
-    `computed` holds, by row number, what the report draws on.
-    `curves` holds, by row number, the whole distribution of the variants that the report draws.
-    `pictured` holds, by variant, the elasticity checks that the report draws.
-    `remedies` say what would bring the worst failing variants within their limit.
-    `skipped` says that flexlash itself wrote the file, or that it is a lock file; `marked_copy` is where its findings
-    were marked, `not_carried` what of it that copy could not take over, None where it holds the findings alone, `fault`
-    why it could not be written.
-    `remarks` say what stood at the place of an output and was left alone.
-    `processor_seconds` is how much computing it took to come this far.
+    `results` is the Results table; `findings` all findings in the order of the submission; `options` what was decided
+    beside the settings. `computed` holds, by row number, what the report draws on, `blocked` what
+    could not be computed. `skipped` says that flexlash itself
+    wrote the file, or that it is a lock file. `processor_seconds` is how much computing reading and validation took.
     """
 
     submission: Submission
     results: pl.DataFrame
-    findings: list[Finding]
-    settings: Settings
+    findings: tuple[Finding, ...]
+    settings: Settings = field(default_factory=Settings)
     options: Options = field(default_factory=Options)
     validated: Validated | None = None
-    computed: dict[int, Computed] = field(default_factory=dict)
-    outputs: list[Path] = field(default_factory=list)
-    curves: dict[int, Curve] = field(default_factory=dict)
-    pictured: dict[str, ElasticityCheck] = field(default_factory=dict)
-    remedies: list[Remedy] = field(default_factory=list)
+    computed: Mapping[int, Computed] = field(default_factory=dict)
+    blocked: Blocked = field(default_factory=Blocked)
     skipped: bool = False
-    marked_copy: Path | None = None
-    not_carried: tuple[str, ...] | None = ()
-    fault: OSError | None = None
-    remarks: list[str] = field(default_factory=list)
     processor_seconds: float = 0.0
+    written: Written = field(default_factory=Written)
+
+    @property
+    def outputs(self) -> tuple[Path, ...]:
+        """The files that were written."""
+        return self.written.paths
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What stood at the place of an output and was left alone, in sentences."""
+        return self.written.remarks
+
+    @property
+    def fault(self) -> OSError | None:
+        """Why the marked copy could not be written, None where it was or was not needed."""
+        return self.written.fault
 
     @property
     def counts(self) -> dict[str, int]:

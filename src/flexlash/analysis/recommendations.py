@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
-from flexlash.analysis.assessment import Computed
+from flexlash.analysis.computed import Computed
 from flexlash.analysis.options import Options
-from flexlash.analysis.tolerance_spread import scattered
+from flexlash.analysis.tolerance_spread import spread_of
 from flexlash.mechanics.flexspline import backlash
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.limit_verdict import misses_limit
 from flexlash.schema.variant import Settings
 from flexlash.tolerance.dimension_limits import Limits
+from flexlash.tolerance.spread_statistics import SpreadStatistics
 
-__all__ = ["Halving", "Lever", "Remedy", "Thickening", "remedies_of"]
+__all__ = ["Halving", "Lever", "Recommendation", "Thickening", "recommendations_of"]
 
 _STEP = 1e-4
 """Part of a dimension by which it is moved for a derivative."""
@@ -30,8 +31,8 @@ _BISECTIONS = 40
 class Halving:
     """Some dimensions with half their tolerance about the same middle, and what is over the limit then, by key."""
 
-    limits: dict[str, Limits]
-    over: dict[str, float]
+    limits: Mapping[str, Limits]
+    over: Mapping[str, float]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,8 +53,8 @@ class Thickening:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Remedy:
-    """What helps one variant; `halvings` are empty where half of its units or more are over the limit."""
+class Recommendation:
+    """What would help one variant; `halvings` are empty where half of its units or more are over the limit."""
 
     variant: str
     halvings: tuple[Halving, ...]
@@ -61,13 +62,13 @@ class Remedy:
     thickening: Thickening | None
 
 
-def remedies_of(computed: Mapping[int, Computed], settings: Settings) -> list[Remedy]:
+def recommendations_of(computed: Mapping[int, Computed], settings: Settings) -> list[Recommendation]:
     """Return what helps the worst failing variant, and the worst of those that tighter tolerances can help."""
     failing = [one for one in computed.values() if _fails(one)]
     helped = [one for one in failing if _can_be_tightened(one)]
     chosen = {one.variant.row: one for group in (failing, helped) if group for one in [max(group, key=_badness)]}
     return [
-        Remedy(
+        Recommendation(
             variant=one.variant.name,
             halvings=tuple(_halvings(one, settings)) if _can_be_tightened(one) else (),
             levers=_levers(one),
@@ -77,9 +78,9 @@ def remedies_of(computed: Mapping[int, Computed], settings: Settings) -> list[Re
     ]
 
 
-def _number(one: Computed, key: str) -> float:
-    """Return a number of the spread."""
-    value = one.spread.numbers.get(key) if one.spread else None
+def _number(spread: SpreadStatistics | None, key: str) -> float:
+    """Return a number of a spread, NaN where there is none."""
+    value = spread.numbers.get(key) if spread else None
     return float("nan") if value is None else value
 
 
@@ -92,12 +93,13 @@ def _fails(one: Computed) -> bool:
 def _can_be_tightened(one: Computed) -> bool:
     """Whether half of the units at least are within the limit and some dimension scatters."""
     limit = one.variant.backlash_limit
-    return limit is not None and _number(one, "p50") <= limit and bool(one.spread and one.spread.shares)
+    return limit is not None and _number(one.spread, "p50") <= limit and bool(one.spread and one.spread.shares)
 
 
 def _badness(one: Computed) -> tuple[float, float]:
     """Return what failing variants are ordered by: share over the limit, then P99.865 over the limit."""
-    return _number(one, "probability_over_limit"), _number(one, "p99_865") / (one.variant.backlash_limit or 1.0)
+    tail = _number(one.spread, "p99_865") / (one.variant.backlash_limit or 1.0)
+    return _number(one.spread, "probability_over_limit"), tail
 
 
 def _halvings(one: Computed, settings: Settings) -> Iterable[Halving]:
@@ -108,13 +110,13 @@ def _halvings(one: Computed, settings: Settings) -> Iterable[Halving]:
     wanted = dict.fromkeys([(ranked[0],), *((name,) for name in drawing[:1]), tuple(ranked)])
     halved = [{name: _half(one.limits[name]) for name in names} for names in wanted]
     trials = {
-        place: replace(one, variant=replace(one.variant, row=place), limits=one.limits | limits)
+        place: replace(one, variant=replace(one.variant, row=place), limits={**one.limits, **limits})
         for place, limits in enumerate(halved)
     }
-    spread = scattered(trials, replace(settings, method="line", samples=None), Options(), None)
+    spread = spread_of(trials, replace(settings, method="line", samples=None), Options())
     for place, limits in enumerate(halved):
         keys = (f"probability_over_limit{end}" for end in ("", "_low", "_high"))
-        yield Halving(limits=limits, over={key: _number(spread[place], key) for key in keys})
+        yield Halving(limits=limits, over={key: _number(spread.statistics[place], key) for key in keys})
 
 
 def _half(limits: Limits) -> Limits:
@@ -141,7 +143,7 @@ def _levers(one: Computed) -> tuple[Lever, ...]:
 def _thickening(one: Computed) -> Thickening | None:
     """Return the wall at which P97.5 meets the limit, if it keeps its distance from the nominal backlash in parts."""
     limit, dimensions = one.variant.backlash_limit, one.variant.dimensions
-    tail = _number(one, "p97_5")
+    tail = _number(one.spread, "p97_5")
     if limit is None or tail <= limit:
         return None
     present = dimensions["wall_thickness"]

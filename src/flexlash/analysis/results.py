@@ -1,22 +1,28 @@
-"""Numbers of all stages → the Results table: its columns in order, printed units, submitted order."""
+"""Numbers of all stages → the Results table, column by column: printed units, submitted order."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import fields
+from operator import truediv
+from typing import TYPE_CHECKING, Any
 
 import polars as pl
 
-from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.computed import Computed, Elasticity
+from flexlash.mechanics.nominal_record import NominalNumbers
+from flexlash.schema.column import Column
 from flexlash.schema.findings import Finding
 from flexlash.schema.result_columns import result_columns
 from flexlash.schema.units import ARCMIN, RPM, as_entered
-from flexlash.schema.variant import Variant
-from flexlash.tolerance.spread_statistics import SpreadStatistics
-from flexlash.validation.blocking_errors import stopped_by
+from flexlash.validation.validated import Table
 
-__all__ = ["result_record", "results_frame", "results_of"]
+if TYPE_CHECKING:
+    from flexlash.tolerance.spread_statistics import SpreadStatistics
+
+__all__ = ["empty_results", "results_of"]
 
 _HELD_BACK = "held back by --strict, since other rows have errors"
 _NAMED = 3
@@ -40,64 +46,101 @@ _STEMS = {column.key: (column.dimension, column.si_unit.si) for column in _COLUM
 _ENTERED = frozenset({"backlash_limit_arcmin", "hub_shear_radius_mm"})
 """Results that repeat an entry, the radius where it is the disk's own."""
 
-
-def result_record(
-    variant: Variant, nominal: Mapping[str, float | str | None], spread: SpreadStatistics | None
-) -> dict[str, Any]:
-    """Return the Results of a computed variant in printed units."""
-    numbers: dict[str, Any] = dict(nominal)
-    if spread is not None:
-        numbers |= spread.numbers | spread.texts
-        if spread.shares:
-            main = max(spread.shares, key=lambda name: spread.shares[name])
-            numbers |= {"main_contributor": main, "main_contributor_share": spread.shares[main]}
-            numbers["interaction_share"] = max(1.0 - math.fsum(spread.shares.values()), 0.0)
-    numbers["backlash_limit"] = variant.backlash_limit
-    record = {}
-    for column in _COLUMNS:
-        stem, size = _STEMS.get(column.key, (column.key, 1.0))
-        value = numbers.get(stem)
-        if isinstance(value, float):
-            value = as_entered(value, size) if column.key in _ENTERED else value / size
-        record[column.key] = value
-    return record
+_NOMINAL = frozenset(one.name for one in fields(NominalNumbers))
+_ELASTICITY = {f"elasticity_{one.name}": one.name for one in fields(Elasticity)}
 
 
-def results_frame(
-    records: Sequence[Mapping[str, Any]], *, cross_check: bool = False, elasticity: bool = False
+def empty_results() -> pl.DataFrame:
+    """Return the Results of a file that is no submission: its columns without a row."""
+    return pl.DataFrame(schema={column.key: _type(column) for column in result_columns()})
+
+
+def results_of(
+    table: Table,
+    computed: Mapping[int, Computed],
+    findings: Iterable[Finding],
+    stops: Mapping[int, Sequence[Finding]],
+    columns: Sequence[Column],
 ) -> pl.DataFrame:
-    """Return the Results of all submitted rows; a row with errors keeps its place with empty numbers."""
-    columns = result_columns(cross_check=cross_check, elasticity=elasticity)
-    types = {column.key: pl.Float64 if column.is_number else pl.String for column in columns}
-    return pl.DataFrame([{key: record.get(key) for key in types} for record in records], schema=types, orient="row")
+    """Return these columns of Results, one row per submitted variant in submitted order.
+
+    `findings` are all of them; a row that is not `computed` keeps its place with empty numbers and says which of them,
+    or of the errors elsewhere that are its `stops`, are why.
+    """
+    records = list(computed.values())
+    numbers = pl.DataFrame(
+        {
+            "row": pl.Series(list(computed), dtype=pl.Int64),
+            **{column.key: _column(column, records) for column in columns if column.key not in _OF_THE_ROW},
+        }
+    )
+    rows = table.frame.select("row", pl.col("variant").fill_null(""), pl.col("notes").replace("", None))
+    remarks = _remarks(table, computed.keys(), findings, stops)
+    joined = rows.join(remarks, on="row", how="left", maintain_order="left")
+    joined = joined.join(numbers, on="row", how="left", maintain_order="left")
+    return joined.select(column.key for column in columns)
 
 
-def results_of(outcome: Outcome, *, cross_check: bool = False, elasticity: bool = False) -> pl.DataFrame:
-    """Return the Results table, one row per submitted variant in submitted order."""
-    if outcome.validated is None:
-        return results_frame([])
-    by_row: dict[int, list[Finding]] = {}
-    sheet = outcome.validated.table.sheet if outcome.validated.table else ""
-    for found in outcome.findings:
-        if found.sheet == sheet and found.cell and found.level != "info":
-            by_row.setdefault(found.row, []).append(found)
-    stops = stopped_by(outcome.validated)
+_OF_THE_ROW = frozenset({"variant", "notes", "status", "findings"})
+"""Results that a row has whether or not it is computed."""
+
+
+def _type(column: Column) -> type[pl.DataType]:
+    return pl.Float64 if column.is_number else pl.String
+
+
+def _column(column: Column, computed: Sequence[Computed]) -> pl.Series:
+    """Return one column of the computed variants in its printed unit."""
+    stem, size = _STEMS.get(column.key, (column.key, 1.0))
+    values = [_value(stem, one) for one in computed]
+    if column.is_number:
+        # Not by polars, which multiplies by the reciprocal: that is another last digit.
+        printed = as_entered if column.key in _ENTERED else truediv
+        values = [None if value is None else printed(value, size) for value in values]
+    return pl.Series(column.key, values, dtype=_type(column))
+
+
+def _value(stem: str, one: Computed) -> Any:
+    """Return a number [SI] or word of a variant by its name in the stage that found it, None where there is none."""
+    if stem == "backlash_limit":
+        return one.variant.backlash_limit
+    if stem in _NOMINAL:
+        return getattr(one.nominal, stem)
+    if stem in _ELASTICITY:
+        return one.elasticity and getattr(one.elasticity, _ELASTICITY[stem])
+    return one.spread and _of_spread(stem, one.spread)
+
+
+def _of_spread(stem: str, spread: SpreadStatistics) -> Any:
+    """Return a number [SI] or word of a spread by its name."""
+    shares = spread.shares
+    if stem == "interaction_share":
+        return max(1.0 - math.fsum(shares.values()), 0.0) if shares else None
+    if stem in {"main_contributor", "main_contributor_share"}:
+        main = max(shares, key=lambda name: shares[name], default=None)
+        return main if stem == "main_contributor" or main is None else shares[main]
+    return spread.numbers.get(stem, spread.texts.get(stem))
+
+
+def _remarks(
+    table: Table, computed: Collection[int], findings: Iterable[Finding], stops: Mapping[int, Sequence[Finding]]
+) -> pl.DataFrame:
+    """Return status and findings of every row: those at its own cells, else what elsewhere stops it."""
+    own: dict[int, list[Finding]] = defaultdict(list)
+    for found in findings:
+        if found.sheet == table.sheet and found.cell and found.level != "info":
+            own[found.row].append(found)
     records = []
-    for row, name, notes in outcome.validated.submitted:
-        mine = by_row.get(row, [])
-        one = outcome.computed.get(row)
-        listed = ", ".join(f"{found.code} {found.cell}" for found in mine)
-        if one is None and not any(found.level == "error" for found in mine):
-            listed = ", ".join(filter(None, [listed, _stopped(stops.get(row, []))]))
-        record = result_record(one.variant, one.nominal, one.spread) if one else {}
-        status = "error" if one is None else "warning" if mine else "ok"
-        records.append(
-            {**record, "variant": name, "status": status, "notes": notes or None, "findings": listed or None}
-        )
-    return results_frame(records, cross_check=cross_check, elasticity=elasticity)
+    for row in table.frame["row"]:
+        named = [f"{found.code} {found.cell}" for found in own[row]]
+        if row not in computed and not any(found.level == "error" for found in own[row]):
+            named.append(_stopped(stops.get(row, ())))
+        status = "error" if row not in computed else "warning" if own[row] else "ok"
+        records.append((row, status, ", ".join(named) or None))
+    return pl.DataFrame(records, schema={"row": pl.Int64, "status": pl.String, "findings": pl.String}, orient="row")
 
 
-def _stopped(errors: list[Finding]) -> str:
+def _stopped(errors: Sequence[Finding]) -> str:
     """Return what stops a row that has no error itself: `stopped by E317 Tolerances!F7`."""
     if not errors:
         return _HELD_BACK

@@ -100,7 +100,8 @@ def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
 
 def _waiting_words(outcome: Outcome) -> Iterator[str]:
     """Yield how many rows wait for which faulty material or class."""
-    for one in waiting_rows(outcome.validated) if outcome.validated else ():
+    table = outcome.validated.table if outcome.validated else None
+    for one in waiting_rows(table, outcome.blocked) if table is not None else ():
         rows = counted(len(one.rows), "row")
         yield f"{rows} wait{'s' if len(one.rows) == 1 else ''} for {one.kind} {shown(one.name, longest=_NAME)}"
 
@@ -108,11 +109,11 @@ def _waiting_words(outcome: Outcome) -> Iterator[str]:
 def _written(outcome: Outcome, path: Path) -> str:
     """Return the sentence about a file that was written."""
     named = shown(path, longest=4096)
-    if path != outcome.marked_copy:
+    if path != outcome.written.marked_copy:
         return f"Written: {named}"
-    if outcome.not_carried is None:
+    if outcome.written.not_carried is None:
         return f"Findings alone, since your file itself could not be marked: {named}"
-    without = f", without its {', '.join(outcome.not_carried)}" if outcome.not_carried else ""
+    without = f", without its {', '.join(outcome.written.not_carried)}" if outcome.written.not_carried else ""
     return f"Marked copy of your file{without}: {named}"
 
 

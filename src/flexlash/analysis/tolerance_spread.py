@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
-from flexlash.analysis.assessment import Computed
-from flexlash.analysis.options import Options, Progress
+from flexlash.analysis.computed import Computed, Spread
+from flexlash.analysis.options import Options
 from flexlash.mechanics.flexspline import backlash
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.variant import Settings
@@ -17,7 +16,7 @@ from flexlash.tolerance.sampling import SamplingPlan
 from flexlash.tolerance.spread_statistics import SpreadStatistics
 from flexlash.workers import mapped
 
-__all__ = ["drawn_curves", "row_curves", "row_statistics", "scattered"]
+__all__ = ["drawn_curves", "row_curves", "row_statistics", "spread_of"]
 
 _MODELS = {kind: partial(backlash, kind) for kind in ("cup", "hat", "cylinder")}
 
@@ -25,18 +24,16 @@ ROWS_PER_WORKER, POINTS_PER_WORKER = 1000, 100_000
 """Rows to be spread, lines or points of curves, below which starting a worker costs more than it saves."""
 
 
-def scattered(
-    computed: dict[int, Computed], settings: Settings, options: Options, progress: Progress | None
-) -> dict[int, Computed]:
-    """Return the variants with their spread; the same points serve all rows."""
-    variants = list(computed.values())
-    spread = dict(computed)
-    rows = [_toleranced(variant) for variant in variants]
+def spread_of(computed: Mapping[int, Computed], settings: Settings, options: Options) -> Spread:
+    """Return the spread of the variants; the same points serve all rows."""
+    steps = len(computed) * (2 if options.elasticity else 1)
+    numbers, rows = list(computed), [_toleranced(variant) for variant in computed.values()]
+    found: dict[int, SpreadStatistics] = {}
     for done, (index, statistics) in enumerate(row_statistics(rows, _plan(settings, options), options.jobs), start=1):
-        spread[variants[index].variant.row] = replace(variants[index], spread=statistics)
-        if progress:
-            progress(done, len(variants))
-    return spread
+        found[numbers[index]] = statistics
+        if options.progress:
+            options.progress(done, steps)
+    return Spread(statistics=found, cross_checked=bool(options.cross_check))
 
 
 def row_statistics(
@@ -50,11 +47,10 @@ def row_statistics(
         yield from zip(batch, of_batch, strict=True)
 
 
-def drawn_curves(drawn: Sequence[Computed], settings: Settings, options: Options) -> dict[int, Curve]:
-    """Return the curves of variants by row number."""
+def drawn_curves(drawn: Sequence[Computed], settings: Settings, options: Options) -> list[Curve]:
+    """Return the curves of variants that have a spread."""
     rows = [(_toleranced(variant), variant.spread) for variant in drawn if variant.spread]
-    curves = row_curves(rows, _plan(settings, options), options.jobs)
-    return dict(zip((variant.variant.row for variant in drawn), curves, strict=True))
+    return list(row_curves(rows, _plan(settings, options), options.jobs))
 
 
 def row_curves(

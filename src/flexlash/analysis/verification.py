@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
 
-from flexlash.analysis.assessment import Computed, blame
-from flexlash.mechanics.elasticity import MISSING, is_available
+from flexlash.analysis.computed import Computed, Elasticity, Verified
+from flexlash.analysis.examination import Examined
+from flexlash.analysis.options import Options
+from flexlash.mechanics.elasticity import require_libraries
 from flexlash.mechanics.elasticity.part import section_problem
 from flexlash.mechanics.elasticity.twist import ElasticityCheck, elasticity_check
 from flexlash.mechanics.strength import von_mises_stress
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import spelled_out
 from flexlash.schema.variant import Variant
-from flexlash.validation.validate import Validated
+from flexlash.validation.ledger import Ledger
 from flexlash.workers import mapped
 
-__all__ = ["WORTH_A_WORKER", "Checked", "pictured", "verified"]
+__all__ = ["WORTH_A_WORKER", "pictured", "verified_by_elasticity"]
 
 WORTH_A_WORKER = 25
 """Rows per worker below which starting it costs more than it saves."""
@@ -29,122 +30,96 @@ _MEGAPASCAL = 1e6
 _UNSOLVED = 0.01
 """Error of the elasticity check, as a share, above which it says nothing."""
 
-Task = tuple[str, Mapping[str, float]]
+_Task = tuple[str, Mapping[str, float], float]
+"""A variant's flexspline type, its dimensions and its wind-up by the formula without calibration."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Checked:
-    """What the elasticity check of one variant found: wind-up [rad], its error [-], peak stresses at fillets [Pa]."""
+def verified_by_elasticity(examined: Examined, options: Options) -> Verified:
+    """Return the elasticity check of the computed rows, and where the formula is far from it or a fillet yields.
 
-    windup: float
-    error: float
-    hub_fillet_shear: float | None
-    junction_fillet_shear: float | None
-
-
-def verified(
-    validated: Validated,
-    computed: Mapping[int, Computed],
-    *,
-    jobs: int,
-    progress: Callable[[int, int], None] | None = None,
-) -> dict[int, Computed]:
-    """Return the computed rows with their elasticity check; findings go to the ledger.
-
-    A row whose dimensions make no closed half-section stays without one. Raises ModuleNotFoundError when the
+    A row whose dimensions make no closed half-section stays without one. Raises MissingLibrariesError when the
     libraries of the check are not installed.
     """
-    if not is_available():
-        raise ModuleNotFoundError(MISSING)
-    found = dict(computed)
-    rows = list(_closed(validated, computed))
-    tasks = [(computed[row].variant.flexspline_type, computed[row].variant.dimensions) for row in rows]
-    results = mapped(_checked, tasks, min(jobs, len(tasks) // WORTH_A_WORKER))
-    for done, (row, result) in enumerate(zip(rows, results, strict=True), start=1):
-        one = computed[row]
-        if result is None:
-            _flag(validated, one.variant, "wall_thickness", "so extreme a part cannot be solved to 1 %")
+    require_libraries()
+    computed, ledger = examined.nominal.computed, Ledger.after(examined.validated)
+    rows = list(_closed(computed.values(), ledger))
+    tasks = [(one.variant.flexspline_type, one.variant.dimensions, _uncalibrated(one)) for one in rows]
+    checks: dict[int, Elasticity] = {}
+    found = mapped(_checked, tasks, min(options.jobs, len(tasks) // WORTH_A_WORKER))
+    for done, (one, check) in enumerate(zip(rows, found, strict=True), start=1):
+        if check is None:
+            _report_unsolved(ledger, one.variant, "wall_thickness", "so extreme a part cannot be solved to 1 %")
         else:
-            found[row] = replace(one, nominal=one.nominal | _numbers(one, result))
-            _compare(validated, found[row])
-        if progress:
-            progress(done, len(rows))
-    return found
+            checks[one.variant.row] = check
+            _compare(ledger, one.variant, check)
+        if options.progress:
+            options.progress(len(computed) + done, len(computed) + len(rows))
+    return Verified(checks=checks, findings=tuple(ledger.findings))
 
 
-def _closed(validated: Validated, computed: Mapping[int, Computed]) -> Iterator[int]:
-    """Yield the rows whose dimensions make a half-section; flag the others at the dimension to blame."""
-    for row, one in computed.items():
+def _closed(computed: Iterable[Computed], ledger: Ledger) -> Iterator[Computed]:
+    """Yield the rows whose dimensions make a half-section; report the others at the dimension to blame."""
+    for one in computed:
         problem = section_problem(one.variant.flexspline_type, one.variant.dimensions)
         if problem is None:
-            yield row
+            yield one
         else:
-            _flag(validated, one.variant, *problem)
+            _report_unsolved(ledger, one.variant, *problem)
 
 
-def _flag(validated: Validated, variant: Variant, dimension: str, clause: str) -> None:
+def _report_unsolved(ledger: Ledger, variant: Variant, dimension: str, clause: str) -> None:
     """Record that a variant cannot be checked, at the dimension to blame."""
     column = DIMENSIONS[dimension]
     value = f"{variant.dimensions[dimension] / column.si_unit.si:.10g} {column.unit}"
-    blame(validated, "W413", variant, column.key, name=column.name, value=value, detail=clause)
+    ledger.add_at("W413", variant, column.key, name=column.name, value=value, detail=clause)
 
 
-def _compare(validated: Validated, one: Computed) -> None:
-    """Flag a row whose formula is far from elasticity, or whose fillet yields."""
-    difference = one.nominal["elasticity_difference"]
-    if isinstance(difference, float) and abs(difference) > _FAR:
+def _compare(ledger: Ledger, variant: Variant, elasticity: Elasticity) -> None:
+    """Record that a row's formula is far from elasticity, or that its fillet yields."""
+    difference, limit = elasticity.difference, variant.yield_strength
+    if abs(difference) > _FAR:
         words = f"{abs(100 * difference):.1f} % {'above' if difference > 0 else 'below'}"
-        blame(validated, "W414", one.variant, "variant", value=words)
-    limit = one.variant.yield_strength
-    for fillet in ("hub_fillet", "junction_fillet"):
-        shear = one.nominal[f"elasticity_{fillet}_shear"]
-        if isinstance(shear, float) and limit is not None and von_mises_stress(shear) > limit:
-            column = DIMENSIONS[f"{fillet}_radius"]
-            value = f"{one.variant.dimensions[column.dimension] / column.si_unit.si:.10g}"
+        ledger.add_at("W414", variant, "variant", value=words)
+    fillets = {"hub_fillet_radius": elasticity.hub_fillet_shear}
+    fillets["junction_fillet_radius"] = elasticity.junction_fillet_shear
+    for fillet, shear in fillets.items():
+        if shear is not None and limit is not None and von_mises_stress(shear) > limit:
+            column = DIMENSIONS[fillet]
+            value = f"{variant.dimensions[fillet] / column.si_unit.si:.10g}"
             peak = spelled_out(float(von_mises_stress(shear)) / _MEGAPASCAL)
             facts = {"name": column.name, "value": value, "detail": peak, "other": limit / _MEGAPASCAL}
-            blame(validated, "W417", one.variant, column.key, **facts)
+            ledger.add_at("W417", variant, column.key, **facts)
 
 
-def _checked(task: Task) -> Checked | None:
+def _checked(task: _Task) -> Elasticity | None:
     """Return the check of one variant in numbers alone, None where its equations cannot be solved."""
+    flexspline_type, dimensions, uncalibrated = task
     try:
-        found = elasticity_check(*task)
+        found = elasticity_check(flexspline_type, dimensions)
     except (ArithmeticError, RuntimeError):
         return None
     if not (found.windup > 0 and found.error < _UNSOLVED):
         return None
-    return Checked(
+    return Elasticity(
         windup=found.windup,
+        difference=uncalibrated / found.windup - 1,
         error=found.error,
         hub_fillet_shear=found.hub_fillet_shear,
         junction_fillet_shear=found.junction_fillet_shear,
     )
 
 
-def _numbers(one: Computed, result: Checked) -> dict[str, float | str | None]:
-    """Return the check's results [SI] by result key without unit.
-
-    The difference is that of the formula without calibration, relative to elasticity.
-    """
-    uncalibrated = 0.0
-    for part in ("cylinder", "disk"):
-        windup = one.nominal[f"{part}_windup"]
-        if isinstance(windup, float):
-            uncalibrated += windup / one.variant.dimensions.get(f"{part}_calibration", 1.0)
-    return {
-        "elasticity_windup": result.windup,
-        "elasticity_difference": uncalibrated / result.windup - 1,
-        "elasticity_error": result.error,
-        "elasticity_hub_fillet_shear": result.hub_fillet_shear,
-        "elasticity_junction_fillet_shear": result.junction_fillet_shear,
-    }
+def _uncalibrated(one: Computed) -> float:
+    """Return the wind-up [rad] by the formula without calibration."""
+    dimensions, nominal = one.variant.dimensions, one.nominal
+    cylinder = nominal.cylinder_windup / dimensions.get("cylinder_calibration", 1.0)
+    return cylinder + nominal.disk_windup / dimensions.get("disk_calibration", 1.0)
 
 
-def pictured(computed: Sequence[Computed]) -> dict[str, ElasticityCheck]:
+def pictured(computed: Iterable[Computed]) -> dict[str, ElasticityCheck]:
     """Return the checks of variants with their stress fields, by name; only those that were checked."""
     return {
         one.variant.name: elasticity_check(one.variant.flexspline_type, one.variant.dimensions)
         for one in computed
-        if "elasticity_windup" in one.nominal
+        if one.elasticity is not None
     }

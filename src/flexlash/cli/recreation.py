@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -61,8 +61,12 @@ def recreate(report: Path, output: Path | None, plan: Plan | None = None, **opti
 
     upgrade = ask(refilled, limits_of_reports(limits), outcome.submission, limits)
     written = filled.write(upgrade.data, "recreated")
-    outcome.outputs.insert(0, written.path)
-    outcome.remarks += [written.remark] if written.remark else []
+    all_written = replace(
+        outcome.written,
+        paths=(written.path, *outcome.outputs),
+        remarks=(*outcome.remarks, *([written.remark] if written.remark else [])),
+    )
+    outcome = replace(outcome, written=all_written)
     anew_rows = frame_rows(_as_stored(outcome.results))
     numbers, different = _compared(by_variant(result_rows(given.results), anew_rows), anew_rows)
     return Recreation(outcome=outcome, remarks=upgrade.remarks, numbers=numbers, different=different)

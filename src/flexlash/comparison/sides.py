@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexlash.analysis.assessment import assess
+from flexlash.analysis.computed import Nominal
 from flexlash.reading.limited_process import ask
 from flexlash.reading.raw import RawSheet, Submission
 from flexlash.reading.read import Source, limits_of_reports, report_of, submission_of
@@ -18,13 +19,14 @@ from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import DIMENSIONS, MATERIALS, columns_of
-from flexlash.schema.findings import shown
+from flexlash.schema.findings import Finding, shown
 from flexlash.schema.result_columns import result_columns
 from flexlash.schema.spellings import plain
 from flexlash.schema.variant import ToleranceRow
 from flexlash.validation.blocking_errors import stopped_by
-from flexlash.validation.typed_columns import Table
-from flexlash.validation.validate import Validated, validate
+from flexlash.validation.consolidation import consolidated
+from flexlash.validation.validate import validate
+from flexlash.validation.validated import Table, Validated
 
 if TYPE_CHECKING:
     import polars as pl
@@ -103,7 +105,7 @@ class Side:
         table = self.validated.table
         mends = {
             (found.address, found.column): found.repair
-            for found in self.validated.ledger.findings
+            for found in self._findings
             if table and found.sheet == table.sheet and found.repair is not None
         }
         return {name: _entered(record, table, mends) for name, record in self.records.items() if table}
@@ -116,19 +118,29 @@ class Side:
         return ", ".join(self._errors[row]) or "an error on another sheet"
 
     @cached_property
+    def _nominal(self) -> Nominal:
+        return assess(self.validated, self.validated.settings)
+
+    @cached_property
+    def _findings(self) -> list[Finding]:
+        return consolidated(self.validated, self._nominal.findings, self._nominal.blocked)
+
+    @cached_property
     def _computed(self) -> Collection[int]:
         """The rows that can be computed: their limits and shape are looked at as well, which adds findings."""
-        return assess(self.validated, self.validated.settings).keys()
+        return self._nominal.computed.keys()
 
     @cached_property
     def _errors(self) -> Mapping[int, list[str]]:
         """The errors of each row that cannot be computed; without one of its own, those elsewhere that stop it."""
         found: dict[int, list[str]] = defaultdict(list)
         sheet = self.validated.table.sheet if self.validated.table else ""
-        for one in self.validated.ledger.findings:
+        for one in self._findings:
             if one.level == "error" and one.sheet == sheet and one.cell:
                 found[one.row].append(f"{one.code} {one.cell}")
-        for row, errors in stopped_by(self.validated).items():
+        table = self.validated.table
+        stops = stopped_by(table, self._nominal.blocked, self._findings) if table else {}
+        for row, errors in stops.items():
             if row not in found:
                 found[row] = [f"{one.code} {one.place}" for one in errors[:_NAMED]]
         return found

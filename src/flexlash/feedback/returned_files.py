@@ -4,19 +4,58 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
+from flexlash.analysis.examination import examined
+from flexlash.analysis.options import Options
 from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.run_result import outcome_of
 from flexlash.feedback.fixing.certain_fixes import repair_of
 from flexlash.feedback.fixing.fix import Repair
 from flexlash.feedback.fixing.fixed_table import mended_table
 from flexlash.feedback.fixing.fixed_workbook import mended_workbook
 from flexlash.reading.limited_process import ProcessFaultError, ask
+from flexlash.reading.products import mended_role
+from flexlash.reading.raw import Submission
+from flexlash.reading.read import ReadReport, Source
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.findings import Finding
 
-__all__ = ["certain_repairs", "marked", "mended", "worth_marking"]
+__all__ = ["Mended", "certain_repairs", "marked", "mended", "worth_marking"]
+
+_PASSES = 3
+"""Most times that a mended submission is looked at again, since one repair may uncover another fault."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mended:
+    """A submission with the certain repairs made, what came out of checking that, and the repairs.
+
+    `role` is what a workbook says of itself: that it is mended, and of which submission.
+    """
+
+    data: bytes
+    role: str
+    outcome: Outcome
+    repairs: tuple[Repair, ...]
+
+
+def mended(source: Source | ReadReport | Refusal, options: Options) -> Mended:
+    """Return a submission with the certain repairs made, until there are no more of them."""
+    outcome = outcome_of(examined(source, options))
+    original = outcome.submission
+    data, repairs = original.data, dict[str, Repair]()
+    for _ in range(_PASSES):
+        wanted = {repair.place: repair for repair in certain_repairs(outcome.findings)}
+        if not wanted.keys() - repairs.keys():
+            break
+        data, made = _with_fixes(original, [*(wanted | repairs).values()], options.limits)
+        repairs |= {repair.place: repair for repair in made}
+        if not made:
+            break
+        outcome = outcome_of(examined(Source(name=original.name, data=data), options))
+    return Mended(data=data, role=mended_role(original.data), outcome=outcome, repairs=tuple(repairs.values()))
 
 
 def worth_marking(outcome: Outcome) -> bool:
@@ -60,12 +99,11 @@ def certain_repairs(findings: Iterable[Finding]) -> list[Repair]:
     ]
 
 
-def mended(outcome: Outcome, repairs: list[Repair], limits: ReadingLimits) -> tuple[bytes, list[Repair]]:
+def _with_fixes(submission: Submission, repairs: list[Repair], limits: ReadingLimits) -> tuple[bytes, list[Repair]]:
     """Return the submission with these cells replaced, and the repairs that could be made.
 
     Raises Refusal when the submission cannot be written anew.
     """
-    submission = outcome.submission
     if not repairs or submission.kind not in {"csv", "workbook"}:
         return submission.data, []
     if submission.kind == "workbook":

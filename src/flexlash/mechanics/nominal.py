@@ -10,6 +10,7 @@ from typing import TypeAlias
 import numpy as np
 
 from flexlash.mechanics import flexspline, strength, windup
+from flexlash.mechanics.nominal_record import NominalNumbers
 from flexlash.mechanics.stiffness import (
     catalogue_stiffness,
     drive_lost_motion,
@@ -21,15 +22,14 @@ from flexlash.mechanics.stiffness import (
 from flexlash.schema.arrays import Array, Quantity
 from flexlash.schema.variant import Variant
 
-__all__ = ["Numbers", "nominal_numbers"]
+__all__ = ["nominal_numbers"]
 
-
-Numbers: TypeAlias = dict[str, float | str | None]
+_Numbers: TypeAlias = dict[str, float | str | None]
 """Numbers [SI] and words of one variant by result key without unit."""
 
 
-def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> list[Numbers]:
-    """Nominal results of each variant [SI] by result key without unit.
+def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> list[NominalNumbers]:
+    """Nominal results of each variant [SI].
 
     Equation: as in `flexspline.windups`, `strength`, `stiffness`; lost motion of the flexspline 2 p T_rated / K
     Arguments: variants, and lost_motion_share p [-] of the rated torque at which lost motion is stated.
@@ -40,13 +40,13 @@ def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> li
     ...           "disk_inner_radius": 0.04, "youngs_modulus": 211e9, "poisson_ratio": 0.3}
     >>> variant = Variant(row=5, name="B3-160", flexspline_type="cup", material="20Cr2Ni4",
     ...                   tolerance_class="standard", dimensions=b3_160)
-    >>> f"{nominal_numbers([variant], 0.04)[0]['stiffness']:.7g}"
+    >>> f"{nominal_numbers([variant], 0.04)[0].stiffness:.7g}"
     '1491835'
     """
     groups: dict[tuple[str, frozenset[str]], list[int]] = defaultdict(list)
     for index, variant in enumerate(variants):
         groups[variant.flexspline_type, frozenset(variant.dimensions)].append(index)
-    numbers: list[Numbers] = [{} for _ in variants]
+    numbers: dict[int, NominalNumbers] = {}
     for (flexspline_type, _), indices in groups.items():
         first = variants[indices[0]]
         dimensions = {
@@ -56,9 +56,10 @@ def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> li
             columns = _windups(flexspline_type, dimensions) | _stresses(flexspline_type, dimensions)
             rows = zip(*(np.asarray(column).tolist() for column in columns.values()), strict=True)
             for index, row in zip(indices, rows, strict=True):
-                numbers[index] = dict(zip(columns, row, strict=True))
-                numbers[index] |= _beside(variants[index], numbers[index], lost_motion_share)
-    return numbers
+                known: _Numbers = dict(zip(columns, row, strict=True))
+                known |= _beside(variants[index], known, lost_motion_share)
+                numbers[index] = NominalNumbers(**known)  # type: ignore[arg-type]
+    return [numbers[index] for index in range(len(variants))]
 
 
 def _windups(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Quantity]:
@@ -120,9 +121,9 @@ _TUBE = ("wall_thickness", "cylinder_length")
 _RANGES = {-1: "shorter", 0: "yes", 1: "longer"}
 
 
-def _beside(variant: Variant, numbers: Numbers, lost_motion_share: float) -> Numbers:
+def _beside(variant: Variant, numbers: _Numbers, lost_motion_share: float) -> _Numbers:
     """Return what asks for more than dimensions and torque: material strength, rated torque, inertia, catalogue."""
-    beside: Numbers = {}
+    beside: _Numbers = {}
     stiffness, torque = _of(numbers, "stiffness"), variant.dimensions["torque"]
     stress = {section: numbers.get(f"{section}_von_mises") or 0.0 for section in _SECTIONS}
     beside["governing_section"] = _SECTIONS[max(stress, key=lambda section: stress[section])]
@@ -154,7 +155,7 @@ def _beside(variant: Variant, numbers: Numbers, lost_motion_share: float) -> Num
     return beside
 
 
-def _of(numbers: Numbers, key: str) -> float:
+def _of(numbers: _Numbers, key: str) -> float:
     """Return a number that every variant has."""
     value = numbers[key]
     if not isinstance(value, float):

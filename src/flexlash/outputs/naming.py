@@ -36,7 +36,7 @@ _FORBIDDEN = re.compile(r'[<>:"/\\|?*\x00-\x1f\x7f]')
 """What no name of a file can hold on every system."""
 
 
-def named_output(plan: Plan, path: str | Path | Output, endings: Sequence[str]) -> Output:
+def named_output(plan: Plan, path: str | os.PathLike[str], endings: Sequence[str]) -> Output:
     """Return the output that a caller names; raise ValueError where it cannot be meant."""
     if isinstance(path, Output):
         return path

@@ -24,7 +24,7 @@ from flexlash.schema.findings import shown
 from flexlash.schema.stamps import stamp_at, stamped
 from flexlash.schema.unused_names import numbered_names
 
-__all__ = ["Output", "Plan", "Written"]
+__all__ = ["Output", "Plan", "WrittenFile"]
 
 _KINDS = {stat.S_IFLNK: "it is a link", stat.S_IFDIR: "it is a folder", stat.S_IFIFO: "it is a pipe"}
 _INPUT = "it is one of the files given to flexlash"
@@ -40,7 +40,7 @@ Identity = tuple[int, int] | str
 
 
 @dataclass(frozen=True, kw_only=True)
-class Written:
+class WrittenFile:
     """Where an output was written, and a sentence about what stood in its way and was left alone, if anything did."""
 
     path: Path
@@ -154,6 +154,10 @@ class Output:
     forced: bool = False
     fault: OSError | None = None
 
+    def __fspath__(self) -> str:
+        """Return its place as a path, so that an output may be given where a path may."""
+        return str(self.path)
+
     @property
     def ending(self) -> str:
         """How the output's name ends: `.xlsx`."""
@@ -164,7 +168,7 @@ class Output:
         if self.fault is not None:
             raise self.fault
 
-    def write(self, data: bytes, role: str = "") -> Written:
+    def write(self, data: bytes, role: str = "") -> WrittenFile:
         """Write the file and return where; with a role it is stamped, where its kind has room for that.
 
         The plan is looked at again: what another program has put there meanwhile is left alone as well. Raises OSError,
@@ -181,7 +185,7 @@ class Output:
                     raise _of_output(fault, self.path) from fault
         raise AssertionError
 
-    def _write(self, data: bytes) -> Written:
+    def _write(self, data: bytes) -> WrittenFile:
         reason = self._known_obstacle()
         with temporary(self.path.parent, data) as file:
             # The planned path first, then those that are free should something have come in its way.
@@ -190,7 +194,7 @@ class Output:
                 reason = reason or obstacle
             status = path.stat()
         self.plan.written.add((status.st_dev, status.st_ino))
-        return Written(path=path, remark=self._remark(reason, path))
+        return WrittenFile(path=path, remark=self._remark(reason, path))
 
     def _known_obstacle(self) -> str:
         """Return why the output does not get the name that it should have, where a file is the reason."""

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
 
-from flexlash.analysis.outcome import PICTURED, Outcome
+from flexlash.analysis.outcome import Outcome
 from flexlash.report.layout.styles import Book
+from flexlash.report.report_data import PICTURED, Drawn, ReportData
 from flexlash.report.section_picture import section_png
-from flexlash.report.selection import Drawn
 from flexlash.schema.findings import shown
 from flexlash.schema.units import ARCMIN
 
@@ -74,9 +73,9 @@ def write_elasticity(book: Book, outcome: Outcome) -> None:
     sheet.repeat_rows(_HEADER)
 
 
-def write_stress(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
+def write_stress(book: Book, data: ReportData) -> None:
     """Write the pictures of the worst variants that were checked."""
-    if not outcome.pictured:
+    if not data.pictured:
         return
     sheet = book.sheet("Stress", landscape=False, pages_tall=1)
     sheet.write_string(0, 0, "Shear stress in the half-section", book.format("title"))
@@ -86,21 +85,21 @@ def write_stress(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
         "greatest stress by formula."
     )
     sheet.write_string(1, 0, text, book.format("quiet"))
-    by_name = {one.row["variant"]: one for one in drawn}
-    for number, (name, check) in enumerate(outcome.pictured.items()):
+    by_name = {one.row["variant"]: one for one in data.drawn}
+    for number, (name, check) in enumerate(data.pictured.items()):
         row, column = (number // _PER_ROW) * _PICTURE_ROWS + 4, (number % _PER_ROW) * _PICTURE_COLUMNS
         greatest = _OVER * _greatest_shear(by_name[name])
         title = shown(name, longest=_NAME)
         sheet.write_string(row - 1, column, title, book.format("label"))
-        data = io.BytesIO(section_png(check, greatest))
+        image = io.BytesIO(section_png(check, greatest))
         described = f"Half-section of {title}, coloured by shear stress"
-        options = {"image_data": data, "description": described, "object_position": 2}
+        options = {"image_data": image, "description": described, "object_position": 2}
         sheet.insert_image(row, column, f"half-section-{number + 1}.png", options)
-    pages = -(-len(outcome.pictured) // _PER_ROW)
+    pages = -(-len(data.pictured) // _PER_ROW)
     sheet.print_area(0, 0, pages * _PICTURE_ROWS + 2, _PER_ROW * _PICTURE_COLUMNS - 1)
 
 
 def _greatest_shear(one: Drawn) -> float:
     """Return the greatest shear stress by formula [Pa]."""
-    found = [one.computed.nominal.get(f"{section}_shear") for section in ("wall", "rim", "hub")]
-    return max(stress for stress in found if isinstance(stress, float))
+    nominal = one.computed.nominal
+    return max(stress for stress in (nominal.wall_shear, nominal.rim_shear, nominal.hub_shear) if stress is not None)

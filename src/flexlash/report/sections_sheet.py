@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from flexlash.report.layout.styles import GRID, PALETTE, Book
-from flexlash.report.selection import Drawn
+from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.schema.units import ARCMIN
 
@@ -64,7 +64,7 @@ def write_sections(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
     for row, (one, label) in enumerate(zip(drawn, labels, strict=True), start=header + 1):
         sheet.write_string(row, 0, label, book.format("text"))
         for place, (segment, _, _) in enumerate(_SEGMENTS, start=1):
-            angle = one.computed.nominal.get(f"{segment}_windup")
+            angle = getattr(one.computed.nominal, f"{segment}_windup")
             if isinstance(angle, float):
                 sheet.write_number(row, place, 2 * angle / ARCMIN, book.format("text", "arcmin"))
         for place, (key, _, number) in enumerate(_BESIDE, start=1 + len(_SEGMENTS)):

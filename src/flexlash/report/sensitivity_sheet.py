@@ -10,8 +10,8 @@ from flexlash.analysis.run_summary import dimension_words
 from flexlash.report.layout.paper import SMALL, fits, print_readably
 from flexlash.report.layout.result_formats import SHARE_OF_VARIANCE_ERROR
 from flexlash.report.layout.styles import GRID, PALETTE, Book, percent_of
+from flexlash.report.report_data import Drawn
 from flexlash.report.results_sheet import SHARE_DECIMALS
-from flexlash.report.selection import Drawn
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import shown
 from flexlash.schema.units import ARCMIN

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from flexlash.report.layout.paper import SMALL, print_readably
 from flexlash.report.layout.styles import Book
-from flexlash.report.selection import Drawn
+from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
 
 __all__ = ["write_strength"]
@@ -70,7 +70,7 @@ def write_strength(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
     for row, (one, label) in enumerate(zip(drawn, labels, strict=True), start=_HEADER + 1):
         sheet.write_string(row, 0, label, book.format("text"))
         for place, (key, _, number) in enumerate(_COLUMNS, start=1):
-            value = one.row[key] if key in one.row else one.computed.nominal.get(key)
+            value = one.row[key] if key in one.row else getattr(one.computed.nominal, key)
             if isinstance(value, float) and key.endswith("von_mises"):
                 value /= _MEGAPASCAL
             if isinstance(value, str):

@@ -19,9 +19,9 @@ from flexlash.report.explorer.curves_sheet import CURVES_NOTE, stored_curves
 from flexlash.report.explorer.explorer_sheet import write_explorer
 from flexlash.report.findings_sheet import write_findings
 from flexlash.report.layout.styles import Book
+from flexlash.report.report_data import report_data
 from flexlash.report.results_sheet import write_results
 from flexlash.report.sections_sheet import write_sections
-from flexlash.report.selection import drawn_variants
 from flexlash.report.sensitivity_sheet import write_sensitivity
 from flexlash.report.strength_sheet import write_strength
 from flexlash.report.submission_sheets import write_submission
@@ -43,9 +43,10 @@ def report_bytes(outcome: Outcome) -> bytes:
     workbook.set_properties({"title": f"flexlash report on {outcome.submission.name}", "created": created})
     workbook.set_custom_property("flexlash", "report")
     book = Book(workbook)
-    drawn = drawn_variants(outcome)
+    data = report_data(outcome)
+    drawn = data.drawn
     curves = stored_curves(drawn)
-    write_summary(book, outcome, drawn, curves)
+    write_summary(book, outcome, data, curves)
     write_results(book, outcome)
     write_explorer(book, curves, len(outcome.computed))
     compared = compared_variants(drawn)
@@ -58,7 +59,7 @@ def report_bytes(outcome: Outcome) -> bytes:
     write_strength(book, drawn, len(outcome.computed))
     if "elasticity_windup_rad" in outcome.results.columns:
         write_elasticity(book, outcome)
-        write_stress(book, outcome, drawn)
+        write_stress(book, data)
     write_findings(book, outcome)
     write_submission(book, outcome)
     inputs = stored_inputs([one.computed for one in drawn], outcome.settings.lost_motion_percent)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from flexlash.schema.findings import spelled_out
@@ -30,7 +31,7 @@ def share_error(low: float, high: float) -> float:
     return (high - low) / (2 * INTERVAL)
 
 
-def share_words(row: dict[str, Any]) -> str:
+def share_words(row: Mapping[str, Any]) -> str:
     """Return the probability over limit of a Results row with its interval, never as a bare 0 or 100 %.
 
     >>> share_words({"probability_over_limit": 0.0, "probability_over_limit_low": 0.0,

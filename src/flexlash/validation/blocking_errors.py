@@ -6,38 +6,35 @@ And the other way round: which rows wait for an error.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, TypeAlias
 
 from flexlash.schema.findings import Finding, shown
 from flexlash.schema.spellings import plain
-from flexlash.validation.validate import Validated
+from flexlash.validation.validated import Blocked, Owner, Table
 
-__all__ = ["Waiting", "name_waiting", "stopped_by", "waiting_rows"]
-
-Kind: TypeAlias = Literal["material", "class"]
+__all__ = ["Waiting", "stopped_by", "waiting_rows", "with_waiting_rows"]
 
 
-def stopped_by(validated: Validated) -> dict[int, list[Finding]]:
+def stopped_by(table: Table, blocked: Blocked, findings: Iterable[Finding]) -> dict[int, list[Finding]]:
     """Return the errors at other places that stop each row of Variants, by its row number."""
-    table, ledger = validated.table, validated.ledger
-    if table is None:
-        return {}
     by_place: dict[tuple[str, int], list[Finding]] = defaultdict(list)
-    for found in ledger.findings:
+    for found in findings:
         if found.level == "error":
             by_place[found.sheet, found.row].append(found)
     headers = by_place[table.sheet, table.heading.row]
-    named = {place for places in ledger.sources.values() for place in places}
+    named = {place for places in blocked.sources.values() for place in places}
     own = {(table.sheet, row) for row in table.frame["row"]}
     of_rows = named | own
     general = [found for place, group in by_place.items() if place not in of_rows for found in group]
     stops: dict[int, list[Finding]] = {}
     for row, material, tolerance_class in table.frame.select("row", "material", "tolerance_class").iter_rows():
-        owners = (("material", plain(material or "")), ("class", plain(tolerance_class or "standard")))
-        errors = [one for owner in owners for place in ledger.sources.get(owner, ()) for one in by_place[place]]
-        errors += general if ledger.everything else [one for one in headers if (row, one.column) in table.faulty]
+        owners: tuple[Owner, ...] = (
+            ("material", plain(material or "")),
+            ("class", plain(tolerance_class or "standard")),
+        )
+        errors = [one for owner in owners for place in blocked.sources.get(owner, ()) for one in by_place[place]]
+        errors += general if blocked.everything else [one for one in headers if (row, one.column) in table.faulty]
         stops[row] = list(dict.fromkeys(errors))
     return stops
 
@@ -52,39 +49,36 @@ class Waiting:
     places: Sequence[tuple[str, int]]
 
 
-def waiting_rows(validated: Validated) -> list[Waiting]:
+def waiting_rows(table: Table, blocked: Blocked) -> list[Waiting]:
     """Return which rows of Variants wait for which faulty material or class, in the order of the rows."""
-    table, sources = validated.table, validated.ledger.sources
-    if table is None or not sources:
+    sources = blocked.sources
+    if not sources:
         return []
-    rows: dict[tuple[Kind, str], list[int]] = defaultdict(list)
-    names: dict[tuple[Kind, str], str] = {}
+    rows: dict[Owner, list[int]] = defaultdict(list)
+    names: dict[Owner, str] = {}
     for row, material, tolerance_class in table.frame.select("row", "material", "tolerance_class").iter_rows():
-        owned: tuple[tuple[Kind, str], ...] = (("material", material or ""), ("class", tolerance_class or "standard"))
+        owned: tuple[Owner, ...] = (("material", material or ""), ("class", tolerance_class or "standard"))
         for kind, name in owned:
-            owner = (kind, plain(name))
+            owner: Owner = (kind, plain(name))
             if owner in sources:
                 rows[owner].append(row)
                 names.setdefault(owner, name)
     return [Waiting(kind=one[0], name=names[one], rows=rows[one], places=sources[one]) for one in rows]
 
 
-def name_waiting(validated: Validated) -> None:
-    """Add to each error in a material or class, and to one that stops everything, which rows of Variants wait."""
-    ledger, table = validated.ledger, validated.table
-    if table is None:
-        return
+def with_waiting_rows(findings: Sequence[Finding], table: Table, blocked: Blocked) -> list[Finding]:
+    """Return findings of which errors in a material or class, or that stop everything, say which rows wait."""
     sheet = shown(table.sheet)
     sentences: dict[tuple[str, int], str] = {}
-    for one in waiting_rows(validated):
+    for one in waiting_rows(table, blocked):
         wait = f"{_rows_words(one.rows)} of {sheet} wait{'s' if len(one.rows) == 1 else ''}"
         sentences |= dict.fromkeys(one.places, f" {wait} for {one.kind} {shown(one.name)}.")
-    every = f" All rows of {sheet} wait for it." if ledger.everything and not table.frame.is_empty() else ""
-    ledger.findings = [
+    every = f" All rows of {sheet} wait for it." if blocked.everything and not table.frame.is_empty() else ""
+    return [
         replace(found, message=found.message + sentences.get((found.sheet, found.row), every))
         if found.level == "error" and found.cell and found.sheet != table.sheet
         else found
-        for found in ledger.findings
+        for found in findings
     ]
 
 

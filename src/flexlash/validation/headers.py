@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from flexlash.reading.read import ErrorCell, RawSheet, RawValue, Unstored
@@ -16,31 +15,15 @@ from flexlash.schema.units import Unit, find_unit
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.likely_headers import likely_headers
 from flexlash.validation.other_headers import radius_of_diameter, tolerance_columns
+from flexlash.validation.validated import Heading
 
-__all__ = ["STATUS_HEADER", "Heading", "closest", "count_headings", "find_headings", "plain"]
+__all__ = ["STATUS_HEADER", "closest", "count_headings", "find_headings", "plain"]
 
 STATUS_HEADER = "Row status"
 """Header of the template's own formula column, which is never data."""
 
 _OF_TOLERANCES = frozenset({"tolerance_class", "lower_deviation", "upper_deviation", "deviation_unit", "limits_sigma"})
 """Columns of the template whose names speak of tolerances themselves."""
-
-
-@dataclass(kw_only=True)
-class Heading:
-    """The columns found in a sheet: place and factor to the printed unit by key, extra headers by place.
-
-    `doubtful` are the places of headers that cannot be taken and the key that was probably meant, `diameters` those of
-    them that hold twice what is meant; `ignored` those of the template's own formulas.
-    """
-
-    row: int
-    places: dict[str, int] = field(default_factory=dict)
-    factors: dict[str, float] = field(default_factory=dict)
-    extra: dict[int, str] = field(default_factory=dict)
-    doubtful: dict[int, str] = field(default_factory=dict)
-    diameters: set[int] = field(default_factory=set)
-    ignored: set[int] = field(default_factory=set)
 
 
 def _as_header(cell: RawValue) -> str:
@@ -100,7 +83,7 @@ class _Recogniser:
             return None
         heading = Heading(row=best)
         headers = {place: _as_header(cell) for place, cell in self.sheet.rows[best].items()}
-        heading.ignored |= {place for place, header in headers.items() if plain(header) == plain(STATUS_HEADER)}
+        heading.ignored.update(place for place, header in headers.items() if plain(header) == plain(STATUS_HEADER))
         headers = {place: text for place, text in headers.items() if text.strip() and place not in heading.ignored}
         self._filled = _filled(self.sheet, best)
         unknown = self._unknown(heading, headers)
@@ -144,7 +127,7 @@ class _Recogniser:
             diameter, keys = diameters.get(place), likely.get(place, [])
             is_needed = any(self.columns[key].required and key not in present for key in keys)
             if diameter:
-                heading.diameters |= {place} if "radius" in diameter else set()
+                heading.diameters.update({place} if "radius" in diameter else ())
                 found[place] = _Unknown([diameter])
             elif place in scatter and place in self._filled and not is_needed and not _OF_TOLERANCES.intersection(keys):
                 found[place] = _Unknown([], scatter[place])

@@ -11,7 +11,7 @@ from flexlash.reading.raw import RawSheet
 from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import columns_of, naming_column
 from flexlash.validation.ledger import Ledger
-from flexlash.validation.typed_columns import Table
+from flexlash.validation.validated import Table
 
 __all__ = ["tell_overlooked"]
 

@@ -1,40 +1,17 @@
-"""Where findings are gathered while a submission is validated, with what each of them spoils."""
+"""Where a stage gathers its findings while it works, with what each of them spoils; it returns them as records."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.findings import Finding, finding
+from flexlash.schema.variant import Variant
+from flexlash.validation.validated import Blocked, Owner, Table, UnitMistake, Validated
 
-__all__ = ["Ledger", "UnitMistake"]
-
-_UNKNOWN = frozenset({"E209", "E210", "E211", "E307", "E309"})
-"""Codes of names that are unknown however they are spelt."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class UnitMistake:
-    """A cell whose unit is mistaken, with what to say of it: `suggestion` is what was probably meant.
-
-    `material` is the plain name of the material whose row it stands in, empty for a cell of Variants.
-    """
-
-    sheet: str
-    schema: str
-    cell: CellAddress
-    column: str
-    variant: str
-    material: str
-    row: int
-    shown: str
-    entered: Any
-    times: str
-    beside: str
-    suggestion: str
+__all__ = ["Ledger"]
 
 
 class Ledger:
@@ -52,9 +29,33 @@ class Ledger:
         self.rows: set[int] = set()
         self.materials: set[str] = set()
         self.classes: set[str] = set()
-        self.sources: dict[tuple[str, str], list[tuple[str, int]]] = defaultdict(list)
+        self.sources: dict[Owner, list[tuple[str, int]]] = defaultdict(list)
         self.everything = False
         self.unit_mistakes: dict[tuple[str, int, str], UnitMistake] = {}
+        self.table: Table | None = None
+
+    @classmethod
+    def after(cls, validated: Validated | None) -> Ledger:
+        """Return one without findings that knows what validation found not to be computable."""
+        if validated is None:
+            raise LookupError("a submission that was not validated")
+        ledger, blocked = cls(validated.file), validated.blocked
+        ledger.rows, ledger.materials, ledger.classes = set(blocked.rows), set(blocked.materials), set(blocked.classes)
+        ledger.sources.update({owner: [*places] for owner, places in blocked.sources.items()})
+        ledger.everything = blocked.everything
+        ledger.unit_mistakes, ledger.table = dict(validated.unit_mistakes), validated.table
+        return ledger
+
+    @property
+    def blocked(self) -> Blocked:
+        """What is not to be computed so far."""
+        return Blocked(
+            rows=frozenset(self.rows),
+            materials=frozenset(self.materials),
+            classes=frozenset(self.classes),
+            sources={owner: tuple(places) for owner, places in self.sources.items()},
+            everything=self.everything,
+        )
 
     def add(self, code: str, *, rows: Iterable[int] = (), **facts: Any) -> None:
         """Record a finding; an error spoils the given rows of Variants."""
@@ -67,50 +68,20 @@ class Ledger:
         if found.level == "error":
             self.rows.update(rows)
 
+    def add_at(self, code: str, variant: Variant, key: str, **facts: Any) -> None:
+        """Record a finding at a cell of a variant that validation has returned."""
+        if self.table is None:
+            raise LookupError("a variant without its table")
+        cell = self.table.address(variant.row, key)
+        rows = [variant.row]
+        self.add(code, sheet=self.table.sheet, cell=cell, column=key, variant=variant.name, rows=rows, **facts)
+
     def spoil(self, kind: Literal["material", "class"], name: str, sheet: str, row: int) -> None:
         """Record a row that makes a material or a class, by its plain name, unusable."""
         (self.materials if kind == "material" else self.classes).add(name)
         self.sources[kind, name].append((sheet, row))
 
-    def settle(self) -> None:
-        """Leave one finding per cell and cause: a spelling is not repaired twice, nor where the name is unknown."""
-        unknown = {(found.sheet, found.cell) for found in self.findings if found.code in _UNKNOWN}
-        first: dict[tuple[str, str], str] = {}
-        last: dict[tuple[str, str], int] = {}
-        for place, found in enumerate(self.findings):
-            if found.code == "I504":
-                first.setdefault((found.sheet, found.cell), found.value)
-                last[found.sheet, found.cell] = place
-        self.findings = [
-            self._respelt(found, first[found.sheet, found.cell]) if found.code == "I504" else found
-            for place, found in enumerate(self.findings)
-            if found.code != "I504"
-            or (place == last[found.sheet, found.cell] and (found.sheet, found.cell) not in unknown)
-        ]
-
-    @staticmethod
-    def _respelt(found: Finding, value: str) -> Finding:
-        """Return a repaired spelling with the value as it was entered."""
-        message = found.message.replace(f'"{found.value}"', f'"{value}"', 1)
-        return replace(found, value=value, message=message)
-
     def _unit_mistake_at(self, facts: Mapping[str, Any]) -> UnitMistake | None:
         """Return the mistake of the cell that a finding is about."""
         address: CellAddress | None = facts.get("cell")
         return address and self.unit_mistakes.get((facts["sheet"], address.row, facts.get("column", "")))
-
-    def unit_mistakes_by_owner(self) -> dict[int | str, list[UnitMistake]]:
-        """Return the mistakes by row of Variants, or by plain name of the material."""
-        found: dict[int | str, list[UnitMistake]] = defaultdict(list)
-        for mistake in self.unit_mistakes.values():
-            found[mistake.material if mistake.schema == "Materials" else mistake.row].append(mistake)
-        return found
-
-    def name_variants(self, sheet: str, names: Mapping[int, str]) -> None:
-        """Put the variant's name into the findings at cells of its row."""
-        self.findings = [
-            replace(found, variant=names.get(found.row, ""))
-            if found.sheet == sheet and found.cell and not found.variant
-            else found
-            for found in self.findings
-        ]

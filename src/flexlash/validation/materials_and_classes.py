@@ -17,8 +17,8 @@ from flexlash.validation.cell_values import Fault, as_number, as_text, is_no_val
 from flexlash.validation.grade_texts import meant_grade
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.number_texts import is_both_ways
-from flexlash.validation.typed_columns import Table
 from flexlash.validation.unusual_values import unusual_words
+from flexlash.validation.validated import Table
 
 __all__ = [
     "BUILT_IN_SHEETS",

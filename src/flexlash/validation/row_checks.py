@@ -11,11 +11,11 @@ from flexlash.schema.columns import columns_of
 from flexlash.schema.spellings import misspelt, spelt_alike, suggested
 from flexlash.validation.cell_values import is_no_value, no_value_facts
 from flexlash.validation.column_schemas import entry_schema, failures
-from flexlash.validation.ledger import Ledger, UnitMistake
+from flexlash.validation.ledger import Ledger
 from flexlash.validation.relations import RELATIONS, Relation, numbers_of
-from flexlash.validation.typed_columns import Table
 from flexlash.validation.unit_mistakes import find_unit_mistakes, report_contradiction
 from flexlash.validation.unusual_values import report_unusual
+from flexlash.validation.validated import Table, UnitMistake
 
 __all__ = ["check_cells", "check_relations"]
 

@@ -10,7 +10,7 @@ from flexlash.reading.raw import RawValue
 from flexlash.schema.columns import columns_of, naming_column
 from flexlash.schema.header_names import BLANK
 from flexlash.schema.spellings import plain
-from flexlash.validation.headers import Heading
+from flexlash.validation.validated import Heading
 
 __all__ = ["NoEntries", "NoEntry"]
 

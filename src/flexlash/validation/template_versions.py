@@ -10,8 +10,8 @@ from flexlash.reading.refusal import Refusal
 from flexlash.schema.columns import ENTRY_SHEETS
 from flexlash.schema.findings import shown
 from flexlash.validation.entry_sheets import sheet_names
-from flexlash.validation.headers import Heading
 from flexlash.validation.ledger import Ledger
+from flexlash.validation.validated import Heading
 
 __all__ = ["TEMPLATE_VERSION", "check_version", "tell_additions", "template_version"]
 

@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import polars as pl
 
 from flexlash.reading.raw import Percentage, RawSheet, RawValue, Unstored
-from flexlash.schema.cell_addresses import CellAddress, cell_ranges, column_letters
+from flexlash.schema.cell_addresses import CellAddress, column_letters
 from flexlash.schema.columns import DIMENSIONS, Column, columns_of, naming_column
 from flexlash.schema.header_names import BLANK
 from flexlash.schema.units import find_unit
 from flexlash.validation.cell_values import Fault, as_number, as_text
-from flexlash.validation.headers import Heading, find_headings, plain
+from flexlash.validation.headers import find_headings, plain
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.number_texts import Measure
 from flexlash.validation.rows_without_entries import NoEntries, NoEntry
 from flexlash.validation.units_row import take_units_row
+from flexlash.validation.validated import Heading, Table
 
-__all__ = ["Table", "tabulate"]
+__all__ = ["tabulate"]
 
 _MEANT_BESIDE = "setting"
 """First column of Settings, where the template explains each setting in a column without a header."""
@@ -30,40 +31,6 @@ _JUDGED_LATER = ("Settings", "value")
 """The cell whose meaning depends on the cell beside it."""
 
 _DEVIATIONS = frozenset({"lower_deviation", "upper_deviation"})
-_MANY = 100
-"""Rows of one name from which on each is told the range of all instead of its partners."""
-
-
-@dataclass(kw_only=True)
-class Table:
-    """Typed cells of an entry sheet in the template's units.
-
-    `frame` has the column `row` and one column per key of the schema, null where blank or unreadable;
-    `cells` are the raw cells by row and place; `faulty` holds (row, key) of cells that already have a finding.
-    """
-
-    sheet: str
-    schema: str
-    heading: Heading
-    frame: pl.DataFrame
-    cells: dict[int, dict[int, RawValue]] = field(default_factory=dict)
-    faulty: set[tuple[int, str]] = field(default_factory=set)
-    numbers_are_texts: bool = False
-
-    def entered(self, row: int, key: str) -> Any:
-        """Return a cell as the user entered it, an empty text where it is blank."""
-        return self.cells[row].get(self.heading.places.get(key, 0), "")
-
-    def address(self, row: int, key: str) -> CellAddress:
-        """Return a cell's address; a column that the sheet lacks stands at the row's first cell."""
-        return CellAddress(row=row, column=self.heading.places.get(key, 1))
-
-    def partners(self, rows: Sequence[int], key: str) -> Iterator[tuple[int, str]]:
-        """Yield rows that hold the same entry, each with the addresses of the others; of many rows, those of all."""
-        every = cell_ranges([self.address(row, key) for row in rows])
-        for row in rows if len(rows) > 1 else ():
-            few = len(rows) <= _MANY
-            yield row, cell_ranges([self.address(other, key) for other in rows if other != row]) if few else every
 
 
 def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
@@ -88,7 +55,7 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
         if surplus := _surplus(sheet, heading, number):
             _blame_surplus(table, number, surplus, sheet, ledger)
         if bare:
-            table.faulty |= {(number, key) for key in columns}
+            table.faulty.update((number, key) for key in columns)
             where = {"sheet": sheet.name, "cell": table.address(number, first_key), "column": first_key}
             ledger.add(bare.code, rows=[number], **where, **bare.facts)
         for place, value in cells.items():
@@ -103,8 +70,7 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
         records.append(record)
         table.cells[number] = cells
     types = {key: pl.Float64 if column.is_number else pl.String for key, column in columns.items()}
-    table.frame = pl.DataFrame(records, schema={"row": pl.Int64, **types}, orient="row")
-    return table
+    return replace(table, frame=pl.DataFrame(records, schema={"row": pl.Int64, **types}, orient="row"))
 
 
 def _entries(
@@ -133,7 +99,7 @@ def _surplus(sheet: RawSheet, heading: Heading, row: int) -> list[int]:
 
 def _blame_surplus(table: Table, row: int, surplus: list[int], sheet: RawSheet, ledger: Ledger) -> None:
     """Record that a row has more cells than headers, so that nothing tells which value belongs to which."""
-    table.faulty |= {(row, key) for key in columns_of(table.schema)}
+    table.faulty.update((row, key) for key in columns_of(table.schema))
     comma = sheet.dialect is not None and sheet.dialect.delimiter == ","
     ledger.add(
         "E215",

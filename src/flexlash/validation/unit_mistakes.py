@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from flexlash.schema.columns import columns_of
-from flexlash.schema.findings import spelled_out
-from flexlash.validation.headers import plain
-from flexlash.validation.ledger import Ledger, UnitMistake
-from flexlash.validation.typed_columns import Table
+from flexlash.schema.findings import Finding, finding, spelled_out
+from flexlash.schema.spellings import plain
+from flexlash.validation.ledger import Ledger
+from flexlash.validation.validated import Table, UnitMistake
 
-__all__ = ["SHARES", "find_unit_mistakes", "report_contradiction", "settle"]
+__all__ = ["SHARES", "find_unit_mistakes", "report_contradiction", "settled"]
 
 _THOUSAND = 1000.0
 _RADII = {"mean_radius_mm": 1.0, "bore_diameter_mm": 0.5}
@@ -76,7 +76,7 @@ _MATERIAL = {
 
 
 def find_unit_mistakes(table: Table, ledger: Ledger) -> None:
-    """Put the cells of Variants or Materials whose unit is mistaken into the ledger; `settle` tells them."""
+    """Put the cells of Variants or Materials whose unit is mistaken into the ledger; `settled` tells them."""
     find = {"Variants": _variant_factors, "Materials": _material_factors}.get(table.schema)
     if find is None:
         return
@@ -104,15 +104,15 @@ def _facts(mistake: UnitMistake) -> dict[str, Any]:
     }
 
 
-def settle(ledger: Ledger) -> None:
-    """Leave each cell its error alone: drop the doubts about its value, and record only the other mistakes."""
-    wrong = {(found.sheet, found.cell) for found in ledger.findings if found.level == "error"}
-    ledger.findings = [
-        found for found in ledger.findings if found.code not in _DOUBTS or (found.sheet, found.cell) not in wrong
+def settled(findings: Sequence[Finding], mistakes: Iterable[UnitMistake], file: str) -> list[Finding]:
+    """Return findings with each cell's error alone: doubts about its value go, and only other mistakes are added."""
+    wrong = {(found.sheet, found.cell) for found in findings if found.level == "error"}
+    kept = [found for found in findings if found.code not in _DOUBTS or (found.sheet, found.cell) not in wrong]
+    return kept + [
+        finding("W420", file=file, suggestion=mistake.suggestion, **_facts(mistake))
+        for mistake in mistakes
+        if (mistake.sheet, str(mistake.cell)) not in wrong
     ]
-    for mistake in ledger.unit_mistakes.values():
-        if (mistake.sheet, str(mistake.cell)) not in wrong:
-            ledger.add("W420", suggestion=mistake.suggestion, **_facts(mistake))
 
 
 def report_contradiction(mistake: UnitMistake, contradicted: str, ledger: Ledger) -> None:

@@ -12,8 +12,8 @@ from flexlash.schema.columns import columns_of, naming_column
 from flexlash.schema.header_names import name_and_unit
 from flexlash.schema.spellings import plain
 from flexlash.schema.units import Unit, find_unit
-from flexlash.validation.headers import Heading
 from flexlash.validation.ledger import Ledger
+from flexlash.validation.validated import Heading
 
 __all__ = ["take_units_row"]
 

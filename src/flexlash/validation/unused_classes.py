@@ -10,7 +10,7 @@ from typing import Any
 from flexlash.schema.columns import columns_of
 from flexlash.schema.spellings import affordable, misspelt, plain
 from flexlash.validation.ledger import Ledger
-from flexlash.validation.typed_columns import Table
+from flexlash.validation.validated import Table
 
 __all__ = ["tell_unused_classes"]
 

@@ -9,8 +9,8 @@ import polars as pl
 from flexlash.schema.columns import Column, columns_of
 from flexlash.schema.findings import spelled_out
 from flexlash.validation.ledger import Ledger
-from flexlash.validation.typed_columns import Table
 from flexlash.validation.unit_mistakes import SHARES
+from flexlash.validation.validated import Table
 
 __all__ = ["report_unusual", "unusual_words"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import polars as pl
@@ -30,42 +30,16 @@ from flexlash.validation.materials_and_classes import (
 )
 from flexlash.validation.row_checks import check_cells, check_relations
 from flexlash.validation.template_versions import TEMPLATE_VERSION, check_version, tell_additions
-from flexlash.validation.typed_columns import Table, tabulate
+from flexlash.validation.typed_columns import tabulate
 from flexlash.validation.unused_classes import tell_unused_classes
+from flexlash.validation.validated import Table, Validated
 
-__all__ = ["TEMPLATE_VERSION", "Validated", "validate"]
+__all__ = ["TEMPLATE_VERSION", "validate"]
 
 _OTHER_SOURCES = "Other sources"
 
 _NEAR = 0.7
 """Likeness from which on a material or class is suggested; short names of steels share letters by chance."""
-
-
-@dataclass(kw_only=True)
-class Validated:
-    """A submission after validation.
-
-    `table` is Variants as read, one row per submitted variant; `tolerances` is Tolerances, None where the built-in
-    class is used; `variants` are the rows of Variants without an error;
-    `ledger` holds the findings and what they spoil, for the stages that add engineering findings;
-    `header_rows` the row of each entry sheet's headers.
-    """
-
-    ledger: Ledger
-    table: Table | None = None
-    tolerances: Table | None = None
-    variants: list[Variant] = field(default_factory=list)
-    classes: dict[str, list[ToleranceRow]] = field(default_factory=dict)
-    materials: dict[str, Material] = field(default_factory=dict)
-    settings: Settings = field(default_factory=Settings)
-    header_rows: dict[str, int] = field(default_factory=dict)
-
-    @property
-    def submitted(self) -> list[tuple[int, str, str]]:
-        """Row number, name and notes of every submitted variant, in submitted order."""
-        if self.table is None:
-            return []
-        return list(self.table.frame.select("row", "variant", "notes").fill_null("").iter_rows())
 
 
 def validate(submission: Submission, limits: ReadingLimits | None = None) -> Validated:
@@ -74,7 +48,6 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     Raises Refusal when there is no Variants sheet or the template is newer than this program.
     """
     ledger = Ledger(submission.name)
-    result = Validated(ledger=ledger)
     check_version(submission)
     sheets = entry_sheets(submission, limits or ReadingLimits())
     unclear = tell_other_names(submission, sheets, ledger)
@@ -85,52 +58,62 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
         if table is not None:
             tell_overlooked(sheet, table, ledger)
             check_cells(table, ledger)
-            result.header_rows[schema] = table.heading.row
             tables[schema] = table
     for sheet in sheets.values():
         report_dialect(sheet, ledger)
     tell_additions(submission, {schema: table.heading for schema, table in tables.items()}, ledger)
-    _fill_tables(result, submission, sheets.keys() | unclear, tables)
-    result.table, result.tolerances = tables.get("Variants"), tables.get("Tolerances")
-    if result.table is not None:
-        _check_rows(result, result.table)
-        tell_unused_classes(tables.get("Tolerances"), result.table, result.classes, ledger)
+    used = _used(submission, sheets.keys() | unclear, tables, ledger)
+    variants = tables.get("Variants")
+    if variants is not None:
+        _check_rows(variants, used, ledger)
+        tell_unused_classes(tables.get("Tolerances"), variants, used.classes, ledger)
     _tell_other_sources(submission, ledger)
-    if result.table is not None and not ledger.everything:
-        result.variants = [
-            _variant(record, result)
-            for record in result.table.frame.iter_rows(named=True)
-            if record["row"] not in ledger.rows
-        ]
-    ledger.settle()
-    ledger.name_variants(result.table.sheet if result.table else "", {row: name for row, name, _ in result.submitted})
-    return result
+    sound = variants.frame.iter_rows(named=True) if variants is not None and not ledger.everything else ()
+    return Validated(
+        file=submission.name,
+        findings=tuple(ledger.findings),
+        blocked=ledger.blocked,
+        unit_mistakes=ledger.unit_mistakes,
+        table=variants,
+        tolerances=tables.get("Tolerances"),
+        variants=tuple(_variant(record, used) for record in sound if record["row"] not in ledger.rows),
+        classes=used.classes,
+        materials=used.materials,
+        settings=used.settings,
+        header_rows={schema: table.heading.row for schema, table in tables.items()},
+    )
 
 
-def _fill_tables(result: Validated, submission: Submission, present: Collection[str], tables: dict[str, Table]) -> None:
-    """Take materials, tolerance classes and settings from the submission, else the built-in ones."""
-    ledger = result.ledger
-    if "Materials" in tables:
-        result.materials = materials_of(tables["Materials"], ledger)
-    elif "Materials" not in present:
-        result.materials = built_in_materials()
-        if submission.kind == "workbook":
+@dataclass(frozen=True, kw_only=True)
+class _Used:
+    """What the rows of Variants draw on: materials and classes by plain name, and the settings."""
+
+    materials: Mapping[str, Material]
+    classes: Mapping[str, Sequence[ToleranceRow]]
+    settings: Settings
+
+
+def _used(submission: Submission, present: Collection[str], tables: Mapping[str, Table], ledger: Ledger) -> _Used:
+    """Return materials, tolerance classes and settings of the submission, else the built-in ones."""
+    is_workbook = submission.kind == "workbook"
+    materials = materials_of(tables["Materials"], ledger) if "Materials" in tables else {}
+    if "Materials" not in present:
+        materials = built_in_materials()
+        if is_workbook:
             ledger.add("I505", value="sheet Materials", other="materials")
-    if "Tolerances" in tables:
-        result.classes = tolerance_classes_of(tables["Tolerances"], ledger)
+    classes = tolerance_classes_of(tables["Tolerances"], ledger) if "Tolerances" in tables else {}
     # Where the classes have no column, which of them there are cannot be told.
     are_named = "Tolerances" in tables and "tolerance_class" in tables["Tolerances"].heading.places
-    if "standard" not in result.classes and (are_named or "Tolerances" not in present):
-        result.classes["standard"] = standard_class()
-        if submission.kind == "workbook":
+    if "standard" not in classes and (are_named or "Tolerances" not in present):
+        classes["standard"] = standard_class()
+        if is_workbook:
             ledger.add("I505", value="rows for tolerance class standard", other="class")
-    if "Settings" in tables:
-        result.settings = settings_of(tables["Settings"], ledger)
+    settings = settings_of(tables["Settings"], ledger) if "Settings" in tables else Settings()
+    return _Used(materials=materials, classes=classes, settings=settings)
 
 
-def _check_rows(result: Validated, table: Table) -> None:
+def _check_rows(table: Table, used: _Used, ledger: Ledger) -> None:
     """Check relations, duplicates and references of the Variants rows."""
-    ledger = result.ledger
     if table.frame.is_empty():
         cell = table.address(table.heading.row + 1, "variant")
         ledger.add("E115", sheet=table.sheet, cell=cell)
@@ -138,8 +121,8 @@ def _check_rows(result: Validated, table: Table) -> None:
         return
     check_relations(table, ledger)
     _check_duplicates(table, ledger)
-    materials = [material.name for material in result.materials.values()]
-    classes = [rows[0].tolerance_class if rows else key for key, rows in result.classes.items()]
+    materials = [material.name for material in used.materials.values()]
+    classes = [rows[0].tolerance_class if rows else key for key, rows in used.classes.items()]
     _check_references(table, ledger, "material", "E307", materials)
     _check_references(table, ledger, "tolerance_class", "E309", classes)
     if "standard" in ledger.classes:
@@ -228,10 +211,10 @@ def _sizes(record: Mapping[str, Any], role: Role) -> dict[str, float]:
     }
 
 
-def _variant(record: dict[str, Any], result: Validated) -> Variant:
+def _variant(record: Mapping[str, Any], used: _Used) -> Variant:
     """Return a sound row as a variant in SI; dimensions that equal another are left out."""
     requirements = _sizes(record, "requirement")
-    material = result.materials[plain(record["material"])]
+    material = used.materials[plain(record["material"])]
     constants = dict(material.constants)
     if "shear_modulus" in constants:
         constants = {"shear_modulus": constants["shear_modulus"]}
@@ -241,7 +224,7 @@ def _variant(record: dict[str, Any], result: Validated) -> Variant:
         flexspline_type=record["flexspline_type"] or "cup",
         material=material.name,
         tolerance_class=record["tolerance_class"] or "standard",
-        dimensions=_sizes(record, "dimension") | constants | result.settings.calibrations,
+        dimensions=_sizes(record, "dimension") | constants | used.settings.calibrations,
         rated_torque=requirements.get("rated_torque"),
         load_inertia=requirements.get("load_inertia_kg_m2"),
         backlash_limit=requirements.get("backlash_limit"),

@@ -23,10 +23,11 @@ from flexlash.schema.columns import ENTRY_SHEETS, SETTINGS, Column
 from flexlash.schema.spellings import plain
 from flexlash.validation.cell_values import as_number
 from flexlash.validation.entry_sheets import entry_sheets
-from flexlash.validation.headers import Heading, find_headings
+from flexlash.validation.headers import find_headings
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.template_versions import template_version
 from flexlash.validation.validate import validate
+from flexlash.validation.validated import Heading
 
 __all__ = ["Upgrade", "refilled", "upgraded"]
 

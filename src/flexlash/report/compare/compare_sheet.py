@@ -11,7 +11,7 @@ from flexlash.analysis.outcome import Outcome
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, PALETTE, Book
-from flexlash.report.selection import Drawn
+from flexlash.report.report_data import Drawn
 from flexlash.schema.findings import shown
 
 __all__ = ["BOXES", "write_compare"]

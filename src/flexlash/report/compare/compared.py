@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexlash.report.formula.stored import Row, Stored
-from flexlash.report.selection import Drawn
+from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.schema.arrays import Array
 from flexlash.schema.units import ARCMIN
@@ -74,7 +74,7 @@ def _figures(one: Drawn, label: str) -> Row:
 
 def _slenderness(one: Drawn) -> float:
     """Return cylinder length over mean radius."""
-    return one.computed.variant.dimensions["cylinder_length"] / float(one.computed.nominal["mean_radius"] or 1.0)
+    return one.computed.variant.dimensions["cylinder_length"] / one.computed.nominal.mean_radius
 
 
 def percentile_between(score: float, scores: Array, outputs: Array) -> float:

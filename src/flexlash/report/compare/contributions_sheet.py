@@ -12,7 +12,7 @@ from flexlash.report.compare.compared import CONNECTED, share_heading
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, PALETTE, Book
-from flexlash.report.selection import Drawn
+from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.schema.findings import shown
 

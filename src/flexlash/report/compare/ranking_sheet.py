@@ -14,7 +14,7 @@ from flexlash.report.formula.live import Live, fill, put
 from flexlash.report.formula.stored import Row, Stored
 from flexlash.report.layout.links import result_rows, write_link
 from flexlash.report.layout.styles import Book, decimals_of
-from flexlash.report.selection import Drawn
+from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.verdict import COLOURS, RULES, light
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from flexlash.analysis.run_summary import dimension_words, share_words
 from flexlash.report.formula.stored import Stored
-from flexlash.report.selection import Drawn
+from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.schema.arrays import Array
 from flexlash.schema.units import ARCMIN
@@ -97,7 +97,7 @@ def _entries(one: Drawn, label: str) -> Iterator[tuple[str, str | float | None]]
     yield from ((f"Bin {number}", height) for number, height in enumerate(heights, start=1))
     yield from _causes(one)
     for segment, name in SEGMENTS.items():
-        angle = one.computed.nominal.get(f"{segment}_windup")
+        angle = getattr(one.computed.nominal, f"{segment}_windup")
         yield name, 2 * angle / ARCMIN if isinstance(angle, float) else 0.0
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import GRID, PALETTE, Book
-from flexlash.report.selection import Drawn
+from flexlash.report.report_data import Drawn
 from flexlash.report.wording.verdict import firm, light
 
 __all__ = ["chart_words", "variants_chart"]

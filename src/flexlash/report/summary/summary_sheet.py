@@ -13,7 +13,7 @@ from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.links import result_rows, write_link
 from flexlash.report.layout.styles import Book, decimals_of
 from flexlash.report.layout.wrapping import LINE_HEIGHT, fitted, lines_of, merged_width
-from flexlash.report.selection import Drawn
+from flexlash.report.report_data import Drawn, ReportData
 from flexlash.report.summary.summary_chart import chart_words, variants_chart
 from flexlash.report.wording.distances import distance, distance_format
 from flexlash.report.wording.quoted import labels_of, rough
@@ -55,16 +55,16 @@ _LINES = 5
 _SIGNED = "Reviewed by ______________________________   Date ____________________"
 
 
-def write_summary(book: Book, outcome: Outcome, drawn: Sequence[Drawn], curves: Stored) -> None:
+def write_summary(book: Book, outcome: Outcome, data: ReportData, curves: Stored) -> None:
     """Write the Summary sheet; its chart draws on the data sheet of the curves."""
     page = _Page(book, outcome)
     page.heading()
     page.key_figures()
-    for topic, text in sentences(outcome):
+    for topic, text in sentences(outcome, data.recommendations):
         page.sentence(topic, text)
-    if drawn:
-        page.table(drawn)
-        page.chart(drawn, curves)
+    if data.drawn:
+        page.table(data.drawn)
+        page.chart(data.drawn, curves)
     page.provenance()
     page.signature()
     page.sheet.print_area(0, 0, page.row - 1, len(_COLUMNS) - 1)

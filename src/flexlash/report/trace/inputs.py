@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from flexlash.analysis.assessment import Computed
+from flexlash.analysis.computed import Computed
 from flexlash.report.formula.stored import Stored
 from flexlash.schema.columns import DIMENSIONS, MATERIALS, SETTINGS, VARIANTS, Column
 from flexlash.schema.units import ARCMIN, as_entered
@@ -81,7 +81,7 @@ def _row(computed: Computed, lost_motion_percent: float) -> dict[str, str | floa
     }
     row |= {column.label: _printed(sizes.get(name), column) for name, column in ENTERED.items()}
     for key, (heading, size) in PROGRAM.items():
-        number = computed.nominal.get(key) or None
+        number = getattr(computed.nominal, key) or None
         row[heading] = number / size if isinstance(number, float) else number
     return row
 

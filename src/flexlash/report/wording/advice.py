@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from flexlash.analysis.recommendations import Halving, Remedy
+from flexlash.analysis.recommendations import Halving, Recommendation
 from flexlash.analysis.run_summary import counted, dimension_words
 from flexlash.report.wording.quoted import Row, Told
 from flexlash.report.wording.verdict import BOUNDS, straddled
@@ -40,19 +40,19 @@ def tightening(told: Told) -> Iterator[str]:
         names = told.names([row["variant"] for row in hopeless])
         whose = "its backlash is" if len(hopeless) == 1 else "their backlash is"
         yield f"Tighter tolerances cannot help {names}: {whose} over the limit for half of the units or more."
-    for remedy in told.outcome.remedies:
-        if remedy.halvings:
-            yield _halvings(told, remedy)
+    for recommendation in told.recommendations:
+        if recommendation.halvings:
+            yield _halvings(told, recommendation)
 
 
 def stiffening(told: Told) -> Iterator[str]:
     """Yield how the worst red variants become stiffer, and by which wall they would keep their limit."""
-    remedies = told.outcome.remedies
-    for remedy in remedies:
-        if remedy.thickening is not None or not remedy.halvings:
-            yield from _levers(told, remedy)
-            yield from _thickening(remedy)
-    if any(remedy.thickening and remedy.thickening.wanted for remedy in remedies):
+    recommendations = told.recommendations
+    for recommendation in recommendations:
+        if recommendation.thickening is not None or not recommendation.halvings:
+            yield from _levers(told, recommendation)
+            yield from _thickening(recommendation)
+    if any(recommendation.thickening and recommendation.thickening.wanted for recommendation in recommendations):
         yield "How the wave generator bends a thicker wall is not judged here."
 
 
@@ -65,17 +65,17 @@ def _nothing(told: Told) -> Iterator[str]:
         yield "Nothing: no variant with a limit needs a tighter tolerance or a stiffer part."
 
 
-def _row(told: Told, remedy: Remedy) -> Row:
-    """Return the Results row that a remedy is for."""
-    return next(row for row in told.failing if row["variant"] == remedy.variant)
+def _row(told: Told, recommendation: Recommendation) -> Row:
+    """Return the Results row that a recommendation is for."""
+    return next(row for row in told.failing if row["variant"] == recommendation.variant)
 
 
-def _halvings(told: Told, remedy: Remedy) -> str:
+def _halvings(told: Told, recommendation: Recommendation) -> str:
     """Return what half the tolerance of one dimension, or of all, would leave over the limit."""
-    name, row = told.named(remedy.variant), _row(told, remedy)
-    now, every = row["probability_over_limit"], remedy.halvings[-1]
+    name, row = told.named(recommendation.variant), _row(told, recommendation)
+    now, every = row["probability_over_limit"], recommendation.halvings[-1]
     least = _WORTH * (now - BOUNDS["green"])
-    worth = [one for one in remedy.halvings if now - one.over["probability_over_limit"] >= least]
+    worth = [one for one in recommendation.halvings if now - one.over["probability_over_limit"] >= least]
     if not worth:
         what = "all of them" if len(every.limits) > 1 else "that of the only one that scatters"
         return (
@@ -90,7 +90,7 @@ def _halvings(told: Told, remedy: Remedy) -> str:
     )
 
 
-def _share(over: dict[str, Any]) -> str:
+def _share(over: Mapping[str, Any]) -> str:
     """Return a share over the limit in three digits, or fewer where its error is greater, without its interval."""
     value, low, high = (over[f"probability_over_limit{end}"] for end in ("", "_low", "_high"))
     if not _RARE <= value <= 1 - _RARE:
@@ -110,11 +110,11 @@ def _halved(halving: Halving) -> str:
     return f"{dimension_words(name)} (to {limits.middle / size:.6g} ± {half}{unit})"
 
 
-def _levers(told: Told, remedy: Remedy) -> Iterator[str]:
+def _levers(told: Told, recommendation: Recommendation) -> Iterator[str]:
     """Yield what makes a variant stiffer, most first."""
-    name, row = told.named(remedy.variant), _row(told, remedy)
+    name, row = told.named(recommendation.variant), _row(told, recommendation)
     median = angle_words(row["p50_arcmin"], row["p50_standard_error_arcmin"])
-    levers = [lever for lever in remedy.levers if abs(lever.slope) >= _LEAST_SLOPE][:_LEVERS]
+    levers = [lever for lever in recommendation.levers if abs(lever.slope) >= _LEAST_SLOPE][:_LEVERS]
     if levers:
         parts = [
             f"1 % {'less' if lever.slope > 0 else 'more'} {dimension_words(lever.dimension)} "
@@ -125,9 +125,9 @@ def _levers(told: Told, remedy: Remedy) -> Iterator[str]:
         yield f"To stiffen {name} (median {median}, limit {limit}): {', '.join(parts)}."
 
 
-def _thickening(remedy: Remedy) -> Iterator[str]:
+def _thickening(recommendation: Recommendation) -> Iterator[str]:
     """Yield which wall would bring P97.5 to the limit."""
-    found = remedy.thickening
+    found = recommendation.thickening
     if found is None:
         return
     present = f"{1000 * found.present:.6g} mm"

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
 
-from flexlash.analysis.assessment import Computed
-from flexlash.analysis.outcome import DRAWN, Outcome
+from flexlash.analysis.computed import Computed
+from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.recommendations import Recommendation
 from flexlash.analysis.run_summary import listed, quoted, worst_first
+from flexlash.report.report_data import DRAWN
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.verdict import firm, light
 from flexlash.schema.findings import shown
@@ -34,6 +36,7 @@ class Told:
     """An outcome with what several sentences ask of it; `labels` are the short names by name."""
 
     outcome: Outcome
+    recommendations: Sequence[Recommendation]
     rows: Sequence[Row]
     labels: dict[str, str]
 
@@ -61,10 +64,11 @@ class Told:
         return listed([self.named(name) for name in names], NAMED)
 
 
-def told_of(outcome: Outcome) -> Told:
+def told_of(outcome: Outcome, recommendations: Sequence[Recommendation]) -> Told:
     """Return what the sentences on an outcome ask of it."""
     rows = worst_first(outcome)
-    return Told(outcome=outcome, rows=rows, labels=labels_of(outcome, [row["variant"] for row in rows[:DRAWN]]))
+    labels = labels_of(outcome, [row["variant"] for row in rows[:DRAWN]])
+    return Told(outcome=outcome, recommendations=recommendations, rows=rows, labels=labels)
 
 
 def labels_of(outcome: Outcome, worst: Sequence[str]) -> dict[str, str]:

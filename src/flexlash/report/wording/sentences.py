@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from flexlash.analysis.assessment import Computed
+from flexlash.analysis.computed import Computed
 from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.recommendations import Recommendation
 from flexlash.analysis.run_summary import counted, dimension_words, listed, points_range, spread_notes
 from flexlash.report.wording.advice import stiffening, tightening
 from flexlash.report.wording.judged import failing, sureness
@@ -31,9 +32,12 @@ _LEAST_CAUSE = 0.01
 """Share of the variance below which a dimension is not named."""
 
 
-def sentences(outcome: Outcome) -> Iterator[tuple[str, str]]:
-    """Yield topic and sentences: what a design review wants to know, rounded by the standard error."""
-    told = told_of(outcome)
+def sentences(outcome: Outcome, recommendations: Sequence[Recommendation]) -> Iterator[tuple[str, str]]:
+    """Yield topic and sentences: what a design review wants to know, rounded by the standard error.
+
+    `recommendations` are what would help the worst failing variants.
+    """
+    told = told_of(outcome, recommendations)
     topics = {
         "Computed": _computed(told),
         "Which fail": failing(told),
@@ -113,9 +117,7 @@ def _classical(told: Told) -> Iterator[str]:
         f"instead of {meant}: {_off(classical / own)}."
     )
     ratios = [
-        float(one.nominal["cylinder_only_backlash"] or 0) / float(one.nominal["backlash"] or 1)
-        for one in told.computed.values()
-        if _has_disk(one)
+        one.nominal.cylinder_only_backlash / one.nominal.backlash for one in told.computed.values() if _has_disk(one)
     ]
     if len(ratios) > 1:
         least, most = _off(max(ratios)), _off(min(ratios))
@@ -140,7 +142,7 @@ def _strength(told: Told) -> Iterator[str]:
         if row["elastic_limit_torque_Nm"] is not None:
             one = told.computed[row["variant"]]
             times = float(spelled_out(row["elastic_limit_torque_Nm"] / one.variant.dimensions["torque"], _DIGITS))
-            reserves.setdefault((times, str(one.nominal["governing_section"])), []).append(row["variant"])
+            reserves.setdefault((times, one.nominal.governing_section), []).append(row["variant"])
     if reserves:
         times, section = least = min(reserves)
         alike = len(reserves[least])

@@ -1,0 +1,44 @@
+"""What the stages returned → the outcome: findings consolidated and Results built, both once and here alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from flexlash.analysis.computed import Spread, Verified
+from flexlash.analysis.examination import Examined
+from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.results import empty_results, results_of
+from flexlash.schema.result_columns import result_columns
+from flexlash.validation.blocking_errors import stopped_by
+from flexlash.validation.consolidation import consolidated, in_order
+
+__all__ = ["outcome_of"]
+
+
+def outcome_of(examined: Examined, spread: Spread | None = None, verified: Verified | None = None) -> Outcome:
+    """Return the outcome of a submission after the stages that it went through; of a refused file, its one finding."""
+    submission, validated, nominal = examined.submission, examined.validated, examined.nominal
+    if examined.refusal is not None or validated is None:
+        why = () if examined.refusal is None else (examined.refusal,)
+        skipped = any(found.level == "info" for found in why)
+        return Outcome(submission=submission, results=empty_results(), findings=why, skipped=skipped)
+    findings = consolidated(validated, (*nominal.findings, *(verified.findings if verified else ())), nominal.blocked)
+    statistics, checks = spread.statistics if spread else {}, verified.checks if verified else {}
+    computed = {
+        row: replace(one, spread=statistics.get(row), elasticity=checks.get(row))
+        for row, one in nominal.computed.items()
+    }
+    columns = result_columns(cross_check=spread is not None and spread.cross_checked, elasticity=verified is not None)
+    ordered, table = in_order(findings, submission.sheets), validated.table
+    stops = stopped_by(table, nominal.blocked, findings) if table and len(computed) < table.frame.height else {}
+    return Outcome(
+        submission=submission,
+        results=results_of(table, computed, ordered, stops, columns) if table else empty_results(),
+        findings=ordered,
+        settings=examined.settings,
+        options=examined.options,
+        validated=validated,
+        computed=computed,
+        blocked=nominal.blocked,
+        processor_seconds=examined.processor_seconds,
+    )

@@ -1,0 +1,138 @@
+"""What validation returns, apart from the code that makes it: whoever receives it loads nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+from flexlash.reading.raw import RawValue
+from flexlash.schema.cell_addresses import CellAddress, cell_ranges
+from flexlash.schema.findings import Finding
+from flexlash.schema.variant import Material, Settings, ToleranceRow, Variant
+
+if TYPE_CHECKING:
+    import polars as pl
+
+__all__ = ["Blocked", "Heading", "Owner", "Table", "UnitMistake", "Validated"]
+
+_MANY = 100
+"""Rows of one name from which on each is told the range of all instead of its partners."""
+
+Owner: TypeAlias = tuple[Literal["material", "class"], str]
+"""A material or a tolerance class, by its plain name."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Heading:
+    """The columns found in a sheet: place and factor to the printed unit by key, extra headers by place.
+
+    `doubtful` are the places of headers that cannot be taken and the key that was probably meant, `diameters` those of
+    them that hold twice what is meant; `ignored` those of the template's own formulas.
+    """
+
+    row: int
+    places: dict[str, int] = field(default_factory=dict)
+    factors: dict[str, float] = field(default_factory=dict)
+    extra: dict[int, str] = field(default_factory=dict)
+    doubtful: dict[int, str] = field(default_factory=dict)
+    diameters: set[int] = field(default_factory=set)
+    ignored: set[int] = field(default_factory=set)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """Typed cells of an entry sheet in the template's units.
+
+    `frame` has the column `row` and one column per key of the schema, null where blank or unreadable;
+    `cells` are the raw cells by row and place; `faulty` holds (row, key) of cells that already have a finding.
+    """
+
+    sheet: str
+    schema: str
+    heading: Heading
+    frame: pl.DataFrame
+    cells: dict[int, dict[int, RawValue]] = field(default_factory=dict)
+    faulty: set[tuple[int, str]] = field(default_factory=set)
+    numbers_are_texts: bool = False
+
+    def entered(self, row: int, key: str) -> Any:
+        """Return a cell as the user entered it, an empty text where it is blank."""
+        return self.cells[row].get(self.heading.places.get(key, 0), "")
+
+    def address(self, row: int, key: str) -> CellAddress:
+        """Return a cell's address; a column that the sheet lacks stands at the row's first cell."""
+        return CellAddress(row=row, column=self.heading.places.get(key, 1))
+
+    def partners(self, rows: Sequence[int], key: str) -> Iterator[tuple[int, str]]:
+        """Yield rows that hold the same entry, each with the addresses of the others; of many rows, those of all."""
+        every = cell_ranges([self.address(row, key) for row in rows])
+        for row in rows if len(rows) > 1 else ():
+            few = len(rows) <= _MANY
+            yield row, cell_ranges([self.address(other, key) for other in rows if other != row]) if few else every
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnitMistake:
+    """A cell whose unit is mistaken, with what to say of it: `suggestion` is what was probably meant.
+
+    `material` is the plain name of the material whose row it stands in, empty for a cell of Variants.
+    """
+
+    sheet: str
+    schema: str
+    cell: CellAddress
+    column: str
+    variant: str
+    material: str
+    row: int
+    shown: str
+    entered: Any
+    times: str
+    beside: str
+    suggestion: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Blocked:
+    """What is not to be computed because of errors.
+
+    `rows` are rows of Variants; `materials` and `classes` plain names whose rows are faulty, `sources` the sheets and
+    rows of their faults; `everything` says that a fault leaves no row computable.
+    """
+
+    rows: frozenset[int] = frozenset()
+    materials: frozenset[str] = frozenset()
+    classes: frozenset[str] = frozenset()
+    sources: Mapping[Owner, Sequence[tuple[str, int]]] = field(default_factory=dict)
+    everything: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Validated:
+    """A submission after validation.
+
+    `file` is its name; `findings` are those of validation alone, as they were made; `blocked` is what they spoil.
+    `unit_mistakes` are the cells whose unit is mistaken, by sheet, row and column. `table` is Variants as read, one row
+    per submitted variant; `tolerances` is Tolerances, None where the built-in class is used; `variants` are the rows of
+    Variants without an error; `header_rows` the row of each entry sheet's headers.
+    """
+
+    file: str = ""
+    findings: tuple[Finding, ...] = ()
+    blocked: Blocked = field(default_factory=Blocked)
+    unit_mistakes: Mapping[tuple[str, int, str], UnitMistake] = field(default_factory=dict)
+    table: Table | None = None
+    tolerances: Table | None = None
+    variants: tuple[Variant, ...] = ()
+    classes: Mapping[str, Sequence[ToleranceRow]] = field(default_factory=dict)
+    materials: Mapping[str, Material] = field(default_factory=dict)
+    settings: Settings = field(default_factory=Settings)
+    header_rows: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def submitted(self) -> list[tuple[int, str, str]]:
+        """Row number, name and notes of every submitted variant, in submitted order."""
+        if self.table is None:
+            return []
+        return list(self.table.frame.select("row", "variant", "notes").fill_null("").iter_rows())
