@@ -6,12 +6,12 @@ import zipfile
 
 import openpyxl
 import pytest
+from flexlash.feedback.fixing.splices import before_end, cell_spans, cell_xml, spliced, xml_text
 from python_calamine import CalamineWorkbook
 
 from flexlash.feedback.fixing.fix import Repair
 from flexlash.feedback.fixing.fixed_table import mended_table
 from flexlash.feedback.fixing.fixed_workbook import FIXES_SHEET, mended_workbook
-from flexlash.feedback.fixing.splices import before_end, cell_spans, cell_xml, spliced, xml_text
 from flexlash.reading.delimited import read_table
 from flexlash.reading.products import mended_role
 from flexlash.reading.raw import RawSheet

@@ -5,10 +5,10 @@ import json
 import openpyxl
 import polars as pl
 import pytest
+from flexlash.feedback.fixing.splices import cell_spans, spliced
 from python_calamine import CalamineWorkbook
 
 from flexlash.cli import cli
-from flexlash.feedback.fixing.splices import cell_spans, spliced
 from flexlash.pipeline import check, mend, run
 from flexlash.reading.archive import packed, unpacked
 from flexlash.reading.reading_limits import ReadingLimits

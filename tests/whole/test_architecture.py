@@ -33,16 +33,12 @@ ENTRANCES = {"__init__", "__main__"}
 
 CLIMBS = {
     ("analysis.run_summary", "feedback.fixing.fix"),
-    ("reading.inside_limits", "feedback.annotation.marked_copy"),
     ("reading.inside_limits", "validation.validate"),
-    ("reading.libraries", "feedback.annotation.loading"),
-    ("reading.libraries", "feedback.annotation.marked_copy"),
-    ("reading.libraries", "feedback.annotation.packing"),
 }
 """The imports that go the other way, each because the limited process loads before its limits what it will need."""
 
 EDGES = {
-    "openpyxl": {"feedback", "reading"},
+    "openpyxl": {"reading"},
     "xlsxwriter": {"feedback", "report"},
     "pandera": {"validation"},
     "click": {"cli"},

@@ -88,7 +88,6 @@ def _warm_up() -> None:
     One row is validated, since pandera loads half of itself only then, some of which fails where the working folder
     has been removed.
     """
-    from flexlash.feedback.annotation import marked_copy  # noqa: F401
     from flexlash.reading import parquet, sheet_cells  # noqa: F401
     from flexlash.validation.validate import validate
 

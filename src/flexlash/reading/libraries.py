@@ -5,16 +5,22 @@ A release that changes such a part would otherwise make every file look damaged.
 
 from __future__ import annotations
 
-import io
-import zipfile
 from importlib.metadata import version
 
-from flexlash.reading.raw import RawSheet, RawValue
+from flexlash.reading.archive import packed
+from flexlash.reading.elements import MAIN
 
 __all__ = ["ChangedLibrary", "require_known_libraries"]
 
-_CELLS: dict[int, RawValue] = {1: "a text", 2: 0.1}
-"""A row that writing and reading must leave as it is."""
+_PACKAGE = "http://schemas.openxmlformats.org/package/2006"
+_OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
+_KIND = "application/vnd.openxmlformats-officedocument.spreadsheetml"
+_SHEET = (
+    f'<worksheet xmlns="{MAIN}"><sheetData><row r="1"><c r="A1" t="inlineStr"><is><r><t>a </t></r><r><t>text</t></r>'
+    '</is></c><c r="B1"><v>0.1</v></c></row></sheetData></worksheet>'
+).encode()
+_ROWS = [(1, [(1, "a text"), (2, 0.1)])]
+"""What that worksheet must be read as."""
 
 
 class ChangedLibrary(Exception):
@@ -22,17 +28,17 @@ class ChangedLibrary(Exception):
 
 
 def require_known_libraries() -> None:
-    """Raise ChangedLibrary when openpyxl, as installed, cannot write, read and mark a small workbook of our own.
+    """Raise ChangedLibrary when openpyxl, as installed, cannot read a small workbook of our own.
 
     It is called where a failure is about to be blamed on a file: what fails here as well is not the file's fault.
     """
     try:
-        found = _written_and_read()
+        found = _read()
     except MemoryError:
         raise
     except Exception as fault:
         raise _changed(f"cannot handle a workbook of flexlash's own ({type(fault).__name__}: {fault})") from fault
-    if found != [(1, list(_CELLS.items()))]:
+    if found != _ROWS:
         raise _changed("reads a workbook of flexlash's own as something else")
 
 
@@ -44,17 +50,31 @@ def _changed(what: str) -> ChangedLibrary:
     )
 
 
-def _written_and_read() -> object:
-    """Return the cells of a small workbook after marking, loading, writing and reading it."""
-    from flexlash.feedback.annotation.loading import load
-    from flexlash.feedback.annotation.marked_copy import marked_table
-    from flexlash.feedback.annotation.packing import pack
+def _read() -> object:
+    """Return the cells of a small workbook."""
     from flexlash.reading.sheet_cells import SheetCells
-    from flexlash.schema.findings import Finding
 
-    fault = Finding(level="error", code="E202", sheet="Own", cell="B1", message="Wrong.", fix="Fix it.")
-    data = marked_table({"Own": RawSheet(name="Own", rows={1: dict(_CELLS)})}, [fault], "own")
-    data = pack(load(data))
-    with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        own = archive.read("xl/worksheets/sheet2.xml")
-    return list(SheetCells(data, None).rows(own))
+    return list(SheetCells(packed(_parts()), None).rows(_SHEET))
+
+
+def _parts() -> dict[str, bytes]:
+    """Return the parts of a small workbook."""
+    parts = {
+        "[Content_Types].xml": f'<Types xmlns="{_PACKAGE}/content-types">'
+        f'<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+        f'<Override PartName="/xl/workbook.xml" ContentType="{_KIND}.sheet.main+xml"/>'
+        f'<Override PartName="/xl/styles.xml" ContentType="{_KIND}.styles+xml"/></Types>',
+        "_rels/.rels": _relation("officeDocument", "xl/workbook.xml"),
+        "xl/workbook.xml": f'<workbook xmlns="{MAIN}" xmlns:r="{_OFFICE}"><sheets>'
+        '<sheet name="Own" sheetId="1" r:id="rId1"/></sheets></workbook>',
+        "xl/_rels/workbook.xml.rels": _relation("worksheet", "worksheets/sheet1.xml"),
+        "xl/styles.xml": f'<styleSheet xmlns="{MAIN}"><cellXfs><xf numFmtId="0"/></cellXfs></styleSheet>',
+    }
+    return {**{name: part.encode() for name, part in parts.items()}, "xl/worksheets/sheet1.xml": _SHEET}
+
+
+def _relation(kind: str, part: str) -> str:
+    return (
+        f'<Relationships xmlns="{_PACKAGE}/relationships">'
+        f'<Relationship Id="rId1" Type="{_OFFICE}/{kind}" Target="{part}"/></Relationships>'
+    )

@@ -13,7 +13,7 @@ from flexlash.reading.other_kinds import other_archive
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 
-__all__ = ["Package", "SheetPart", "open_package"]
+__all__ = ["STRICT_NAMES", "Package", "SheetPart", "open_package"]
 
 _CORE = "docProps/core.xml"
 _STYLES = "xl/styles.xml"
@@ -21,7 +21,7 @@ _TYPES = "[Content_Types].xml"
 _ROOT = "_rels/.rels"
 _OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
 _STRICT = b"http://purl.oclc.org/ooxml/"
-_TRANSITIONAL = (
+STRICT_NAMES = (
     (b"http://purl.oclc.org/ooxml/spreadsheetml/main", MAIN.encode()),
     (b"http://purl.oclc.org/ooxml/officeDocument/relationships", _OFFICE.encode()),
     (
@@ -113,7 +113,7 @@ def _usual_dialect(parts: dict[str, bytes]) -> dict[str, bytes]:
     for name, part in parts.items():
         usual = part
         if name.lower().endswith((".xml", ".rels")):
-            for strict, transitional in _TRANSITIONAL:
+            for strict, transitional in STRICT_NAMES:
                 usual = usual.replace(strict, transitional)
         found[name] = usual
     return found
