@@ -6,17 +6,27 @@ import zipfile
 
 import openpyxl
 import pytest
-from flexlash.feedback.fixing.splices import before_end, cell_spans, cell_xml, spliced, xml_text
 from python_calamine import CalamineWorkbook
 
 from flexlash.feedback.fixing.fix import Repair
 from flexlash.feedback.fixing.fixed_table import mended_table
 from flexlash.feedback.fixing.fixed_workbook import FIXES_SHEET, mended_workbook
+from flexlash.feedback.splicing.sheet_spans import SheetSpans, cell_xml
+from flexlash.feedback.splicing.xml_spans import (
+    appended,
+    element_spans,
+    in_order,
+    in_utf_8,
+    spliced,
+    with_attributes,
+    xml_text,
+)
 from flexlash.reading.delimited import read_table
 from flexlash.reading.products import mended_role
 from flexlash.reading.raw import RawSheet
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.xlsx import read_workbook
+from flexlash.schema.cell_addresses import cell_address
 
 LIMITS = ReadingLimits()
 SHEET = b"""<x:worksheet xmlns:x="m"><x:sheetData><x:row r="2"><x:c r="B2" s="7"><x:v>1</x:v></x:c><x:c/><x:c r="E2"
@@ -41,33 +51,101 @@ SPANS = {
 def test_a_cell_is_found_where_it_stands(cell):
     """A cell's span is exactly its element, whether its address is written or counted."""
     text, style, is_formula = SPANS[cell]
-    span = cell_spans(SHEET, frozenset({cell}))[cell]
+    spans = SheetSpans(SHEET, [cell_address(cell)])
+    (span,) = spans.cells.values()
     assert SHEET[span.start : span.end] == text
     assert (span.prefix, span.style, span.is_formula) == ("x:", style, is_formula)
+    assert spans.gaps == []
 
 
-def test_a_cell_that_is_not_there_has_no_span():
-    """Cells that a sheet does not hold are absent."""
-    assert cell_spans(SHEET, frozenset({"D2", "A9"})) == {}
+GAPS = {
+    "A2 before a cell": ("A2", b"<x:c/>", b'<x:row r="2"><x:c/><x:c r="B2"'),
+    "D2 between cells": ("D2", b"<x:c/>", b'<x:c/><x:c/><x:c r="E2"'),
+    "G2 behind the last": ("G2", b"<x:c/>", b"<x:v>a</x:v></x:c><x:c/></x:row><x:row>"),
+    "A1 before a row": ("A1", b"<x:c/>", b'<x:sheetData><x:row r="1"><x:c/></x:row><x:row r="2">'),
+    "A9 behind the last row": ("A9", b"<x:c/>", b'</x:row><x:row r="9"><x:c/></x:row></x:sheetData>'),
+}
+
+
+@pytest.mark.parametrize("what", GAPS)
+def test_a_cell_that_is_not_there_has_a_place(what):
+    """Where a cell or its row is absent, its place keeps rows and columns in order."""
+    address, new, expected = GAPS[what]
+    spans = SheetSpans(SHEET, [cell_address(address)])
+    (gap,) = spans.gaps
+    assert not spans.cells
+    assert expected in spliced(SHEET, [(gap.start, gap.end, gap.before + new + gap.after)])
+
+
+@pytest.mark.parametrize(
+    ("sheet", "expected"),
+    [
+        (b"<s><sheetData/></s>", b'<s><sheetData><row r="1">C</row><row r="3">C</row></sheetData></s>'),
+        (
+            b'<s><sheetData><row r="3" ht="9" /></sheetData></s>',
+            b'<s><sheetData><row r="1">C</row><row r="3" ht="9">C</row></sheetData></s>',
+        ),
+        (
+            b'<s><sheetData><row r="1"/><row r="2"/></sheetData></s>',
+            b'<s><sheetData><row r="1">C</row><row r="2"/><row r="3">C</row></sheetData></s>',
+        ),
+    ],
+)
+def test_empty_elements_get_tags_of_their_own(sheet, expected):
+    """Cells find their place in rows, and rows in a sheet, that are written as empty elements."""
+    gaps = SheetSpans(sheet, [(1, 1), (3, 2)]).gaps
+    assert spliced(sheet, [(gap.start, gap.end, gap.before + b"C" + gap.after) for gap in gaps]) == expected
 
 
 def test_splicing_replaces_spans_alone():
-    """Only the given spans change, in whatever order they are given."""
-    assert spliced(b"abcdef", {(4, 5): b"EE", (1, 2): b""}) == b"acdEEf"
-    assert spliced(b"abc", {}) == b"abc"
+    """Only the given spans change, in whatever order they are given; what is put in one place keeps its order."""
+    assert spliced(b"abcdef", [(4, 5, b"EE"), (1, 2, b""), (3, 3, b"1"), (3, 3, b"2")]) == b"ac12dEEf"
+    assert spliced(b"abc", []) == b"abc"
 
 
-def test_before_the_end_of_an_element():
-    """What is added stands before the last end of the element and takes its prefix."""
-    assert before_end(b"<a:x><a:x>1</a:x></a:x>", "x", b"<@y/>") == b"<a:x><a:x>1</a:x><a:y/></a:x>"
-    assert before_end(b"<x></x >", "x", b"<@y/>") == b"<x><y/></x >"
+def test_what_is_appended_stands_in_an_element():
+    """What is added stands before the end of the element, or behind its beginning, and takes its prefix."""
+    assert appended(b"<a:x>1<b/></a:x>", "x", b"<@y></@y>") == b"<a:x>1<b/><a:y></a:y></a:x>"
+    assert appended(b"<x></x >", "x", b"<@y/>", first=True) == b"<x><y/></x >"
+    assert appended(b'<a><x b=">" /></a>', "x", b"<@y/>") == b'<a><x b=">"><y/></x></a>'
     with pytest.raises(ValueError, match="sheets"):
-        before_end(b"<sheets/>", "sheets", b"")
+        appended(b"<workbook/>", "sheets", b"")
+
+
+@pytest.mark.parametrize(
+    ("part", "expected"),
+    [
+        (b"<w><a/><c/></w>", b"<w><a/><b/><c/></w>"),
+        (b"<w><b>1</b><c/></w>", b"<w><b>1</b><b/><c/></w>"),
+        (b"<p:w><p:c/></p:w>", b"<p:w><p:b/><p:c/></p:w>"),
+        (b"<w/>", b"<w><b/></w>"),
+    ],
+)
+def test_a_child_stands_where_the_schema_wants_it(part, expected):
+    """A new child stands behind all that come before it in the order of the schema."""
+    assert in_order(part, ("a", "b", "c"), "b", b"<@b/>") == expected
+
+
+def test_attributes_are_set_in_their_place():
+    """An attribute changes where it stands, a new one is the last, and another one's end is not taken for it."""
+    assert with_attributes(b"<c x:s='1' s='2' t=\"s\"/>", s="3") == b'<c x:s=\'1\' s="3" t="s"/>'
+    assert with_attributes(b"<c>", s="3", t=None) == b'<c s="3">'
+    assert with_attributes(b'<c s="3" />', s=None) == b"<c />"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-16-le", "utf-16-be", "iso-8859-1"])
+def test_a_part_of_any_encoding_can_be_spliced(encoding):
+    """A part in UTF-16 is taken in UTF-8, any other as it is."""
+    text = f'<?xml version="1.0" encoding="{encoding}"?><a>\u00b5</a>'
+    part = in_utf_8(text.encode(encoding))
+    assert (part == text.encode(encoding)) == (not encoding.startswith("utf-16"))
+    assert element_spans(appended(part, "a", b"<@b>1</@b>"), ("b",))[1].text == "1"
 
 
 @pytest.mark.parametrize(
     ("text", "written"),
     [
+        ("a\rb", b"a&#13;b"),
         ('a<b & "c"', b"a&lt;b &amp; &quot;c&quot;"),
         ("Δ\x00\x0b", b"&#916;"),
         ("=1+1", b"=1+1"),
@@ -203,4 +281,4 @@ def test_a_row_of_more_cells_than_headers_stays_one():
 def test_a_cell_whose_address_is_in_small_letters_is_mended():
     """A workbook whose program writes b2 for B2 is mended at B2."""
     part = SHEET.replace(b'"B2"', b'"b2"')
-    assert cell_spans(part, frozenset({"B2"})).keys() == {"B2"}
+    assert SheetSpans(part, [(2, 2)]).cells.keys() == {(2, 2)}

@@ -5,10 +5,11 @@ import json
 import openpyxl
 import polars as pl
 import pytest
-from flexlash.feedback.fixing.splices import cell_spans, spliced
 from python_calamine import CalamineWorkbook
 
 from flexlash.cli import cli
+from flexlash.feedback.splicing.sheet_spans import SheetSpans
+from flexlash.feedback.splicing.xml_spans import spliced
 from flexlash.pipeline import check, mend, run
 from flexlash.reading.archive import packed, unpacked
 from flexlash.reading.reading_limits import ReadingLimits
@@ -260,9 +261,9 @@ def test_a_formula_is_left_to_its_author(workbook, sound, tmp_path):
     """A cell whose text comes from a formula is told, but not mended: the formula would be lost."""
     parts = unpacked(workbook([sound]).read_bytes(), ReadingLimits())
     part = next(name for name in parts if name.endswith("sheet1.xml"))
-    span = cell_spans(parts[part], frozenset({"H5"}))["H5"]
+    (span,) = SheetSpans(parts[part], [(5, 8)]).cells.values()
     cell = b'<c r="H5" s="%s" t="str"><f>"1,6"</f><v>1,6</v></c>' % span.style.encode()
-    parts[part] = spliced(parts[part], {(span.start, span.end): cell})
+    parts[part] = spliced(parts[part], [(span.start, span.end, cell)])
     path = tmp_path / "formula.xlsx"
     path.write_bytes(packed(parts))
     outcome, repairs = mend(path, tmp_path / "new.xlsx")

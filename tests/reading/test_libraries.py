@@ -11,7 +11,6 @@ import openpyxl
 import pytest
 from small_workbook import book_of
 
-from flexlash.feedback.annotation import marked_copy
 from flexlash.reading import inside_limits as limited
 from flexlash.reading import limited_process as isolated
 from flexlash.reading.libraries import ChangedLibrary, require_known_libraries
@@ -24,27 +23,22 @@ READ = (
     ("openpyxl.reader.excel", "ExcelReader", "read_manifest"),
     ("openpyxl.cell.text", "Text", "content"),
 )
-MARKED = (
-    ("openpyxl.workbook.workbook", "Workbook", "create_sheet"),
-    ("openpyxl.reader.excel", "ExcelReader", "read_theme"),
-    ("openpyxl.worksheet._reader", "WorksheetReader", "bind_all"),
-)
 
 
 def test_the_libraries_installed_here_are_known():
-    """With the libraries that the tests run with, a small workbook is written, marked and read."""
+    """With the libraries that the tests run with, a small workbook is read."""
     require_known_libraries()
 
 
-@pytest.mark.parametrize(("module", "owner", "name"), READ + MARKED)
+@pytest.mark.parametrize(("module", "owner", "name"), READ)
 def test_a_part_that_is_gone_is_told_with_the_library(module, owner, name, monkeypatch):
-    """Whatever openpyxl lacks of what reading and marking use is told with its name and version."""
+    """Whatever openpyxl lacks of what reading uses is told with its name and version."""
     monkeypatch.delattr(getattr(importlib.import_module(module), owner), name)
     with pytest.raises(ChangedLibrary, match=rf"^openpyxl {openpyxl.__version__} .*not to blame"):
         require_known_libraries()
 
 
-@pytest.mark.parametrize("name", ["worksheet._reader.INLINE_STRING", "cell._writer.etree_write_cell"])
+@pytest.mark.parametrize("name", ["worksheet._reader.WorkSheetParser", "styles.numbers.BUILTIN_FORMATS"])
 def test_a_name_that_cannot_be_imported_is_told_with_the_library(name):
     """A release that lacks a name altogether is told as well, also when nothing was imported yet."""
     module, _, part = f"openpyxl.{name}".rpartition(".")
@@ -98,7 +92,7 @@ def test_a_library_that_cannot_be_loaded_is_told_by_every_answer(monkeypatch):
     monkeypatch.setattr("flexlash.reading.inside_limits._silence", lambda: None)
     monkeypatch.setattr("flexlash.reading.inside_limits._judge", lambda *_: None)
     monkeypatch.setattr("flexlash.reading.inside_limits._warm_up", lambda: importlib.import_module("no_such"))
-    monkeypatch.delattr("openpyxl.reader.excel.ExcelReader.read_theme")
+    monkeypatch.delattr("openpyxl.reader.excel.ExcelReader.read_manifest")
     limited.prepare()
     assert isinstance(limited.carried_out(read_workbook, ReadingLimits(), (b"",)), ChangedLibrary)
 
@@ -107,10 +101,3 @@ def test_a_damaged_file_is_still_damaged():
     """A part that no library could read stays the file's own fault."""
     with pytest.raises(Refusal, match="E102"):
         read_workbook(book_of(**{"xl/styles.xml": "<styleSheet"}), ReadingLimits())
-
-
-def test_a_changed_library_makes_no_workbook_unmarkable(monkeypatch):
-    """A workbook that a changed library cannot mark is not called unusual."""
-    monkeypatch.delattr("openpyxl.reader.excel.ExcelReader.read_theme")
-    with pytest.raises(ChangedLibrary, match="openpyxl"):
-        marked_copy(book_of(), [], "own")

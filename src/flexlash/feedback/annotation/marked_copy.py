@@ -36,6 +36,7 @@ MOST_NOTES = 1000
 _UNLIMITED = ReadingLimits().times(1000, "part_mebibytes", "unpacked_mebibytes", "compression")
 """For workbooks of our own making."""
 
+_STYLES = "xl/styles.xml"
 _TO_DO = "Mend the coloured cells in your own file and submit that; flexlash skips this copy without --marked-copies."
 
 
@@ -88,6 +89,10 @@ def _stylesheet(book: WorkbookParts) -> Stylesheet:
     """Return the workbook's stylesheet, made where there is none for the formats that its cells name all the same."""
     if part := book.related(book.workbook, "styles"):
         return Stylesheet(book.read(part))
+    if _STYLES in book.parts:
+        # Readers look for it here, also where nothing refers to it.
+        book.add(book.workbook, "styles", _STYLES, book.read(_STYLES))
+        return Stylesheet(book.read(_STYLES))
     named = {"0"}
 
     def note(style: str) -> bool:
@@ -96,9 +101,8 @@ def _stylesheet(book: WorkbookParts) -> Stylesheet:
 
     for sheet in book.worksheets.values():
         SheetSpans(book.read(sheet), (), note)
-    part = book.free_name(f"{book.folder}/styles{{}}.xml")
-    book.add(book.workbook, "styles", part, empty_stylesheet(1 + max(map(int, named))))
-    return Stylesheet(book.read(part))
+    book.add(book.workbook, "styles", _STYLES, empty_stylesheet(1 + max(map(int, named))))
+    return Stylesheet(book.read(_STYLES))
 
 
 def _unmarked(book: WorkbookParts, styles: Stylesheet) -> Sequence[str]:

@@ -121,7 +121,8 @@ def clear_notes(book: WorkbookParts, sheet: str) -> None:
     for cell, note in _notes(part).items():
         theirs, head, _ = note.text.rpartition(_HEAD)
         if head:
-            boxes[cell] = theirs.removesuffix(_BETWEEN) if theirs.strip() else ""
+            is_theirs = bool(theirs.strip() or (theirs and note.author != _AUTHOR))
+            boxes[cell] = theirs.removesuffix(_BETWEEN) if is_theirs else ""
             whole = (note.comment.start, note.comment.end, b"")
             changes += _shortened(note, len(boxes[cell]), part) if boxes[cell] else [whole]
     book.write(comments, spliced(part, changes))

@@ -109,6 +109,7 @@ class WorkbookParts:
     def add(self, owner: str, kind: str, part: str, content: bytes) -> str:
         """Add a part that another one refers to; return the relation's id."""
         self.parts[part] = self.dialect(content)
+        self._cut(_TYPES, "Override", "PartName", {f"/{part}"})
         announced = f'<@Override PartName="/{part}" ContentType="{_CONTENT_TYPES[kind]}"/>'
         self.parts[_TYPES] = appended(self.read(_TYPES), "Types", announced.encode())
         name = _relations_of(owner)
@@ -201,7 +202,7 @@ class WorkbookParts:
         self.parts[self.workbook] = appended(workbook, "sheets", new, first=first)
 
     def remove_sheet(self, title: str) -> None:
-        """Remove a sheet, its names, and the order of calculation, which programs make anew."""
+        """Remove a sheet, its names, and an order of calculation that lists its cells; programs make that anew."""
         place, sheet = next((place, sheet) for place, sheet in enumerate(self.sheets) if sheet.title == title)
         workbook = _with_owners(
             self.read(self.workbook), lambda owner: None if owner == place else owner - (owner > place)
@@ -209,7 +210,9 @@ class WorkbookParts:
         span = element_spans(workbook, parents=("sheets",))[1 + place]
         self.parts[self.workbook] = spliced(workbook, [(span.start, span.end, b"")])
         self.remove(self.workbook, sheet.part)
-        if chain := self.related(self.workbook, "calcChain"):
+        chain = self.related(self.workbook, "calcChain")
+        number = span.attributes.get("sheetId")
+        if chain and any(cell.attributes.get("i") == number for cell in element_spans(self.read(chain), ("c",))):
             self.remove(self.workbook, chain)
 
     def add_names(self, names: bytes) -> None:
