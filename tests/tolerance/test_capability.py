@@ -46,43 +46,30 @@ def test_more_confidence_is_wider():
 
 
 @pytest.mark.parametrize(
-    ("limit", "median", "upper", "expected"),
-    [(3.0, 1.0, 2.0, 2.0), (2.0, 1.0, 2.0, 1.0), (1.0, 1.0, 2.0, 0.0), (0.5, 1.0, 2.0, -0.5)],
+    ("index", "expected"),
+    [
+        (ppk_upper, {(3.0, 1.0, 2.0): 2.0, (2.0, 1.0, 2.0): 1.0, (1.0, 1.0, 2.0): 0.0, (0.5, 1.0, 2.0): -0.5}),
+        (ppk_normal, {(4.0, 1.0, 0.5): 2.0, (2.5, 1.0, 0.5): 1.0, (1.0, 1.0, 0.5): 0.0, (0.25, 1.0, 0.25): -1.0}),
+    ],
 )
-def test_ppk_compares_the_limit_with_the_upper_percentile(limit, median, upper, expected):
-    """Ppk is the limit's distance from the median over that of P99.865, negative for a limit below the median."""
-    assert ppk_upper(limit, median, upper) == expected
+def test_ppk_compares_the_limit_with_the_upper_tail(index, expected):
+    """Ppk is the limit's distance from the middle over that of P99.865, or over 3 sd; negative for a limit below."""
+    assert {arguments: index(*arguments) for arguments in expected} == expected
 
 
 @thorough
 @given(mean=st.floats(-10, 10), sd=st.floats(0.01, 10), limit=st.floats(-50, 50))
 def test_ppk_of_a_normal_is_the_classical_index(mean, sd, limit):
-    """For a normal output the percentile index is (limit − mean)/3s."""
+    """For a normal output both indices are (limit − mean)/3s."""
     upper = mean + float(stats.norm.ppf(0.99865)) * sd
-    assert ppk_upper(limit, mean, upper) == pytest.approx((limit - mean) / (3 * sd), rel=1e-4, abs=1e-9)
+    for index in (ppk_upper(limit, mean, upper), ppk_normal(limit, mean, sd)):
+        assert index == pytest.approx((limit - mean) / (3 * sd), rel=1e-4, abs=1e-9)
 
 
 @pytest.mark.parametrize("upper", [1.0, 0.5, math.inf, math.nan])
 def test_ppk_needs_scatter(upper):
     """Nothing that scatters, or a percentile that is no number, has no index."""
     assert ppk_upper(3.0, 1.0, upper) is None
-
-
-@pytest.mark.parametrize(
-    ("limit", "mean", "sd", "expected"),
-    [(4.0, 1.0, 0.5, 2.0), (2.5, 1.0, 0.5, 1.0), (1.0, 1.0, 0.5, 0.0), (0.25, 1.0, 0.25, -1.0)],
-)
-def test_ppk_by_normal_theory_counts_three_sd(limit, mean, sd, expected):
-    """By normal theory Ppk is the limit's distance from the mean over 3 sd, negative for a limit below the mean."""
-    assert ppk_normal(limit, mean, sd) == expected
-
-
-@thorough
-@given(mean=st.floats(-10, 10), sd=st.floats(0.01, 10), limit=st.floats(-50, 50))
-def test_both_indices_of_a_normal_agree(mean, sd, limit):
-    """For a normal output the index by percentiles is the index by normal theory."""
-    upper = mean + float(stats.norm.ppf(0.99865)) * sd
-    assert ppk_normal(limit, mean, sd) == pytest.approx(ppk_upper(limit, mean, upper), rel=1e-4, abs=1e-9)
 
 
 def test_normal_theory_flatters_a_skewed_output():

@@ -4,35 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from line_models import MIXED, NORMALS, curved, linear, row_model
 
 from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform
 from flexlash.tolerance.engine.line_direction import Inputs, LineDirection, direction_of, scores_across
 from flexlash.tolerance.engine.line_points import line_net
 
 thorough = settings(deadline=None, max_examples=40, derandomize=True)
-
-NORMALS = {"a": Normal(mean=1, sd=2), "b": Normal(mean=-3, sd=0.5), "c": Normal(mean=0, sd=1)}
-MIXED = {"a": Normal(mean=1, sd=2), "b": Uniform(low=0, high=4), "c": Triangular(low=-1, high=1)}
-
-
-def row_model(function):
-    """Return a function of keyword arrays as a model of rows, all alike."""
-
-    def model(arguments, rows):
-        shape = np.broadcast_shapes(*map(np.shape, arguments.values()), rows.shape)
-        return np.broadcast_to(function(**arguments), shape)
-
-    return model
-
-
-def linear(a, b, c):
-    """Return a linear function with a weight of either sign."""
-    return 2 * a - 3 * b + 0.5 * c
-
-
-def curved(a, b, c):
-    """Return a function that rises everywhere, but not evenly."""
-    return np.exp(0.1 * a) + 0.3 * b**1.5 + c
 
 
 def direction_from(*directions):

@@ -1,49 +1,30 @@
 """What lines say about the output, against exact distributions: quantiles, shares, moments and their errors."""
 
 import math
-from itertools import product
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from line_models import lines_of, probability_below, total
 from one_input import ONE_INPUT, PROBABILITIES
 from scipy import stats
 from scipy.special import ndtri
 
 from flexlash.tolerance import Normal, Triangular, Uniform
-from flexlash.tolerance.engine.line_direction import Inputs, direction_of
 from flexlash.tolerance.engine.line_moments import moments_of
-from flexlash.tolerance.engine.line_points import line_net
-from flexlash.tolerance.engine.line_quantiles import quantiles_at, quantiles_of
-from flexlash.tolerance.engine.line_tables import Lines
+from flexlash.tolerance.engine.line_quantiles import probability_interval, quantiles_at, quantiles_of
+
+thorough = settings(deadline=None, max_examples=100, derandomize=True)
 
 each_input = pytest.mark.parametrize(("distribution", "reference"), ONE_INPUT.values(), ids=list(ONE_INPUT))
 
 
-def lines_of(function, *rows, lines=64, seed=0):
-    """Return sound lines through rows whose distributions have the same names and shapes."""
-
-    def model(arguments, numbers):
-        shape = np.broadcast_shapes(*map(np.shape, arguments.values()), numbers.shape)
-        return np.broadcast_to(function(**arguments), shape)
-
-    inputs = Inputs.of(rows)
-    net = line_net(seed, len(inputs.names) - 1, lines, single_curved=inputs.single_curved)
-    found = Lines(model, inputs, direction_of(model, inputs), net)
-    assert (found.faults == 0).all()
-    return found
-
-
-def total(**inputs):
-    """Return the sum of all inputs."""
-    return sum(inputs.values())
-
-
-def share_below(value, widths):
-    """Return the exact share below a value of a sum of uniforms between 0 and these widths (Irwin–Hall)."""
-    subsets = np.array(list(product([0, 1], repeat=len(widths))))
-    powers = np.maximum(value - subsets @ np.array(widths), 0.0) ** len(widths)
-    signs = (-1.0) ** subsets.sum(axis=1)
-    return float((signs * powers).sum()) / (math.factorial(len(widths)) * math.prod(widths))
+def sound_lines(function, *rows, **options):
+    """Return lines through rows, none of which has a fault."""
+    lines = lines_of(function, *rows, **options)
+    assert (lines.faults == 0).all()
+    return lines
 
 
 def uniforms(*widths):
@@ -54,7 +35,7 @@ def uniforms(*widths):
 @each_input
 def test_quantiles_of_one_input_are_exact(distribution, reference):
     """Quantiles of a single input of any distribution are exact to 1e-9 standard deviations."""
-    found = quantiles_of(lines_of(lambda a: a, {"a": distribution}, lines=8), PROBABILITIES)
+    found = quantiles_of(sound_lines(lambda a: a, {"a": distribution}, lines=8), PROBABILITIES)
     sd = distribution.standard_deviation
     assert found.output[:, 0] == pytest.approx(reference.ppf(PROBABILITIES), rel=0, abs=1e-9 * sd)
     assert (found.output_error <= 3e-9 * sd).all()
@@ -65,14 +46,14 @@ def test_quantiles_of_one_input_are_exact(distribution, reference):
 def test_shares_of_one_input_are_exact(distribution, reference):
     """Shares above values of a single input are exact to 1e-9 of themselves, in both tails."""
     values = reference.ppf(PROBABILITIES)
-    found = quantiles_at(lines_of(lambda a: a, {"a": distribution}, lines=8), values[:, None])
+    found = quantiles_at(sound_lines(lambda a: a, {"a": distribution}, lines=8), values[:, None])
     assert found.above[:, 0] == pytest.approx(reference.sf(values), rel=1e-9)
 
 
 @each_input
 def test_moments_of_one_input_are_exact(distribution, reference):
     """Mean, standard deviation and skewness of a single input are exact, with errors that say so."""
-    moments = moments_of(lines_of(lambda a: a, {"a": distribution}, lines=8))
+    moments = moments_of(sound_lines(lambda a: a, {"a": distribution}, lines=8))
     sd = distribution.standard_deviation
     assert moments.mean[0] == pytest.approx(distribution.expectation, rel=0, abs=1e-9 * sd)
     assert moments.sd[0] == pytest.approx(sd, rel=1e-9)
@@ -85,7 +66,7 @@ def test_moments_of_one_input_are_exact(distribution, reference):
 def test_moments_of_a_falling_output_are_exact():
     """Where the output falls with a skewed triangle, mean and standard deviation are exact all the same."""
     skewed = Triangular(0, 4, 1)
-    moments = moments_of(lines_of(lambda a: -a, {"a": skewed}, lines=8))
+    moments = moments_of(sound_lines(lambda a: -a, {"a": skewed}, lines=8))
     sd = skewed.standard_deviation
     assert moments.mean[0] == pytest.approx(-skewed.expectation, rel=0, abs=1e-9 * sd)
     assert moments.sd[0] == pytest.approx(sd, rel=1e-9)
@@ -95,7 +76,7 @@ def test_moments_of_a_falling_output_are_exact():
 def test_linear_normal_is_exact(lines):
     """A linear function of normals is normal: moments, quantiles and shares to 1e-9, whatever the number of lines."""
     row = {"a": Normal(1, 2), "b": Normal(-3, 0.5), "c": Normal(0, 1e-3)}
-    found = lines_of(lambda a, b, c: a - 4 * b + c, row, lines=lines)
+    found = sound_lines(lambda a, b, c: a - 4 * b + c, row, lines=lines)
     mean, sd = 13.0, math.sqrt(8 + 1e-6)
     moments = moments_of(found)
     assert moments.mean[0] == pytest.approx(mean, rel=0, abs=1e-9 * sd)
@@ -111,22 +92,22 @@ def test_linear_normal_is_exact(lines):
 @pytest.mark.parametrize("widths", [(1, 1), (1, 1, 1), (1, 2, 0.5, 3), (1,) * 12], ids=["2", "3", "4 unlike", "12"])
 def test_sums_of_uniforms_against_irwin_and_hall(widths):
     """Quantiles and shares of sums of uniforms agree with Irwin–Hall within four of their standard errors."""
-    lines = lines_of(total, uniforms(*widths), lines=512)
+    lines = sound_lines(total, uniforms(*widths), lines=512)
     quantiles = quantiles_of(lines, PROBABILITIES[1:-1])
-    below = np.array([share_below(value, widths) for value in quantiles.output[:, 0]])
+    below = np.array([probability_below(value, widths) for value in quantiles.output[:, 0]])
     off = (below - PROBABILITIES[1:-1]) / quantiles.density[:, 0]
     assert (np.abs(off) <= 4 * quantiles.output_error[:, 0]).all()
     assert (quantiles.output_error[:, 0] <= 0.02 * lines.scale[0]).all()
     values = np.array([0.2, 0.5, 0.7, 0.9]) * sum(widths)
     shares = quantiles_at(lines, values[:, None])
-    exact = 1 - np.array([share_below(value, widths) for value in values])
+    exact = 1 - np.array([probability_below(value, widths) for value in values])
     assert (np.abs(shares.above[:, 0] - exact) <= 4 * shares.above_error[:, 0] + 1e-12).all()
 
 
 def test_moments_of_sums_of_uniforms():
     """Mean, standard deviation and skewness of a sum of uniforms agree within four of their standard errors."""
     widths = (1.0, 2.0, 0.5, 3.0)
-    moments = moments_of(lines_of(total, uniforms(*widths), lines=512))
+    moments = moments_of(sound_lines(total, uniforms(*widths), lines=512))
     sd = math.sqrt(sum(width**2 for width in widths) / 12)
     assert abs(moments.mean[0] - sum(widths) / 2) <= 4 * moments.mean_error[0]
     assert abs(moments.sd[0] - sd) <= 4 * moments.sd_error[0]
@@ -137,7 +118,7 @@ def test_moments_of_sums_of_uniforms():
 def test_moments_of_a_lognormal():
     """The exponential of a normal sum has the moments of a lognormal within four of their tiny standard errors."""
     row = {"a": Normal(0, 0.3), "b": Normal(1, 0.4)}
-    moments = moments_of(lines_of(lambda a, b: np.exp(a + b), row))
+    moments = moments_of(sound_lines(lambda a, b: np.exp(a + b), row))
     reference = stats.lognorm(0.5, scale=math.e)
     assert abs(moments.mean[0] - reference.mean()) <= 4 * moments.mean_error[0]
     assert abs(moments.sd[0] - reference.std()) <= 4 * moments.sd_error[0]
@@ -148,7 +129,7 @@ def test_moments_of_a_lognormal():
 def test_quantiles_and_shares_are_each_others_inverse():
     """The share above a quantile is one less its probability, in both tails and within their errors."""
     row = {"a": Normal(10, 0.5), "b": Normal(1.6, 0.03), "c": Uniform(9, 11)}
-    lines = lines_of(lambda a, b, c: a * c / b**3, row, lines=256)
+    lines = sound_lines(lambda a, b, c: a * c / b**3, row, lines=256)
     quantiles = quantiles_of(lines, PROBABILITIES)
     shares = quantiles_at(lines, quantiles.output)
     assert (np.diff(quantiles.output[:, 0]) > 0).all()
@@ -158,7 +139,7 @@ def test_quantiles_and_shares_are_each_others_inverse():
 
 def test_density_is_the_slope_of_the_share():
     """The density at an output is how fast the share above falls there."""
-    lines = lines_of(total, uniforms(1, 1, 1), lines=512)
+    lines = sound_lines(total, uniforms(1, 1, 1), lines=512)
     values = np.array([0.5, 1.0, 1.5, 2.2])
     ends = [quantiles_at(lines, values[:, None] + end).above[:, 0] for end in (-1e-4, 1e-4)]
     assert quantiles_at(lines, values[:, None]).density[:, 0] == pytest.approx((ends[0] - ends[1]) / 2e-4, rel=1e-2)
@@ -166,7 +147,7 @@ def test_density_is_the_slope_of_the_share():
 
 def test_far_tails_keep_their_digits():
     """A share deep in the tail of a sum agrees within four of its standard errors, which stay a small part of it."""
-    lines = lines_of(total, uniforms(1, 1, 1), lines=1024)
+    lines = sound_lines(total, uniforms(1, 1, 1), lines=1024)
     values = np.array([2.9, 2.97, 2.99, 2.997])
     found = quantiles_at(lines, values[:, None])
     exact = (3 - values) ** 3 / 6
@@ -176,7 +157,7 @@ def test_far_tails_keep_their_digits():
 
 def test_outputs_out_of_reach():
     """Beyond what bounded inputs can reach there is no share above, below it no share missing."""
-    lines = lines_of(total, uniforms(1, 2), lines=64)
+    lines = sound_lines(total, uniforms(1, 2), lines=64)
     found = quantiles_at(lines, np.array([[3.0], [3.5], [1e9], [-1e-9], [-1e9]]))
     assert (found.above[:3] < 1e-15).all()
     assert (found.above[3:] > 1 - 1e-15).all()
@@ -188,14 +169,14 @@ def test_outputs_out_of_reach():
 @pytest.mark.parametrize("probability", [0.0, 1e-300, 1e-15, 1e-9, 1 - 1e-9, 1 - 1e-16, 1.0])
 def test_extreme_probabilities_stay_within_reach(probability):
     """Quantiles at the ends are finite and within the limits of bounded inputs."""
-    found = quantiles_of(lines_of(total, uniforms(1, 2), lines=64), np.array([probability]))
+    found = quantiles_of(sound_lines(total, uniforms(1, 2), lines=64), np.array([probability]))
     assert 0 <= found.output[0, 0] <= 3
     assert np.isfinite(found.output_error).all()
 
 
 def test_table_spacing_leaves_no_bias():
     """A kink between the nodes of the table biases neither quantiles nor shares of a single input."""
-    lines = lines_of(lambda a: np.where(a > 0.83, 0.83 + 1.4 * (a - 0.83), a), {"a": Normal(0, 1)}, lines=8)
+    lines = sound_lines(lambda a: np.where(a > 0.83, 0.83 + 1.4 * (a - 0.83), a), {"a": Normal(0, 1)}, lines=8)
     scores = np.array([-1.0, 0.7, 0.8, 0.83, 0.9, 1.2, 3.0])
     exact = np.where(scores > 0.83, 0.83 + 1.4 * (scores - 0.83), scores)
     found = quantiles_of(lines, stats.norm.cdf(scores))
@@ -215,9 +196,9 @@ def test_rows_do_not_depend_on_their_neighbours():
         {"a": Normal(50, 1), "b": Uniform(5, 9), "c": Triangular(1, 2)},
     ]
     limits = np.array([90.0, 2500.0, 5000.0])
-    together = lines_of(product_of, *rows)
+    together = sound_lines(product_of, *rows)
     for place, row in enumerate(rows):
-        alone = lines_of(product_of, row)
+        alone = sound_lines(product_of, row)
         pairs = [
             (quantiles_of(together, PROBABILITIES), quantiles_of(alone, PROBABILITIES)),
             (quantiles_at(together, limits[None]), quantiles_at(alone, limits[None, place : place + 1])),
@@ -232,7 +213,7 @@ def test_rows_do_not_depend_on_their_neighbours():
 
 def test_levels_do_not_depend_on_one_another():
     """A quantile is the same bit for bit, asked for alone or among others."""
-    lines = lines_of(total, uniforms(1, 2, 3))
+    lines = sound_lines(total, uniforms(1, 2, 3))
     every = quantiles_of(lines, PROBABILITIES)
     for place, probability in enumerate(PROBABILITIES):
         alone = quantiles_of(lines, np.array([probability]))
@@ -242,7 +223,7 @@ def test_levels_do_not_depend_on_one_another():
 
 def test_crossings_are_cut_and_widened():
     """The first levels can be taken, and margins multiply standard errors alone."""
-    found = quantiles_of(lines_of(total, uniforms(1, 2), uniforms(2, 4)), PROBABILITIES)
+    found = quantiles_of(sound_lines(total, uniforms(1, 2), uniforms(2, 4)), PROBABILITIES)
     first = found.take(2)
     assert first.output.shape == (2, 2)
     assert np.array_equal(first.above_error, found.above_error[:2])
@@ -250,7 +231,7 @@ def test_crossings_are_cut_and_widened():
     assert np.array_equal(wider.output, found.output)
     assert np.array_equal(wider.above_error, found.above_error * [1.0, 1.5])
     assert (wider.output_error[:, 1] > found.output_error[:, 1]).all()
-    moments = moments_of(lines_of(total, uniforms(1, 2), uniforms(2, 4)))
+    moments = moments_of(sound_lines(total, uniforms(1, 2), uniforms(2, 4)))
     more = moments.widened(np.array([2.0, 1.0]))
     assert np.array_equal(more.mean, moments.mean)
     assert np.array_equal(more.sd_error, moments.sd_error * [2.0, 1.0])
@@ -263,8 +244,51 @@ def test_more_lines_err_less():
     scatter = []
     for count in (64, 1024):
         found = [
-            quantiles_of(lines_of(total, uniforms(1, 1, 1, 1), lines=count, seed=seed), probabilities).output[:, 0]
+            quantiles_of(sound_lines(total, uniforms(1, 1, 1, 1), lines=count, seed=seed), probabilities).output[:, 0]
             for seed in range(24)
         ]
         scatter.append(np.std(found, axis=0, ddof=1))
     assert (scatter[1] < scatter[0] / 6).all()
+
+
+@pytest.mark.parametrize("share", [0.5, 0.1, 1e-3, 1e-6])
+@pytest.mark.parametrize("relative", [1e-6, 1e-3])
+def test_narrow_interval_of_a_share_is_even(share, relative):
+    """With a small error the interval is the share ± 1.96 standard errors."""
+    error = relative * share
+    low, high = probability_interval(np.array([share]), np.array([error]))
+    assert low[0] == pytest.approx(share - 1.96 * error, abs=0.02 * error)
+    assert high[0] == pytest.approx(share + 1.96 * error, abs=0.02 * error)
+
+
+@thorough
+@given(share=st.floats(1e-12, 1 - 1e-12), relative=st.floats(0, 10), factor=st.floats(0.1, 5))
+def test_interval_of_a_share_holds_it_within_0_and_1(share, relative, factor):
+    """The interval holds the share to rounding, stays within 0 and 1, and widens with the factor."""
+    error = np.array([relative * min(share, 1 - share)])
+    low, high = probability_interval(np.array([share]), error, factor)
+    assert 0 <= low[0] <= share * (1 + 1e-9)
+    assert share * (1 - 1e-9) <= high[0] <= 1
+    wide_low, wide_high = probability_interval(np.array([share]), error, 2 * factor)
+    assert wide_low[0] <= low[0]
+    assert high[0] <= wide_high[0]
+
+
+@thorough
+@given(share=st.floats(0.01, 0.99), relative=st.floats(0.001, 1))
+def test_interval_of_the_rest_is_the_rest_of_the_interval(share, relative):
+    """The interval of one less a share is one less its interval."""
+    error = np.array([relative * min(share, 1 - share)])
+    low, high = probability_interval(np.array([share]), error)
+    rest_low, rest_high = probability_interval(np.array([1 - share]), error)
+    assert rest_low[0] == pytest.approx(1 - high[0], abs=1e-12)
+    assert rest_high[0] == pytest.approx(1 - low[0], abs=1e-12)
+
+
+def test_interval_of_no_share():
+    """A share told from none by nothing has an interval from exactly 0 to almost 0, and so the rest of one."""
+    low, high = probability_interval(np.array([0.0, 1e-17, 1.0]), np.zeros(3))
+    assert low[:2].tolist() == [0.0, 0.0]
+    assert (high[:2] <= 1e-14).all()
+    assert low[2] >= 1 - 1e-14
+    assert high[2] == 1.0

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from line_models import row_model
 from scipy import stats
 
 from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform, propagate
@@ -30,14 +31,8 @@ SHAPES = {
 
 def indices(function, *rows, variance, seed=0):
     """Return first-order and total indices (inputs, rows)."""
-
-    def model(arguments, numbers):
-        shape = np.broadcast_shapes(*map(np.shape, arguments.values()), numbers.shape)
-        return np.broadcast_to(function(**arguments), shape)
-
-    return variance_shares(
-        model, Inputs.of(rows), mirrored_net(seed, len(rows[0]), 64), np.array(variance, dtype=float)
-    )
+    net = mirrored_net(seed, len(rows[0]), 64)
+    return variance_shares(row_model(function), Inputs.of(rows), net, np.array(variance, dtype=float))
 
 
 @pytest.mark.parametrize(("distribution", "reference"), SHAPES.values(), ids=list(SHAPES))

@@ -4,46 +4,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from line_models import MIXED, NORMALS, curved, linear, lines_of
 from scipy.special import ndtr, ndtri
 
-from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform
+from flexlash.tolerance import Normal, TruncatedNormal, Uniform
 from flexlash.tolerance.engine.line_direction import Inputs, direction_of
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, line_net
 from flexlash.tolerance.engine.line_tables import FAR, FAULTS, NODES, REACH, Lines
 
 thorough = settings(deadline=None, max_examples=40, derandomize=True)
-
-NORMALS = {"a": Normal(mean=1, sd=2), "b": Normal(mean=-3, sd=0.5), "c": Normal(mean=0, sd=1)}
-MIXED = {"a": Normal(mean=1, sd=2), "b": Uniform(low=0, high=4), "c": Triangular(low=-1, high=1)}
-
-
-def row_model(function):
-    """Return a function of keyword arrays as a model of rows, all alike."""
-
-    def model(arguments, rows):
-        return np.broadcast_to(
-            function(**arguments), np.broadcast_shapes(*map(np.shape, arguments.values()), rows.shape)
-        )
-
-    return model
-
-
-def lines_of(function, *rows, lines=64, seed=0):
-    """Return lines through rows whose distributions have the same names and shapes."""
-    model, inputs = row_model(function), Inputs.of(rows)
-    with np.errstate(all="ignore"):
-        net = line_net(seed, len(inputs.names) - 1, lines, single_curved=inputs.single_curved)
-        return Lines(model, inputs, direction_of(model, inputs), net)
-
-
-def linear(a, b, c):
-    """Return a linear function with a weight of either sign."""
-    return 2 * a - 3 * b + 0.5 * c
-
-
-def curved(a, b, c):
-    """Return a function that rises everywhere, but not evenly."""
-    return np.exp(0.1 * a) + 0.3 * b**1.5 + c
 
 
 @pytest.mark.parametrize("row", [NORMALS, MIXED], ids=["normal", "mixed"])

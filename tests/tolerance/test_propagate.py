@@ -1,12 +1,13 @@
 """The Monte Carlo engine on models of any kind: statistics, their standard errors, shares, and what it refuses."""
 
 import math
-from itertools import pairwise, product
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from line_models import probability_below
 from one_input import ONE_INPUT, PROBABILITIES
 from scipy import stats
 from scipy.optimize import brentq
@@ -161,22 +162,21 @@ def test_scalar_in_scalar_out():
     assert type(spread.mean) is type(spread.sd) is type(spread.skewness) is float
 
 
-@pytest.mark.parametrize(
-    "shape",
-    [(0,), (1,), (4,), (2, 3)],
-)
-def test_array_in_array_out(shape):
-    """Quantile, standard error and probability take an array and return one of its shape."""
-    spread = propagate(total, TWO, method="sobol", samples=1024)
+@pytest.mark.parametrize("shape", [(0,), (1,), (4,), (2, 3)])
+@pytest.mark.parametrize(("method", "samples"), [("line", 64), ("sobol", 1024)])
+def test_array_in_array_out(method, samples, shape):
+    """Quantile, standard error and probability take a scalar or an array and return one of its shape."""
+    spread = propagate(total, TWO, method=method, samples=samples)
     probabilities = np.linspace(0.1, 0.9, math.prod(shape)).reshape(shape)
-    for function, wanted in (
+    for function, arguments in (
         (spread.quantile, probabilities),
         (spread.standard_error, probabilities),
         (spread.probability_above, 5 * probabilities),
     ):
-        found = function(wanted)
-        assert found.shape == shape
-        assert found.ravel().tolist() == [function(float(one)) for one in wanted.ravel()]
+        values = function(arguments)
+        assert values.shape == shape
+        assert values.ravel().tolist() == [function(float(argument)) for argument in arguments.ravel()]
+        assert type(function(0.5)) is float
     assert spread.quantile([0.1, 0.9]).shape == (2,)
 
 
@@ -787,14 +787,6 @@ def test_single_input_causes_everything():
     assert spread.shares == pytest.approx({"a": 1.0}, abs=1e-2)
 
 
-def share_below(value, widths):
-    """Return the exact share below a value of a sum of uniforms between 0 and these widths (Irwin–Hall)."""
-    subsets = np.array(list(product([0, 1], repeat=len(widths))))
-    powers = np.maximum(value - subsets @ np.array(widths), 0.0) ** len(widths)
-    signs = (-1.0) ** subsets.sum(axis=1)
-    return float((signs * powers).sum()) / (math.factorial(len(widths)) * math.prod(widths))
-
-
 @pytest.mark.parametrize("samples", [64, None])
 def test_standard_errors_of_lines_cover(samples):
     """Over many seeds of three sums of uniforms ± 1.96 standard errors hold the exact quantile in about 95 of 100."""
@@ -802,7 +794,9 @@ def test_standard_errors_of_lines_cover(samples):
     for widths in ((1, 1, 1), (1, 2, 0.5, 3), (3, 1, 1, 1, 1)):
         inputs = {f"u{place}": Uniform(0, width) for place, width in enumerate(widths)}
         probabilities = np.array([0.00135, 0.025, 0.5, 0.975, 0.99865])
-        exact = [brentq(lambda x, p, w: share_below(x, w) - p, 0, sum(widths), args=(p, widths)) for p in probabilities]
+        exact = [
+            brentq(lambda x, p, w: probability_below(x, w) - p, 0, sum(widths), args=(p, widths)) for p in probabilities
+        ]
         for seed in range(60 if samples else 10):
             spread = propagate(lambda **u: sum(u.values()), inputs, samples=samples, seed=seed)
             off = (spread.quantile(probabilities) - exact) / spread.standard_error(probabilities)
@@ -846,22 +840,6 @@ def test_total_shares_of_an_additive_model_are_its_shares(method):
     assert spread.total_shares == pytest.approx(spread.shares, abs=2 * slack)
     together = propagate(lambda a, b: a * b, {"a": Normal(0, 1), "b": Uniform(-1, 1)}, method=method).total_shares
     assert together == pytest.approx({"a": 1.0, "b": 1.0}, abs=0.1)
-
-
-@pytest.mark.parametrize("shape", [(1,), (4,), (2, 3)])
-def test_lines_take_scalars_and_arrays(shape):
-    """Quantile, standard error and probability of lines take a scalar or an array and return its like."""
-    spread = propagate(total, TWO, samples=64)
-    probabilities = np.linspace(0.1, 0.9, math.prod(shape)).reshape(shape)
-    for function, wanted in (
-        (spread.quantile, probabilities),
-        (spread.standard_error, probabilities),
-        (spread.probability_above, 5 * probabilities),
-    ):
-        found = function(wanted)
-        assert found.shape == shape
-        assert found.ravel().tolist() == [function(float(one)) for one in wanted.ravel()]
-        assert type(function(0.5)) is float
 
 
 def test_histogram_of_lines_holds_all_but_the_far_tails():

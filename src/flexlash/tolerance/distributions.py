@@ -21,7 +21,7 @@ from scipy.special import ndtr, ndtri
 from flexlash.schema.argument_checks import number
 from flexlash.schema.arrays import Array
 
-__all__ = ["Distribution", "Normal", "Triangular", "Uniform", "require_order", "require_scale"]
+__all__ = ["AroundMean", "Distribution", "Normal", "Triangular", "Uniform", "require_order", "require_scale"]
 
 
 @runtime_checkable
@@ -76,8 +76,25 @@ def require_scale(mean: float, sd: float) -> None:
         raise ValueError(f"sd = {sd:g} must be a finite number greater than 0")
 
 
+class AroundMean:
+    """What distributions around the mean of a normal share: it and its sd are location and scale."""
+
+    mean: float
+    sd: float
+
+    @property
+    def location(self) -> float:
+        """The mean, before any cut."""
+        return self.mean
+
+    @property
+    def scale(self) -> float:
+        """The standard deviation, before any cut."""
+        return self.sd
+
+
 @dataclass(frozen=True)
-class Normal:
+class Normal(AroundMean):
     """Normal distribution, unbounded.
 
     Equation: x = mean + sd · Φ⁻¹(p)
@@ -97,16 +114,6 @@ class Normal:
 
     shape = ("normal",)
     breaks = ()
-
-    @property
-    def location(self) -> float:
-        """The mean."""
-        return self.mean
-
-    @property
-    def scale(self) -> float:
-        """The standard deviation."""
-        return self.sd
 
     @property
     def expectation(self) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from flexlash.schema.arrays import Array
-from flexlash.tolerance.distributions import require_order, require_scale
+from flexlash.tolerance.distributions import AroundMean, require_order, require_scale
 
 __all__ = ["TruncatedNormal"]
 
@@ -20,7 +20,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
 @dataclass(frozen=True)
-class TruncatedNormal:
+class TruncatedNormal(AroundMean):
     """Normal distribution of this mean and sd, cut at low and high; either may be infinite.
 
     Equation: with a, b = (low − mean)/sd, (high − mean)/sd, x = mean + sd · Φ⁻¹(Φ(a) + p (Φ(b) − Φ(a)))
@@ -69,16 +69,6 @@ class TruncatedNormal:
     def shape(self) -> tuple[str | float, ...]:
         """The cuts in units of sd."""
         return ("truncated normal", *self._cuts)
-
-    @property
-    def location(self) -> float:
-        """The mean before cutting."""
-        return self.mean
-
-    @property
-    def scale(self) -> float:
-        """The standard deviation before cutting."""
-        return self.sd
 
     @property
     def expectation(self) -> float:
