@@ -53,6 +53,7 @@ def main_in(monkeypatch):
     return call
 
 
+@pytest.mark.slow
 def test_run_computes_and_says_what_it_wrote(table, sound):
     """A sound submission ends with 0, a report beside it, and its path on stdout."""
     path = table([sound])
@@ -65,6 +66,7 @@ def test_run_computes_and_says_what_it_wrote(table, sound):
     assert report.exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", [".xlsx", ".csv", ".parquet", ".json"])
 def test_run_writes_the_form_that_the_ending_names(table, sound, tmp_path, ending, main_in):
     """-o decides the form of the output by its ending."""
@@ -87,6 +89,7 @@ def test_check_prints_findings_and_the_next_command(table, sound, capsys, main_i
     ]
 
 
+@pytest.mark.slow
 def test_findings_of_one_rule_are_drawn_together(table, sound, capsys, main_in):
     """Five hundred rows with the same fault print one heading with their range, not five hundred messages."""
     rows = [{**sound, "variant": f"v{number}", "torque_Nm": ""} for number in range(500)]
@@ -104,6 +107,7 @@ def test_repairs_of_one_kind_are_one_line(table, sound, capsys, main_in):
     assert capsys.readouterr().out.splitlines()[0] == "info I504 spelling repaired, 4 cells: Variants!B2:B5"
 
 
+@pytest.mark.slow
 def test_run_keeps_results_and_messages_apart(table, sound, capsys, main_in):
     """Run prints findings on stderr and the summary on stdout."""
     path = table([sound, {**sound, "variant": "b", "torque_Nm": -1}])
@@ -114,6 +118,7 @@ def test_run_keeps_results_and_messages_apart(table, sound, capsys, main_in):
     assert "1 of 2 rows computed; 1 cell to fix." in streams.out
 
 
+@pytest.mark.slow
 def test_run_names_the_worst_variants(table, sound, capsys, main_in):
     """Run says how many variants are over their limit and names the worst with its probability."""
     rows = [{**sound, "variant": f"v{number}", "backlash_limit_arcmin": 3.0 + number / 2} for number in range(4)]
@@ -124,6 +129,7 @@ def test_run_names_the_worst_variants(table, sound, capsys, main_in):
     assert "  v1: practically all units are over 3.5′." in out
 
 
+@pytest.mark.slow
 def test_run_with_one_scattering_dimension_tells_its_share(table, sound, tmp_path, capsys, main_in):
     """Where but one dimension scatters, the share over the limit is told to its digits, not as all or none."""
     tolerances = tmp_path / "tolerances.csv"
@@ -138,6 +144,7 @@ def test_run_with_one_scattering_dimension_tells_its_share(table, sound, tmp_pat
     assert re.search(r"^  B3-160: 4\.6\d* %.* of units are over 3\.75′\.$", out, re.MULTILINE)
 
 
+@pytest.mark.slow
 def test_cross_check_says_whether_both_agree(table, sound, tmp_path, capsys, main_in):
     """--cross-check says for how many variants plain Monte Carlo agrees, and puts its columns into the output."""
     rows = [{**sound, "variant": f"v{number}", "torque_Nm": 700.0 + number} for number in range(3)]
@@ -154,12 +161,14 @@ def test_cross_check_says_whether_both_agree(table, sound, tmp_path, capsys, mai
     assert "cross_check" not in target.read_text(encoding="utf-8").splitlines()[0]
 
 
+@pytest.mark.slow
 def test_cross_check_of_plain_monte_carlo_says_nothing(table, sound, capsys, main_in):
     """Plain Monte Carlo is not checked against itself, and nothing is said of agreement."""
     assert main_in("run", table([sound]), "--cross-check", "--method", "random", "--samples", 256) == 0
     assert "agrees" not in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_json_names_the_method_that_was_set(table, sound, capsys, main_in):
     """--json names the method of the settings, line unless told otherwise."""
     for options, method in (([], "line"), (["--method", "sobol"], "sobol")):
@@ -200,6 +209,7 @@ def test_an_unwritable_output_ends_with_five(table, sound, tmp_path, capsys, mai
     assert f"{target} could not be opened or written: there is no folder {target.parent}" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_several_submissions_need_a_folder_and_get_distinct_names(table, sound, tmp_path, main_in, capsys):
     """Several submissions go to a folder; equal names are numbered; the most severe exit code wins."""
     first = table([sound])
@@ -215,6 +225,7 @@ def test_several_submissions_need_a_folder_and_get_distinct_names(table, sound, 
     assert names == ["submission-report (2).xlsx", "submission-report.xlsx"]
 
 
+@pytest.mark.slow
 def test_the_most_severe_exit_code_wins(table, sound, tmp_path, main_in):
     """Of 3 and 4 the submission that could not be computed decides."""
     some = table([sound, {**sound, "variant": "b", "torque_Nm": ""}], "some.csv")
@@ -224,6 +235,7 @@ def test_the_most_severe_exit_code_wins(table, sound, tmp_path, main_in):
     assert main_in("check", none, tmp_path / "missing.csv", some) == 5
 
 
+@pytest.mark.slow
 def test_reports_among_submissions_are_skipped(table, sound, tmp_path, main_in, capsys):
     """A report in a submitted folder is named and skipped; alone, there is nothing to compute."""
     path = table([sound])
@@ -252,6 +264,7 @@ def test_usage_errors_end_with_two(arguments, main_in, capsys):
     assert "Error" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_strict_ends_with_four(table, sound, main_in, tmp_path):
     """--strict with a bad row ends with 4 and writes nothing, for check and run alike."""
     path = table([sound, {**sound, "variant": "b", "torque_Nm": ""}])
@@ -260,6 +273,7 @@ def test_strict_ends_with_four(table, sound, main_in, tmp_path):
     assert not (tmp_path / "out.csv").exists()
 
 
+@pytest.mark.slow
 def test_json_is_one_object_per_submission(table, sound, tmp_path):
     """--json prints the contract's object for each submission on a line of its own, and nothing else."""
     good = table([sound], "good.csv")
@@ -287,6 +301,7 @@ def test_json_of_a_missing_file_is_an_object_too(tmp_path, capsys, main_in):
     assert "none.csv" in json.loads(capsys.readouterr().out)["error"]
 
 
+@pytest.mark.slow
 def test_quiet_prints_nothing_when_all_is_well(table, sound, capsys, main_in):
     """--quiet is silent on success and speaks when something failed."""
     assert main_in("run", table([sound]), "--quiet", "--samples", 256) == 0
@@ -295,6 +310,7 @@ def test_quiet_prints_nothing_when_all_is_well(table, sound, capsys, main_in):
     assert "E201" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_template_never_overwrites_a_filled_one(tmp_path, capsys, main_in):
     """An existing template may be filled, so it is only replaced when told to."""
     path = tmp_path / "mine.xlsx"
@@ -308,6 +324,7 @@ def test_template_never_overwrites_a_filled_one(tmp_path, capsys, main_in):
     assert path.read_bytes() == (regenerate.ROOT / "data" / "b3-160-study.xlsx").read_bytes()
 
 
+@pytest.mark.slow
 def test_template_upgrade_moves_an_old_file(table, sound, capsys, main_in):
     """--upgrade writes a filled template beside the old file, says how many rows moved, and ends with the next step."""
     old = table([{**sound, "day": "1"}, {**sound, "variant": "b", "torque_Nm": ""}])
@@ -320,6 +337,7 @@ def test_template_upgrade_moves_an_old_file(table, sound, capsys, main_in):
     assert "Variants!D6" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_template_upgrade_says_what_could_not_move(tmp_path, capsys, main_in):
     """What the new template cannot hold is listed, one line each."""
     old = tmp_path / "old.xlsx"
@@ -336,6 +354,7 @@ def test_template_upgrade_says_what_could_not_move(tmp_path, capsys, main_in):
     ]
 
 
+@pytest.mark.slow
 def test_template_upgrade_overwrites_neither_old_nor_new(tmp_path, table, sound, capsys, main_in):
     """An existing file is replaced when told to, the old one never."""
     old = table([sound])
@@ -444,6 +463,7 @@ def test_an_interrupt_ends_with_130(table, sound, monkeypatch, capsys, main_in):
     assert "Interrupted." in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_closed_pipe_is_no_error():
     """Piping the dictionary into a program that stops reading prints no complaint."""
     command = f"'{sys.executable}' -m flexlash schema --json | head -c 100"
@@ -452,6 +472,7 @@ def test_a_closed_pipe_is_no_error():
     assert done.stderr == ""
 
 
+@pytest.mark.slow
 def test_a_terminal_gets_a_progress_bar_and_a_pipe_none(table, sound, monkeypatch, capsys, main_in):
     """The progress bar is drawn on a terminal only."""
     path = table([{**sound, "variant": f"v{number}"} for number in range(10)])
@@ -463,12 +484,14 @@ def test_a_terminal_gets_a_progress_bar_and_a_pipe_none(table, sound, monkeypatc
     assert "Computing" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_no_color_is_honoured(table, sound):
     """With NO_COLOR, or into a pipe, no escape codes are printed."""
     done = _flexlash("check", table([{**sound, "torque_Nm": ""}]), NO_COLOR="1")
     assert "\x1b" not in done.stdout + done.stderr
 
 
+@pytest.mark.slow
 def test_where_check_writes(table, sound, tmp_path, main_in, capsys):
     """A marked copy goes where -o says, a workbook or a folder; -o without anything to write is a usage error."""
     path = table([{**sound, "torque_Nm": ""}])
@@ -483,6 +506,7 @@ def test_where_check_writes(table, sound, tmp_path, main_in, capsys):
     assert "must end in .xlsx" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_next_command_names_the_mended_file(table, sound, tmp_path, main_in, capsys):
     """After mending, the closing lines speak of the new file, which is the one to run."""
     path = table([{**sound, "wall_thickness_mm": "1,6 mm"}])

@@ -31,6 +31,7 @@ def _call(*arguments):
     return CliRunner().invoke(cli, list(map(str, arguments)))
 
 
+@pytest.mark.slow
 def test_a_report_is_computed_anew(report, tmp_path):
     """Beside the report stand its submission and the same report; the last line says that the numbers are the same."""
     done = _call("run", "--from-report", report)
@@ -44,6 +45,7 @@ def test_a_report_is_computed_anew(report, tmp_path):
     assert not (tmp_path / "report-checked.xlsx").exists()
 
 
+@pytest.mark.slow
 def test_options_win_and_differences_are_counted(report, tmp_path):
     """An option on the command line holds; what differs then is counted, and diff tells it."""
     done = _call("run", "--from-report", report, "--seed", 8, "-o", tmp_path / "new.xlsx")
@@ -54,6 +56,7 @@ def test_options_win_and_differences_are_counted(report, tmp_path):
     assert lines[-1] == "No difference beyond the error of the calculation."
 
 
+@pytest.mark.slow
 def test_json_says_how_many_numbers_were_compared(report):
     """With --json the comparison is a field of the one object."""
     found = json.loads(_call("run", "--from-report", "--json", report).stdout)
@@ -62,6 +65,7 @@ def test_json_says_how_many_numbers_were_compared(report):
     assert len(found["outputs"]) == 2
 
 
+@pytest.mark.slow
 def test_several_reports_of_one_name_into_a_folder(report, tmp_path):
     """Each report gets files of its own, and a file that cannot be opened stops only itself."""
     second = report.with_name("second.xlsx")
@@ -80,6 +84,7 @@ def test_a_submission_is_no_report(table, sound):
     assert "E120" in done.stderr
 
 
+@pytest.mark.slow
 def test_elasticity_of_a_report_can_be_left_out(table, sound, tmp_path, monkeypatch):
     """Where its libraries are missing, the way without them is said."""
     run(table([sound]), tmp_path / "r.xlsx", samples=64, elasticity=True)
@@ -90,6 +95,7 @@ def test_elasticity_of_a_report_can_be_left_out(table, sound, tmp_path, monkeypa
     assert _call("run", "--from-report", tmp_path / "r.xlsx", "--no-elasticity").exit_code == 0
 
 
+@pytest.mark.slow
 def test_diff_ends_with_what_matters_and_with_0(report, table, sound):
     """The exit code is 0 whether or not there is a difference; a report is compared with a submission as well."""
     same = _call("diff", report, report)
@@ -106,6 +112,7 @@ def test_diff_ends_with_what_matters_and_with_0(report, table, sound):
     ]
 
 
+@pytest.mark.slow
 def test_diff_as_json(report):
     """With --json there is one object and nothing else."""
     found = json.loads(_call("diff", report, report, "--json").stdout)
@@ -115,6 +122,7 @@ def test_diff_as_json(report):
 FILES = {"missing": (None, 5), "unreadable": (b"%PDF-1.7", 4), "no table": (b"Dear Sir,\nit, broke\n", 4)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", FILES)
 @pytest.mark.parametrize("as_json", [False, True])
 def test_files_that_cannot_be_compared(what, as_json, report, tmp_path):

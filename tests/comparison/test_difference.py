@@ -31,6 +31,7 @@ def _spelt(path, header, row):
     return path
 
 
+@pytest.mark.slow
 def test_other_spellings_are_equal(table, sound, tmp_path):
     """Other units, a decimal comma, another order, other letters of a material and blank defaults are no difference."""
     old = table([sound | {"hub_fillet_radius_mm": 0}])
@@ -55,6 +56,7 @@ ENTERED = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("change", "expected"), ENTERED)
 def test_what_was_entered_is_told(table, sound, change, expected):
     """Each changed cell of a row is told by its key, old and new in printed units; other rows are not."""
@@ -66,6 +68,7 @@ def test_what_was_entered_is_told(table, sound, change, expected):
     assert not one.used
 
 
+@pytest.mark.slow
 def test_a_row_that_cannot_be_computed_any_more_says_why(table, sound):
     """A cell that says the same but stops its row is told by the row's error."""
     found = _between(table([sound], "a.csv"), table([sound | {"wall_thickness_mm": "1,6 mm"}], "b.csv"))
@@ -73,6 +76,7 @@ def test_a_row_that_cannot_be_computed_any_more_says_why(table, sound):
     assert (one.entered, _told(one.results)) == ([], [("status", "yes", "no, E202 G2")])
 
 
+@pytest.mark.slow
 def test_a_row_that_its_tolerances_stop_says_why(workbook, sound):
     """Limits that make no part stop a row as well, though each of its cells is sound."""
     wide = {"tolerance_class": "wide", "dimension": "wall_thickness", "lower_deviation": -2, "upper_deviation": 2}
@@ -84,6 +88,7 @@ def test_a_row_that_its_tolerances_stop_says_why(workbook, sound):
     assert check(workbook(rows, "b.xlsx", tolerances=[wide])).counts["computed"] == 0
 
 
+@pytest.mark.slow
 def test_tolerances_of_dimensions_that_a_variant_lacks_do_not_matter(workbook, sound):
     """A row for a rim changes nothing for a variant without one."""
     rows = [sound | {"tolerance_class": "fine"}]
@@ -92,6 +97,7 @@ def test_tolerances_of_dimensions_that_a_variant_lacks_do_not_matter(workbook, s
     assert _between(old, new).is_none
 
 
+@pytest.mark.slow
 def test_renamed_rows_are_removed_and_added(table, sound):
     """Variants are matched by name, case as written."""
     rows = [sound | {"variant": name} for name in ("a", "b")]
@@ -118,6 +124,7 @@ SHARED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", SHARED)
 def test_tables_and_settings_are_told_with_who_uses_them(workbook, sound, what):
     """A changed table is one change with the variants that use it; a variant that does not is unchanged."""

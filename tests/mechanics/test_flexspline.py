@@ -328,6 +328,7 @@ def test_disk_radius_from_the_bore():
     assert flexspline.disk_radii(dimensions) == (0.04, flexspline.radius_of(dimensions))
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=cups(), thickness=st.floats(0.1, 0.5))
 def test_all_refinements_together_by_quadrature(cup, thickness):
@@ -347,6 +348,7 @@ def test_hub_fillet_across_the_whole_disk(hub_thickness):
     assert flexspline.backlash("cup", arrays) == pytest.approx(2 * windup("cup", almost), rel=1e-8)
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=cups(), factor=st.floats(1.0, 1.5))
 def test_longer_cylinder_never_winds_up_less(cup, factor):
@@ -377,6 +379,7 @@ def test_thicker_wall_over_the_same_bore_never_winds_up_more(cup, factor):
     assert windup("cup", thicker) <= windup("cup", cup)
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=cups(), name=st.sampled_from(["disk_thickness", "disk_hub_thickness", "rim_thickness"]))
 def test_other_thicker_walls_never_wind_up_more(cup, name):
@@ -385,6 +388,7 @@ def test_other_thicker_walls_never_wind_up_more(cup, name):
     assert windup("cup", cup | {name: thickness * 1.2}) <= windup("cup", cup | {name: thickness})
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=cups(), names=st.sampled_from([REFINEMENTS[1:2], REFINEMENTS[2:3], REFINEMENTS[3:5], REFINEMENTS[1:5]]))
 def test_fillets_and_rim_never_add_windup(cup, names):
@@ -408,6 +412,7 @@ def test_disk_adds_to_the_cylinder(cup):
     assert windup("cup", cup) > windup("cylinder", cup)
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=cups())
 def test_blank_disk_thickness_is_the_wall_thickness(cup):

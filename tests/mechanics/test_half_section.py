@@ -142,6 +142,7 @@ def test_random_shapes_have_every_feature():
     assert count(lambda size: size.get("disk_cone_angle", math.inf) < math.radians(45)) > 5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("refinement", [0, 1])
 def test_cells_are_not_folded(refinement):
     """The biquadratic map of every cell of three hundred random shapes keeps its orientation at all Gauss points."""
@@ -168,6 +169,7 @@ def test_nodes_are_those_of_cells():
         assert not ((section.clamped | section.loaded | section.hub_fillet) & ~used).any()
 
 
+@pytest.mark.slow
 def test_section_has_no_cracks():
     """No two nodes have the same place, and the edges of one cell only make a single closed line."""
     for kind, size in SHAPES[::3]:
@@ -304,6 +306,7 @@ def test_blank_disk_thickness_is_that_of_the_wall():
 # Mesh lines
 
 
+@pytest.mark.slow
 @example(end=1.0, first=0.02, last=0.3, least=2)
 @given(
     end=st.floats(0.01, 10),

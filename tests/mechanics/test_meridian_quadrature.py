@@ -221,6 +221,7 @@ def test_slow_quadrature_of_known_disks(changes, disk):
     assert slow_windup("cup", B3_160 | changes)["disk"] == pytest.approx(disk, rel=3e-10)
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=cups())
 def test_cups_by_quadrature(cup):
@@ -232,6 +233,7 @@ BOUND = 3e-7
 """Relative error that the hub fillet's integral promises for every part, up to a fillet of 1000 hub radii."""
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=extreme_cups())
 def test_extreme_cups_by_quadrature(cup):
@@ -250,6 +252,7 @@ def test_hub_fillet_on_a_strongly_thinning_disk(exponent, angle):
     assert float(windups("cup", B3_160 | thinning)["hub_fillet"]) == pytest.approx(angle, rel=4e-7)
 
 
+@pytest.mark.slow
 @brief
 @given(cup=extreme_cups(), data=st.data())
 def test_arrays_of_extreme_cups_have_the_bits_of_scalars(cup, data):
@@ -259,6 +262,7 @@ def test_arrays_of_extreme_cups_have_the_bits_of_scalars(cup, data):
     assert_same_bits("cup", cup, pairs)
 
 
+@pytest.mark.slow
 @brief
 @given(hat=hats())
 def test_hats_by_quadrature(hat):
@@ -273,6 +277,7 @@ def test_cylinders_by_quadrature(cylinder):
     assert_agrees("cylinder", cylinder)
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=plain_cups(), data=st.data(), multiple=multiples(1.0, 20.0))
 def test_large_hub_fillets_by_quadrature(cup, data, multiple):
@@ -321,6 +326,7 @@ def test_junction_fillets_in_the_corners_of_the_range(wall, multiple):
     assert_agrees("cup", corner(wall, 0.95, 5.0) | {"junction_fillet_radius": fillet, "cylinder_length": fillet})
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=plain_cups(), multiple=multiples(1.0, 20.0))
 def test_large_junction_fillets_by_quadrature(cup, multiple):
@@ -330,6 +336,7 @@ def test_large_junction_fillets_by_quadrature(cup, multiple):
     assert_agrees("cup", cup | {"junction_fillet_radius": fillet, "cylinder_length": 1.01 * fillet})
 
 
+@pytest.mark.slow
 @brief
 @given(shape=shapes)
 def test_doubled_torque_doubles(shape):
@@ -338,6 +345,7 @@ def test_doubled_torque_doubles(shape):
     assert windup(kind, dimensions | {"torque": 2 * dimensions["torque"]}) == 2 * windup(kind, dimensions)
 
 
+@pytest.mark.slow
 @brief
 @given(shape=shapes, factor=st.floats(1.0001, 2.0))
 def test_longer_winds_up_more(shape, factor):
@@ -348,6 +356,7 @@ def test_longer_winds_up_more(shape, factor):
     )
 
 
+@pytest.mark.slow
 @brief
 @given(shape=shapes, factor=st.floats(1.0001, 2.0))
 def test_thicker_wall_winds_up_less(shape, factor):
@@ -360,6 +369,7 @@ def test_thicker_wall_winds_up_less(shape, factor):
     assert windup(kind, thicker) < windup(kind, dimensions)
 
 
+@pytest.mark.slow
 @brief
 @given(cup=cups(), factor=st.floats(1.0001, 2.0), name=st.sampled_from(["disk_thickness", "disk_hub_thickness"]))
 def test_thicker_disk_winds_up_less(cup, factor, name):
@@ -369,6 +379,7 @@ def test_thicker_disk_winds_up_less(cup, factor, name):
     )
 
 
+@pytest.mark.slow
 @brief
 @given(hat=hats(), flange=multiples(1e-9, 1e-2))
 def test_narrow_hat_approaches_the_cylinder(hat, flange):
@@ -389,6 +400,7 @@ def test_narrow_hat_approaches_the_cylinder(hat, flange):
     assert narrow >= tube + scale * ring * (1 - 2 * flange) - 1e-15 * tube
 
 
+@pytest.mark.slow
 @brief
 @given(shape=shapes, part=st.floats(0.01, 0.99))
 def test_rim_as_thick_as_the_wall_changes_nothing(shape, part):
@@ -400,6 +412,7 @@ def test_rim_as_thick_as_the_wall_changes_nothing(shape, part):
     assert windup(kind, plain | rim) == pytest.approx(windup(kind, plain), rel=1e-12)
 
 
+@pytest.mark.slow
 @brief
 @given(cup=cups(), name=st.sampled_from(["hub_fillet_radius", "junction_fillet_radius"]), small=multiples(1e-12, 1e-2))
 def test_small_fillet_tends_to_none(cup, name, small):
@@ -418,6 +431,7 @@ def test_small_fillet_tends_to_none(cup, name, small):
     assert windup("cup", cup | {name: 0.0}) == pytest.approx(sharp, rel=1e-7)
 
 
+@pytest.mark.slow
 @brief
 @given(shape=shapes)
 def test_segments_add_up(shape):

@@ -202,6 +202,7 @@ def test_every_way_of_writing_gives_the_same_parts(what):
     assert unpacked(ACCEPTED[what], ReadingLimits()) == {name: text.encode() for name, text in parts_of().items()}
 
 
+@pytest.mark.slow
 def test_bytes_that_vary_by_claim_are_not_unpacked_first():
     """A part that claims ten bytes and holds a gibibyte is refused without unpacking the gibibyte."""
     stream = zlib.compressobj(9, zlib.DEFLATED, -15)

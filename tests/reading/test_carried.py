@@ -114,6 +114,7 @@ thorough = settings(deadline=None, derandomize=True, max_examples=60, suppress_h
 VALUES = st.none() | st.booleans() | st.floats() | st.text()
 
 
+@pytest.mark.slow
 @thorough
 @given(st.recursive(VALUES, lambda one: st.lists(one) | st.dictionaries(KEYS, one)))
 def test_any_nonsense_is_refused(found):
@@ -121,6 +122,7 @@ def test_any_nonsense_is_refused(found):
     assert _refused(found).code == "E122"
 
 
+@pytest.mark.slow
 @thorough
 @given(st.data())
 def test_any_place_replaced_by_anything(data):
@@ -199,6 +201,7 @@ def _read(path, limits=None):
     return ask(report_of, limits_of_reports(limits), Source.at(path, limits), limits)
 
 
+@pytest.mark.slow
 @pytest.mark.limited_process
 def test_the_limited_process_reads_the_report(tmp_path):
     """A report comes through the limited process with its Results; a text that fills its memory is refused there."""
@@ -211,6 +214,7 @@ def test_the_limited_process_reads_the_report(tmp_path):
     assert refusal.value.code in {"E110", "E122"}
 
 
+@pytest.mark.slow
 def test_a_report_may_hold_more_than_a_submission(tmp_path):
     """A report has its results beside the submission: four times as many cells and seconds are allowed for it."""
     run(STUDY, tmp_path / "r.xlsx", samples=64)

@@ -341,6 +341,7 @@ SMALLER = {"short rows behind a quote": {"table_rows": 50_000}, "cells": {"table
 """Limits of what takes long while memory is traced."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", ENDLESS)
 def test_counts_refuse_before_clocks(what):
     """Rows, columns, cells and characters without end are counted while reading, in little time and memory."""

@@ -38,6 +38,7 @@ def test_a_process_that_was_not_prepared_says_why(monkeypatch):
     assert "no polars" in carried_out(len, ReadingLimits(), ("",)).trace
 
 
+@pytest.mark.slow
 def test_the_warm_up_loads_all_that_a_file_needs(tmp_path):
     """After the warm-up a workbook is read and validated without loading anything more, in a folder that has gone."""
     (gone := tmp_path / "gone").mkdir()

@@ -38,6 +38,7 @@ def test_a_part_that_is_gone_is_told_with_the_library(module, owner, name, monke
         require_known_libraries()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["worksheet._reader.WorkSheetParser", "styles.numbers.BUILTIN_FORMATS"])
 def test_a_name_that_cannot_be_imported_is_told_with_the_library(name):
     """A release that lacks a name altogether is told as well, also when nothing was imported yet."""

@@ -62,6 +62,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.slow
 @limits_are_there
 @pytest.mark.parametrize("what", REFUSED)
 def test_a_reader_that_goes_astray_is_refused_by_name(what):
@@ -194,6 +195,7 @@ def _is_gone(number, within=20):
     return False
 
 
+@pytest.mark.slow
 @limits_are_there
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_no_process_stays(tmp_path, how):
@@ -206,6 +208,7 @@ def test_no_process_stays(tmp_path, how):
     assert _is_gone(reader)
 
 
+@pytest.mark.slow
 def test_a_script_is_not_run_again(tmp_path):
     """A script without a guard reads files: the process that does so does not run it once more."""
     with _alone(tmp_path) as command:
@@ -213,6 +216,7 @@ def test_a_script_is_not_run_again(tmp_path):
     assert (command.returncode, len(out.split()), complaints) == (0, 1, "")
 
 
+@pytest.mark.slow
 def test_the_working_folder_puts_no_code_in_the_way(tmp_path):
     """A module that lies beside the submission is imported by neither process, even while they start."""
     for name in ("json", "openpyxl", "runpy", "pickle", "struct", "selectors", "multiprocessing", "polars"):
@@ -228,6 +232,7 @@ def test_the_working_folder_puts_no_code_in_the_way(tmp_path):
     assert (done.stdout, done.stderr) == ("Variants\n", "")
 
 
+@pytest.mark.slow
 def test_where_no_process_can_be_started_it_is_told(monkeypatch):
     """A system that starts no process is named as the reason, not the file."""
     isolated._abandon()
@@ -242,6 +247,7 @@ def test_where_no_process_can_be_started_it_is_told(monkeypatch):
     assert ask(own_number, ReadingLimits()) != os.getpid()
 
 
+@pytest.mark.slow
 def test_an_answer_that_never_ends_is_not_waited_for(monkeypatch):
     """A process that dies while it answers leaves half an answer: after a while it counts as too slow."""
     monkeypatch.setattr(isolated, "_ANSWERING", -1.5)
@@ -262,6 +268,7 @@ def _files(folder):
     return [study, small, parquet, text]
 
 
+@pytest.mark.slow
 def test_ordinary_files_are_read_alike_there_and_here(tmp_path):
     """The limited process gives the submission that this process would give."""
     for path in _files(tmp_path):
@@ -319,6 +326,7 @@ print(json.dumps([codes, seen]))
 """
 
 
+@pytest.mark.slow
 def test_no_network_and_no_stray_write(workbook, sound, tmp_path):
     """Checking and computing a good and a bad file opens no socket and writes the reports and marked copies alone."""
     good = workbook([sound], "good.xlsx")
@@ -345,6 +353,7 @@ def test_no_network_and_no_stray_write(workbook, sound, tmp_path):
     assert set(tmp_path.iterdir()) == before
 
 
+@pytest.mark.slow
 def test_what_follows_has_no_limits():
     """What goes on with an answer that was found within limits takes its time; a refusal has nothing to go on."""
     assert ask(square, ReadingLimits(seconds=1), 3, then=slowly)[0] == 9
@@ -354,6 +363,7 @@ def test_what_follows_has_no_limits():
         ask(square, ReadingLimits(), 3, then=fail)
 
 
+@pytest.mark.slow
 def test_a_process_that_may_start_none_is_told_what_to_do():
     """A worker of multiprocessing.Pool may start no process: the message says so, and what to use instead."""
     with multiprocessing.get_context("spawn").Pool(1) as pool:
@@ -374,6 +384,7 @@ except Refusal as refusal:
 """
 
 
+@pytest.mark.slow
 @limits_are_there
 @pytest.mark.parametrize(
     ("order", "limit", "told"),

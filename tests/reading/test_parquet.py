@@ -135,6 +135,7 @@ TOO_MUCH = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", TOO_MUCH)
 def test_what_is_too_much_is_refused_by_its_limit(what):
     """A file that unpacks to more than the limits is refused by name before it costs the memory."""
@@ -188,6 +189,7 @@ def _pages(data):
     return found
 
 
+@pytest.mark.slow
 def test_pages_are_compared_with_their_checksums():
     """A page whose checksum is right is read; a single flipped bit in the content of any page is damage."""
     assert check_file(WITH_CHECKSUMS, LIMITS) is True
@@ -234,6 +236,7 @@ def _code(data):
     return ""
 
 
+@pytest.mark.slow
 def test_nonsense_is_damage():
     """No footer, however it was altered or cut, surprises the walk through it."""
     data = _bytes(pl.DataFrame({"a": [1, 2], "b": ["x", None]}))

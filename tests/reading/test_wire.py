@@ -4,6 +4,7 @@ import datetime
 import json
 import math
 
+import pytest
 from grids import for_each
 from hypothesis import given
 from hypothesis import strategies as st
@@ -67,6 +68,7 @@ def test_not_a_number_comes_through():
     assert math.isnan(_through(float("nan")))
 
 
+@pytest.mark.slow
 @given(st.one_of(st.floats(allow_nan=False), st.text(), st.integers(), st.datetimes(), st.timedeltas(
     datetime.timedelta(-999), datetime.timedelta(999))))  # fmt: skip
 def test_any_value_comes_through(value):

@@ -195,6 +195,7 @@ def _merges(number):
     return "".join(f'<mergeCell ref="A{row}:B{row}"/>' for row in range(1, number + 1))
 
 
+@pytest.mark.slow
 def test_merged_areas_at_their_limit():
     """A sheet may have 100,000 merged areas, not 100,001."""
     assert _refused(ONE, after=_merges(100_000)) is None

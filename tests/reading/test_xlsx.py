@@ -305,6 +305,7 @@ def test_a_flipped_bit_never_reads_as_another_value():
     assert 0 < read < 75
 
 
+@pytest.mark.slow
 def test_mutilated_parts_end_in_a_refusal_or_cells():
     """Parts with pieces deleted, doubled and swapped, checksums right, give cells or a refusal, and no other end."""
     parts = parts_of(_row(_number("1.6"), _number("1", "B1", t="s")), **{STYLES: styles_of(0, 14)})

@@ -36,6 +36,7 @@ def test_a_distance_in_words_and_in_a_cell(case):
     assert distance_format(_row(*numbers), "p97_5") == look
 
 
+@pytest.mark.slow
 @settings(deadline=None, derandomize=True)
 @given(value=st.floats(1e-2, 1e3), part=st.floats(-0.5, 0.5), error=st.one_of(st.none(), st.floats(1e-9, 1e-1)))
 def test_words_and_cell_agree(value, part, error):

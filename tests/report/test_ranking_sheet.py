@@ -51,6 +51,7 @@ def _places(sheet):
     return {heading: headings.index(heading) + 1 for heading in headings[: first - 1]}, differences
 
 
+@pytest.mark.slow
 def test_rows_repeat_results_worst_first(study):
     """Each row has rank, verdict, figures and words of its variant, in the order of the share over the limit."""
     outcome, path = study
@@ -119,6 +120,7 @@ def test_differences_follow_the_base(study, tmp_path):
             assert found == pytest.approx(row[KEYS[heading]], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_differences_are_coloured_by_their_sign(study):
     """More than the base is orange, less blue, and an empty text neither; a negative margin is orange."""
     sheet = _sheet(study[1])

@@ -149,6 +149,7 @@ def test_about_and_summary_name_the_method(table, sound, tmp_path, method):
     assert points in summary
 
 
+@pytest.mark.slow
 def test_sensitivity_has_first_order_and_total_indices(study):
     """Sensitivity lists each variant's first-order indices and, to the right, its total ones."""
     outcome, path = study
@@ -273,6 +274,7 @@ def test_findings_link_to_their_cells(faulty):
         assert book["Submission"][found.cell].fill.fgColor.rgb == "FFF8CBAD"
 
 
+@pytest.mark.slow
 def test_the_submission_stands_at_its_own_addresses(faulty):
     """The submission as read repeats texts and numbers of the file cell by cell."""
     original = opened(regenerate.ROOT / "data" / "needs-fixing.xlsx", data_only=True)
@@ -380,6 +382,7 @@ def test_a_report_of_nothing_still_opens(table, sound):
     assert report_bytes(outcome).startswith(b"PK")
 
 
+@pytest.mark.slow
 def test_the_same_outcome_gives_the_same_bytes(study):
     """Writing twice gives the same bytes, and so the same stamp."""
     assert stamped(report_bytes(study[0]), "report") == study[1].read_bytes()

@@ -84,6 +84,7 @@ def test_a_decimal_comma_is_read_as_such(tmp_path, sound):
     assert results_table(run(path, samples=SAMPLES))["Own"].to_list() == [12.5]
 
 
+@pytest.mark.slow
 def test_cells_of_a_workbook_keep_what_they_show(workbook, sound):
     """Of a workbook numbers stay numbers; a date, a truth value, an error in a mixed column read as the cell shows."""
     path = workbook([{**sound, "variant": name} for name in "abcd"])

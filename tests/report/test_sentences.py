@@ -146,6 +146,7 @@ def test_halved_tolerances_are_told_with_what_they_bring(told, tmp_path):
     assert after[2] == min(after)
 
 
+@pytest.mark.slow
 def test_what_to_stiffen(told):
     """A variant that is too soft is told its levers, most first, and the wall that it needs instead of its own."""
     said = told({"backlash_limit_arcmin": 3.3})["What to stiffen"]
@@ -186,6 +187,7 @@ def test_a_tube_has_no_disk_to_miss(told):
     assert re.fullmatch(r"The classical formula.* for “v1” .*: 43 % too low\.", told(tube, {})["Cylinder-only formula"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("factor", "words"), [(0.1, "too high"), (1.0, "too low")])
 def test_the_classical_formula_may_be_too_high(workbook, sound, factor, words):
     """With a calibration of the disk and wall far below 1 the classical formula overstates, which is said."""
@@ -274,6 +276,7 @@ def test_what_the_verdict_does_not_show(told):
     assert "W411" not in said["Strength"]
 
 
+@pytest.mark.slow
 def test_how_far_the_formula_is_off(workbook, sound):
     """With the elasticity check the Summary gives the range of differences; without a checked row nothing."""
     pytest.importorskip("skfem", reason="scikit-fem is not installed here")
@@ -364,6 +367,7 @@ def test_shares_of_few_points_are_about_right(told, case):
     assert total > 100 or case != "few points"
 
 
+@pytest.mark.slow
 def test_advice_without_effect_is_not_given(told, tmp_path):
     """Where half of all tolerances brings less than a tenth of what is wanted, it is said that they hardly help."""
     nominal = 3.686998640539454

@@ -256,6 +256,7 @@ def test_few_decimals_of_an_axis_are_enough(table, sound, tmp_path):
         assert 0 < step < 3.7 * torque / 800 / 10
 
 
+@pytest.mark.slow
 def test_nothing_computed_still_has_a_page(table, sound, tmp_path):
     """A submission without a computed row has its Summary without table, chart and link to a variant."""
     path = _alone(run(table([{**sound, "torque_Nm": ""}])), tmp_path / "report.xlsx", 9)

@@ -19,6 +19,7 @@ def test_verdict_follows_its_rule(share):
     assert (SHARES[share] in RULES) == (share is not None)
 
 
+@pytest.mark.slow
 def test_verdicts_are_counted(table, sound):
     """Every computed variant has one verdict; a row with errors has none."""
     limits = (3.7, 3.76, 5, 6, "")
@@ -56,6 +57,7 @@ def test_a_verdict_that_more_points_may_change_has_a_mark(case):
     assert COLOURS[told] == COLOURS[verdict]
 
 
+@pytest.mark.slow
 def test_few_points_settle_no_green(table, sound):
     """Of 64 draws none over the limit is no proof of 0.135 %, whereas 64 lines are; counts keep both apart."""
     rows = [{**sound, "variant": f"v{place}", "backlash_limit_arcmin": limit} for place, limit in enumerate((5, 3, ""))]

@@ -28,6 +28,7 @@ def test_the_order_of_severity():
 LIMITS = {"meets": 5.0, "marginal": 3.75, "fails": 3.7, "has none": ""}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("verdict", LIMITS)
 def test_over_the_limit_is_an_exit_code_where_that_is_asked(table, sound, tmp_path, verdict):
     """--fail-over-limit ends with 6 unless every variant with a limit meets it; without it the code is 0."""
@@ -44,6 +45,7 @@ def test_over_the_limit_is_an_exit_code_where_that_is_asked(table, sound, tmp_pa
     assert _call("run", path, *plain).exit_code == 0
 
 
+@pytest.mark.slow
 def test_the_exit_code_of_a_function_call(table, sound):
     """The Python function knows the same codes; check, which samples nothing, has no verdicts."""
     path = table([{**sound, "backlash_limit_arcmin": 3.0}])
@@ -54,12 +56,14 @@ def test_the_exit_code_of_a_function_call(table, sound):
     assert (checked.exit_code, checked.counts["fails"]) == (0, 0)
 
 
+@pytest.mark.slow
 def test_rows_that_failed_weigh_more_than_a_limit(table, sound):
     """Of 3 and 6 the row that was not computed decides."""
     rows = [{**sound, "backlash_limit_arcmin": 3.0}, {**sound, "variant": "b", "torque_Nm": ""}]
     assert _call("run", table(rows), "--samples", 64, "--fail-over-limit").exit_code == 3
 
 
+@pytest.mark.slow
 def test_an_error_is_never_code_0(table, sound, monkeypatch):
     """Where an error stands, the code is 3 though every row was computed, and the next step is to mend it."""
     from flexlash.schema.findings import finding

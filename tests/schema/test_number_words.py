@@ -85,6 +85,7 @@ def test_a_counted_share_is_never_a_bare_zero_or_hundred(total):
         assert re.search(r"\d (%|ppm|ppb)", words)
 
 
+@pytest.mark.slow
 @thorough
 @given(power=st.floats(-14, -0.31), relative=st.floats(1e-4, 0.5), mirrored=st.booleans())
 def test_the_words_of_a_share_are_right(power, relative, mirrored):
@@ -124,6 +125,7 @@ def test_numbers_in_words_have_no_more_digits_than_their_error():
     assert rounded(3.684217, 1e-12) == "3.68421700"
 
 
+@pytest.mark.slow
 @thorough
 @given(power=st.floats(-5.9, -0.31), relative=st.floats(1e-7, 0.4), skew=st.floats(0.3, 1.0), mirrored=st.booleans())
 def test_an_interval_in_words_can_be_seen(power, relative, skew, mirrored):

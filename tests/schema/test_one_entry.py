@@ -115,6 +115,7 @@ def dimension(tmp_path_factory):
     return Copy(tmp_path_factory.mktemp("dimension"), DIMENSION)
 
 
+@pytest.mark.slow
 def test_a_requirement_is_read_checked_and_shown(requirement):
     """One more requirement stands in the template, is checked, and reaches the report as entered, nothing else."""
     assert "peak_torque_Nm" in _texts(requirement.template)["Dictionary"]
@@ -125,6 +126,7 @@ def test_a_requirement_is_read_checked_and_shown(requirement):
     assert naming == {"Submission", "Carried"}
 
 
+@pytest.mark.slow
 def test_a_requirement_reaches_neither_mechanics_nor_tolerances(requirement):
     """No number depends on one more requirement, and it can have no tolerance."""
     without = requirement.results(requirement.submission("without.xlsx"))
@@ -135,6 +137,7 @@ def test_a_requirement_reaches_neither_mechanics_nor_tolerances(requirement):
     assert requirement.errors(scattered) == [("E209", "dimension")]
 
 
+@pytest.mark.slow
 def test_a_dimension_is_read_checked_toleranced_and_shown(dimension):
     """One more dimension stands in the template, is checked, may have a tolerance, and reaches the report."""
     assert "tooth_face_width_mm" in _texts(dimension.template)["Dictionary"]

@@ -27,6 +27,7 @@ def test_all_of_ten_thousand():
     assert low == pytest.approx(0.025 ** (1 / 10_000), rel=1e-9)
 
 
+@pytest.mark.slow
 @thorough
 @given(total=st.integers(1, 100_000), part=st.floats(0, 1), confidence=st.sampled_from([0.8, 0.95, 0.99]))
 def test_interval_is_the_exact_binomial_one(total, part, confidence):

@@ -30,6 +30,7 @@ def spread(limit=None, *, limits=LIMITS, method="line", samples=None, seed=0, cr
     return statistics_of_row(row(CUP, NOMINAL, limits, limit), plan(method, samples, seed, cross_check=cross_check))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("method", ["line", "sobol"])
 def test_lines_and_points_agree_with_plain_draws(method, seed):
@@ -39,6 +40,7 @@ def test_lines_and_points_agree_with_plain_draws(method, seed):
     assert found.numbers["cross_check_deviation"] <= AGREEMENT
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", COMPARED)
 def test_a_wrong_statistic_is_found(name):
     """A statistic moved by ten of its standard errors by plain draws no longer agrees, whichever it is."""
@@ -57,6 +59,7 @@ def plain(size=2**17):
     return SampledSpread(model=lambda **varied: CUP(NOMINAL | varied), inputs=inputs, points=points)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 def test_a_wrong_share_over_the_limit_is_found(factor):
     """A share over the limit half or twice as great as it is no longer agrees."""
@@ -88,6 +91,7 @@ def test_plain_numbers_are_those_of_the_method_random():
     assert checked["random_probability_over_limit"] == drawn["probability_over_limit"]
 
 
+@pytest.mark.slow
 def test_the_deviation_is_the_greatest_in_combined_standard_errors():
     """The deviation is the greatest of all differences, each over the root of both squared standard errors."""
     found = spread().numbers

@@ -640,6 +640,7 @@ def test_refinements_that_overlap_at_a_limit_are_computed_without_a_break(change
     assert abs(low + high - 2 * middle) < 0.05 * abs(high - low)
 
 
+@pytest.mark.slow
 @thorough
 @given(
     name=st.sampled_from(["cylinder_length", "wall_thickness", "mean_radius", "disk_inner_radius", "poisson_ratio"]),

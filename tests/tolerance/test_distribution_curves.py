@@ -43,6 +43,7 @@ def test_scores_reach_beyond_one_in_a_million():
     assert ndtr(SCORES[2]) < 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 def test_a_normal_has_a_straight_curve(method):
     """The curve of a sum of normals is mean + score × sd, by lines to 1e-8, by points within their errors."""

@@ -185,6 +185,7 @@ def test_breaks_are_where_the_curve_has_a_kink(distribution, breaks):
     assert all(np.abs(place - np.array(breaks)).min() <= 3 * step for place in jumped)
 
 
+@pytest.mark.slow
 @thorough
 @given(
     mean=st.floats(-100, 100),

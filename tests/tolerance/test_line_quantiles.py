@@ -238,6 +238,7 @@ def test_crossings_are_cut_and_widened():
     assert np.array_equal(more.skewness_error, moments.skewness_error * [2.0, 1.0])
 
 
+@pytest.mark.slow
 def test_more_lines_err_less():
     """Errors of a sum of four uniforms fall faster than those of independent lines would."""
     probabilities = np.array([0.025, 0.5, 0.99865])

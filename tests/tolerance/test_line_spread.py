@@ -105,6 +105,7 @@ def test_models_that_lines_do_not_serve(function, reason):
     assert str(refusal.value) == reason
 
 
+@pytest.mark.slow
 def test_a_bend_across_the_lines_is_followed():
     """The greater of two uniforms, which bends between the points looked at, has its exact quantiles."""
     spread = line_spread(lambda a, b: np.maximum(a, b), {"a": Uniform(0, 1), "b": Uniform(0, 1)})  # noqa: PLW0108

@@ -97,6 +97,7 @@ def test_any_batch_and_any_order_give_the_same_bits(rows, sampling):
         assert told(chain.from_iterable(found)) == [every[index] for index in order], size
 
 
+@pytest.mark.slow
 def test_the_block_of_the_cache_changes_no_bit(monkeypatch):
     """However many rows the cache takes at once, every bit stays."""
     every = told(together("seven", "lines as needed"))
@@ -105,6 +106,7 @@ def test_the_block_of_the_cache_changes_no_bit(monkeypatch):
         assert told(batch_statistics(ROWS["seven"], LINES)) == every, block
 
 
+@pytest.mark.slow
 def test_the_rows_differ_in_how_many_lines_they_take():
     """The rows above take from few to many lines, so that the claims on bits cover rows drawn again."""
     for rows in ROWS:
@@ -113,6 +115,7 @@ def test_the_rows_differ_in_how_many_lines_they_take():
         assert all(math.log2(number).is_integer() and 64 <= number <= MOST_LINES for number in numbers)
 
 
+@pytest.mark.slow
 def test_every_row_has_the_precision_that_was_wanted():
     """Each row's percentiles are known to 0.001 sd and its share over the limit to 5 %, or a note says what is."""
     every = [statistics for rows in ROWS for statistics in together(rows, "lines as needed")]
@@ -131,6 +134,7 @@ def test_every_row_has_the_precision_that_was_wanted():
             assert width / 3.92 <= 0.06 * rarer or found["spread_points"] == MOST_LINES
 
 
+@pytest.mark.slow
 def test_lines_of_many_rows_agree_with_plain_monte_carlo():
     """Each of many rows agrees with plain Monte Carlo in every statistic within 4.5 combined standard errors."""
     plain = batch_statistics(ROWS["seven"], plan("random", 2**16, 7))
@@ -151,6 +155,7 @@ def of_a_sum(request):
     return statistics_of_row(SUM, plan(request.param)), request.param
 
 
+@pytest.mark.slow
 def test_statistics_of_a_normal_output(of_a_sum):
     """A sum of normals has the percentiles, mean, sd and skewness of a normal within four standard errors."""
     found = of_a_sum[0].numbers
@@ -224,6 +229,7 @@ FAULTY = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("faulty", [{0}, {4}, {8}, {1, 2, 7}, set(range(9))], ids=str)
 @pytest.mark.parametrize("model", FAULTY, ids=lambda model: model.__name__)
 def test_a_faulty_row_falls_back_to_sobol_alone(model, faulty):
@@ -251,6 +257,7 @@ def test_the_fallback_takes_as_many_points_as_were_asked_for_lines():
     assert found.numbers["spread_points"] == 2**15
 
 
+@pytest.mark.slow
 def test_many_lines_that_do_not_suffice_are_told():
     """Where the greatest number of lines does not give the precision wanted, the note says which was reached."""
     limits = {name: Limits(low=-3.0, high=3.0) for name in list(DETAILED)[:12]}
@@ -268,6 +275,7 @@ def test_many_lines_that_do_not_suffice_are_told():
     assert few.texts["spread_note"] is None
 
 
+@pytest.mark.slow
 @thorough
 @given(limit=st.floats(-6, 6), seed=st.integers(0, 5))
 def test_an_interval_holds_its_share(limit, seed):

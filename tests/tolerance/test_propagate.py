@@ -551,6 +551,7 @@ def test_lines_are_exact_for_a_falling_function_of_one_input(distribution, refer
     assert spread.quantile(PROBABILITIES) == pytest.approx(exact, rel=0, abs=1e-9 * spread.sd)
 
 
+@pytest.mark.slow
 @thorough
 @given(
     slopes=st.lists(
@@ -618,6 +619,7 @@ def test_rare_events_of_bounded_inputs(high):
     assert above / low < 1.5
 
 
+@pytest.mark.slow
 @thorough
 @given(
     first=st.floats(1e-6, 1 - 1e-6),
@@ -643,6 +645,7 @@ def test_percentiles_rise_with_the_probability(first, second, seed, which):
     assert above == pytest.approx([1 - low, 1 - high], abs=1e-6)
 
 
+@pytest.mark.slow
 @thorough
 @given(
     factor=st.floats(1.0, 4.0),
@@ -670,6 +673,7 @@ def test_wider_tolerance_never_narrows_the_spread_of_lines(factor, place, kind):
     assert ends[1][1] - ends[1][0] >= ends[0][1] - ends[0][0] - slack
 
 
+@pytest.mark.slow
 @thorough
 @given(factor=st.floats(1e-6, 1e6), shift=st.floats(-10, 10), sign=st.sampled_from([1, -1]))
 def test_lines_follow_scale_and_shift_of_the_output(factor, shift, sign):
@@ -688,6 +692,7 @@ def test_lines_follow_scale_and_shift_of_the_output(factor, shift, sign):
     assert turned.shares == pytest.approx(plain.shares, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_order_of_inputs_does_not_matter():
     """The same inputs in another order give the same numbers within their standard errors."""
     forward = propagate(bent, BENT, seed=1)
@@ -719,6 +724,7 @@ def test_shares_lie_within_0_and_1(slopes, bend, samples):
         assert share <= totals[name] + 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "inputs"),
     [
@@ -787,6 +793,7 @@ def test_single_input_causes_everything():
     assert spread.shares == pytest.approx({"a": 1.0}, abs=1e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("samples", [64, None])
 def test_standard_errors_of_lines_cover(samples):
     """Over many seeds of three sums of uniforms ± 1.96 standard errors hold the exact quantile in about 95 of 100."""
@@ -805,6 +812,7 @@ def test_standard_errors_of_lines_cover(samples):
     assert 0.90 <= np.mean(held) <= 0.99
 
 
+@pytest.mark.slow
 def test_error_of_lines_falls_faster_than_one_over_root_n():
     """Errors of quantiles by lines fall steeper than N^-0.8 as lines are added."""
     counts = [32, 128, 512]

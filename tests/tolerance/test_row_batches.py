@@ -32,6 +32,7 @@ def test_every_row_has_the_bits_that_it_has_alone(told):
     assert told == [every_number(statistics_of_row(row, LINES)) for row in ROWS]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["line", "sobol", "random"])
 def test_the_order_of_rows_changes_no_bit(method):
     """Rows in another order, and so in other batches, keep every bit of their statistics."""

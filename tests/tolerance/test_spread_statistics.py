@@ -39,6 +39,7 @@ def spread(limits=LIMITS, *, nominal=NOMINAL, limit=None, method="line", samples
     return statistics_of_row(row(CUP, nominal, limits, limit), plan(method, samples, seed, coverage=coverage))
 
 
+@pytest.mark.slow
 @each_method
 def test_percentiles_rise_between_the_worst_cases(method):
     """The percentiles rise from P0.135 to P99.865, and mean and median lie close together in their middle."""
@@ -69,6 +70,7 @@ def test_lines_agree_with_points(method):
     assert lines["p99_865_standard_error"] < points["p99_865_standard_error"]
 
 
+@pytest.mark.slow
 @each_method
 @pytest.mark.parametrize("coverage", [0.5, 0.9, 0.95, 0.9973])
 def test_coverage_interval_is_symmetric_in_probability(method, coverage):
@@ -82,6 +84,7 @@ def test_coverage_interval_is_symmetric_in_probability(method, coverage):
         assert ends == [found.numbers["p2_5"], found.numbers["p97_5"]]
 
 
+@pytest.mark.slow
 @each_method
 def test_standard_errors_are_small_and_ordered(method):
     """Every standard error is positive and below a tenth of the sd, that of P0.135 greater than that of P50."""
@@ -198,6 +201,7 @@ def test_lines_beyond_the_least_share_say_at_most():
     assert found["probability_over_limit_low"] == 0 < found["probability_over_limit_high"] < 1e-13
 
 
+@pytest.mark.slow
 @each_method
 def test_limit_below_every_unit(method):
     """A limit that every unit exceeds has probability 1 and negative indices."""
@@ -230,6 +234,7 @@ def test_exact_variant_against_a_limit(limit, over):
     assert found.get("ppk") is found.get("ppk_normal") is None
 
 
+@pytest.mark.slow
 @each_method
 def test_exact_and_scattering_variants_have_the_same_statistics(method):
     """Whether or not anything scatters the same statistics are reported, indices and number of points apart."""
@@ -239,6 +244,7 @@ def test_exact_and_scattering_variants_have_the_same_statistics(method):
         assert set(exact) <= set(scattering)
 
 
+@pytest.mark.slow
 @each_method
 def test_shift_without_scatter_moves_everything(method):
     """Limits that coincide off the entered value move all statistics there, also the worst case."""
@@ -296,6 +302,7 @@ def test_the_same_seed_gives_the_same_bits():
         assert first.numbers == second.numbers
 
 
+@pytest.mark.slow
 @thorough
 @given(factor=st.floats(1.0, 5.0), name=st.sampled_from(list(LIMITS)), method=st.sampled_from(METHODS))
 def test_wider_tolerance_never_narrows_the_spread(factor, name, method):

@@ -180,6 +180,7 @@ def _unusable(submission):
     }
 
 
+@pytest.mark.slow
 @settings(max_examples=EXAMPLES, **_FAST)
 @given(cells=_CELLS)
 def test_any_cells_of_a_workbook(cells):
@@ -190,6 +191,7 @@ def test_any_cells_of_a_workbook(cells):
     assert not _unusable(submission) & outcome.computed.keys()
 
 
+@pytest.mark.slow
 @settings(max_examples=EXAMPLES // 2, **_FAST)
 @given(cells=_CELLS_AND_HEADERS, kind=st.sampled_from(("workbook", "csv", "parquet")))
 def test_any_headers(cells, kind):
@@ -269,6 +271,7 @@ def _expect_inert(data, titles):
             assert not any(word in text for word in ("calc'", "example.org", "passwd", "SUM(A1)")), text
 
 
+@pytest.mark.slow
 @settings(max_examples=FILES, **_FAST)
 @given(cells=_CELLS, write=st.sampled_from((_with_xlsxwriter, _with_openpyxl, _with_csv)))
 def test_any_cells_of_a_file(cells, write):
@@ -283,6 +286,7 @@ def test_any_cells_of_a_file(cells, write):
             _expect_inert(copy.read_bytes(), (*ENTRY_SHEETS, "Findings"))
 
 
+@pytest.mark.slow
 @settings(max_examples=FILES, **_FAST)
 @given(cells=_CELLS_AND_HEADERS)
 def test_any_texts_in_the_marked_copy_of_a_table(cells):
@@ -297,6 +301,7 @@ _NAMED = [("Variants", 1, row, text) for row, text in enumerate(_HOSTILE[:26], s
 _REMARKED = [("Variants", _heads("Variants")["notes"], row, text) for row, text in enumerate(_HOSTILE, start=2)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cells", [_NAMED, _REMARKED], ids=["names", "remarks"])
 def test_any_texts_in_the_report(cells, tmp_path):
     """Names and remarks of computed rows stay texts in every sheet of the report that shows them, and in Results."""

@@ -23,6 +23,7 @@ def _rows(sound):
     ]
 
 
+@pytest.mark.slow
 def test_errors_of_a_material_and_a_class_are_named_at_their_rows(workbook, sound):
     """Rows that use a faulty material or class name its error and place; other rows are computed."""
     outcome = check(
@@ -41,6 +42,7 @@ def test_errors_of_a_material_and_a_class_are_named_at_their_rows(workbook, soun
     assert "stopped" not in (lines["plain"] or "")
 
 
+@pytest.mark.slow
 def test_an_error_that_stops_all_is_named_by_all(workbook, sound):
     """A faulty setting is named by every row that has no error itself."""
     rows = [*_rows(sound)[2:], sound | {"variant": "own", "torque_Nm": -1}]
@@ -59,6 +61,7 @@ def test_a_value_under_a_faulty_header_names_the_header(table, sound):
     assert lines == {"B3-160": "stopped by E112 Variants!J1", "b": None}
 
 
+@pytest.mark.slow
 def test_many_errors_are_counted(workbook, sound):
     """Of more than three errors elsewhere the rest is counted."""
     broken = [
@@ -96,6 +99,7 @@ def test_an_error_in_a_class_names_the_rows_that_wait_for_it(table, sound, tmp_p
     assert first == "submission.csv: 1 of 4 rows ready; 1 cell to fix; 3 rows wait for class Grinding."
 
 
+@pytest.mark.slow
 def test_an_error_in_a_material_names_the_row_that_waits_for_it(workbook, sound):
     """One row that waits is named by its number; a material that nobody uses makes nobody wait."""
     materials = [MATERIAL | {"poisson_ratio": None}, MATERIAL | {"material": "20Cr2Ni4"}]
@@ -114,6 +118,7 @@ def test_rows_without_a_class_wait_for_standard(table, sound, tmp_path):
     assert messages["E210"].endswith(" Row 2 of Variants waits for class standard.")
 
 
+@pytest.mark.slow
 def test_an_error_that_stops_all_says_so(workbook, sound):
     """A faulty setting says that all rows wait for it."""
     messages = _messages(check(workbook([sound], settings={"seed": -1})))

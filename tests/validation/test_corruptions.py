@@ -14,6 +14,7 @@ from flexlash.pipeline import check
 from flexlash.reading.read import Source
 from flexlash.schema.findings import Finding
 
+pytestmark = pytest.mark.slow
 CORRUPTIONS = 200
 MOST_AT_ONCE = 5
 RIGHT = 0.99
@@ -107,6 +108,7 @@ def _stopped(case: Case) -> set[int]:
     }
 
 
+@pytest.mark.slow
 def test_the_submission_is_sound_before(sound):
     """Without a corruption only its short classes are told and every row is computed: what is found was corrupted."""
     assert {found.code for found in sound.findings} == {"W438"}

@@ -57,6 +57,7 @@ GERMAN = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
 def test_a_table_of_another_country_gives_the_same_numbers(tmp_path, table, sound, encoding):
     """A table with semicolons and decimal commas is computed like one with commas and points, to the last bit."""
@@ -91,6 +92,7 @@ def test_doubt_about_the_decimal_sign_is_an_error_at_each_cell(tmp_path):
 THOUSANDS = "variant;material;torque_Nm;cylinder_length_mm;mean_radius_mm;wall_thickness_mm;disk_inner_radius_mm\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("delimiter", [";", "\t", "|"])
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
 def test_thousands_points_are_questioned_without_any_decimal_comma(tmp_path, delimiter, encoding):
@@ -133,6 +135,7 @@ DOUBTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", DOUBTS)
 def test_a_doubtful_number_stays_in_doubt_in_the_mended_file(tmp_path, what):
     """Mending other cells of a table never makes a number of one whose decimal sign is in doubt."""

@@ -119,6 +119,7 @@ def test_a_row_below_sixty_empty_ones(row, told):
     assert _told(_sheet(2, row)) == (told, [2, row])
 
 
+@pytest.mark.slow
 def test_a_workbook_says_all_of_it(workbook, sound, tmp_path):
     """From a workbook on disk merged cells, hidden rows and hidden sheets are read and told."""
     path = workbook([{**sound, "variant": name} for name in "ABCD"])
@@ -133,6 +134,7 @@ def test_a_workbook_says_all_of_it(workbook, sound, tmp_path):
     assert outcome.counts["computed"] == 3
 
 
+@pytest.mark.slow
 def test_overlapping_merged_areas_cost_no_more_than_one():
     """Many areas over the same cells, which Excel never writes, are judged once a cell."""
     sheet = _sheet(*range(2, 302), merged=((2, 1, 1_048_576, 16_384),) * 5_000)

@@ -21,6 +21,7 @@ def asked(monkeypatch):
     return texts
 
 
+@pytest.mark.slow
 def test_each_unknown_name_is_looked_up_once(asked, table, sound):
     """Three hundred rows with three unknown materials and two unknown classes ask five times."""
     rows = [

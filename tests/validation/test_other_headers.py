@@ -172,6 +172,7 @@ def test_nothing_is_lost_in_an_empty_column(header, code):
     assert heading.doubtful
 
 
+@pytest.mark.slow
 def test_an_empty_second_column_is_passed_over(table, sound):
     """A column twice is an error when both hold values; an empty second one is not read."""
     outcome = check(table([{**sound, "Wall thickness [mm]": ""}]))

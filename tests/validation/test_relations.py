@@ -259,6 +259,7 @@ def test_the_message_names_both_sides(row, words):
     assert words in found.message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", RELATIONS)
 def test_a_bad_cell_silences_the_rules_that_look_at_it(name):
     """A cell that has its own error causes no second finding by any rule that looks at it."""
@@ -294,6 +295,7 @@ def test_a_follow_up_is_not_told_as_well():
         assert list(_found(row)) == [("E303", "disk_inner_radius_mm")]
 
 
+@pytest.mark.slow
 def test_overlapping_fillets_are_not_told_where_one_alone_is_too_wide():
     """A fillet wider than disk or bore, or a hub as wide as the disk, is not also told as fillets that overlap."""
     hub = CUP | {"hub_fillet_radius_mm": 45, "junction_fillet_radius_mm": 3}

@@ -16,6 +16,7 @@ def _checked(book, *rows, **sheets):
     return outcome, [(one.code, one.cell) for one in outcome.findings if one.level != "info" and one.cell]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [
