@@ -298,7 +298,6 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "mended": _mended,
     "results": _results,
     "lock": _plain(b"\x05Anna", "~$study.xlsx"),
-    "older": _marked("flexlash_template_version", "1"),
     "newer": _marked("flexlash_template_version", "99"),
     "a document": _plain(b"%PDF-1.7", "drawing.pdf"),
     "half a copy": _plain(b"PK\x03\x04half"),

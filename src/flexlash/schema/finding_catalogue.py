@@ -952,13 +952,6 @@ CATALOGUE = _rules(
         "notes and symbols of units may be shown wrongly.",
     ),
     (
-        "I512",
-        "older template",
-        "{file} was made from template version {found}; version {known} adds {added}.",
-        "Nothing to do. To enter them, move the file into a new template: flexlash template --upgrade FILE.",
-        "An older template is read as before; what it has no column for counts as blank.",
-    ),
-    (
         "I513",
         "marked copy skipped",
         "{file} is a marked copy of a submission; it was skipped.",

@@ -1,22 +1,18 @@
-"""Which version of the template a submission was made from, and what later versions added."""
+"""A submission → the version of the template that it was made from, and the refusal of one that is newer."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 
 from flexlash.reading.raw import Submission
 from flexlash.reading.refusal import Refusal
-from flexlash.schema.columns import ENTRY_SHEETS
 from flexlash.schema.findings import shown
 from flexlash.validation.entry_sheets import sheet_names
-from flexlash.validation.ledger import Ledger
-from flexlash.validation.validated import Heading
 
-__all__ = ["TEMPLATE_VERSION", "check_version", "tell_additions", "template_version"]
+__all__ = ["TEMPLATE_VERSION", "check_version", "template_version"]
 
 TEMPLATE_VERSION = 2
-"""The version that this program writes; the columns say with which version each of them came."""
+"""The version that this program writes. It rises whenever the template changes, and never goes down."""
 
 _NUMBER = re.compile(r"0*([1-9]\d*)(?:\.0*)?", re.ASCII)
 _VISIBLE = re.compile(rf"\s*template version ({_NUMBER.pattern})\s*", re.ASCII | re.IGNORECASE)
@@ -41,8 +37,8 @@ def _visible_texts(submission: Submission) -> list[str]:
     name = sheet_names(submission).get("Variants", "")
     return [
         cell
-        for number, cells in (submission.sheets[name].rows.items() if name else ())
-        if number <= _TOP and submission.kind == "workbook"
+        for row, cells in (submission.sheets[name].rows.items() if name else ())
+        if row <= _TOP and submission.kind == "workbook"
         for cell in cells.values()
         if isinstance(cell, str)
     ]
@@ -53,18 +49,3 @@ def check_version(submission: Submission) -> None:
     version = template_version(submission)
     if version is not None and version > TEMPLATE_VERSION:
         raise Refusal("E116", found=shown(version), known=TEMPLATE_VERSION)
-
-
-def tell_additions(submission: Submission, headings: Mapping[str, Heading], ledger: Ledger) -> None:
-    """Tell which columns the template of a submission did not have yet."""
-    version = template_version(submission)
-    if version is None or version >= TEMPLATE_VERSION:
-        return
-    added = [
-        column.plain_name
-        for sheet, heading in headings.items()
-        for column in ENTRY_SHEETS[sheet]
-        if column.since > version and column.key not in {*heading.places, *heading.doubtful.values()}
-    ]
-    if added:
-        ledger.add("I512", found=version, known=TEMPLATE_VERSION, added=", ".join(added))

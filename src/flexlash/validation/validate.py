@@ -29,7 +29,7 @@ from flexlash.validation.materials_and_classes import (
     tolerance_classes_of,
 )
 from flexlash.validation.row_checks import check_cells, check_relations
-from flexlash.validation.template_versions import TEMPLATE_VERSION, check_version, tell_additions
+from flexlash.validation.template_versions import TEMPLATE_VERSION, check_version
 from flexlash.validation.typed_columns import tabulate
 from flexlash.validation.unused_classes import tell_unused_classes
 from flexlash.validation.validated import Table, Validated
@@ -61,7 +61,6 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
             tables[schema] = table
     for sheet in sheets.values():
         report_dialect(sheet, ledger)
-    tell_additions(submission, {schema: table.heading for schema, table in tables.items()}, ledger)
     used = _used(submission, sheets.keys() | unclear, tables, ledger)
     variants = tables.get("Variants")
     if variants is not None:
