@@ -124,7 +124,7 @@ def test_rows_of_one_side_are_named():
 
 def test_long_and_doubled_names_are_short():
     """Names are cut to thirty characters; rows of one name, and without one, can be told apart."""
-    names = [Name(text="n" * 99), Name(text="a", place=2), Name(text="")]
+    names = [Name(text="n" * 99), Name(text="a", occurrence=2), Name(text="")]
     lines = _lines([Differing(name=name, entered=[_change("x", "a", "b")]) for name in names])
     assert lines[1:7:2] == ["n" * 29 + "…", "a (row 2 of this name)", "(row without a name)"]
 

@@ -61,7 +61,7 @@ def test_defaults_and_faults(table, sound):
 def test_rows_of_one_name_stay_apart(table, sound):
     """Rows of one name, and rows without one, are counted."""
     side = side_of(table([sound, sound, sound | {"variant": ""}]), LIMITS)
-    assert list(side.records) == [Name(text="B3-160"), Name(text="B3-160", place=2), Name(text="")]
+    assert list(side.records) == [Name(text="B3-160"), Name(text="B3-160", occurrence=2), Name(text="")]
     assert [bool(side.hindrance(name)) for name in side.records] == [True, True, True]
     assert side.hindrance(Name(text="B3-160")) == "E308 A2"
 
@@ -153,8 +153,8 @@ def test_rows_of_results_find_their_variants(what):
     """Rows belong to the variant of their name, though a sheet may give back some names changed."""
     names, read = BACK[what]
     places = [read.index(name) if sorted(names) == sorted(read) else place for place, name in enumerate(names)]
-    rows = {Name(text=text, place=read[:at].count(text) + 1): {"at": at} for at, text in enumerate(read)}
-    wanted = [Name(text=text, place=names[:at].count(text) + 1) for at, text in enumerate(names)]
+    rows = {Name(text=text, occurrence=read[:at].count(text) + 1): {"at": at} for at, text in enumerate(read)}
+    wanted = [Name(text=text, occurrence=names[:at].count(text) + 1) for at, text in enumerate(names)]
     found = by_variant(rows, wanted)
     expected = list(range(len(names))) if what == "equal names" else places
     assert [found[name]["at"] for name in wanted] == expected

@@ -33,7 +33,7 @@ _FOLLOWING = frozenset({
 def _error_key(key: str) -> str:
     """Return the key of a number's standard error, an empty text where it has none."""
     stem, _, unit = key.rpartition("_")
-    return next((one for one in (f"{stem}_standard_error_{unit}", f"{key}_standard_error") if one in _KEYS), "")
+    return next((name for name in (f"{stem}_standard_error_{unit}", f"{key}_standard_error") if name in _KEYS), "")
 
 
 _ERRORS = {key: error for key in _KEYS if (error := _error_key(key))}
@@ -52,10 +52,10 @@ def _agrees(key: str, old: Mapping[str, Any], new: Mapping[str, Any]) -> bool:
     if before is None or after is None:
         return False
     rises = after > before
-    one, other = _error(key, old, upper=rises), _error(key, new, upper=not rises)
-    if one is None or other is None:
+    old_error, new_error = _error(key, old, upper=rises), _error(key, new, upper=not rises)
+    if old_error is None or new_error is None:
         return False
-    return bool(abs(after - before) <= AGREEING * math.hypot(one, other))
+    return bool(abs(after - before) <= AGREEING * math.hypot(old_error, new_error))
 
 
 def _error(key: str, row: Mapping[str, Any], *, upper: bool) -> float | None:

@@ -100,21 +100,21 @@ class Difference:
     @property
     def differing(self) -> list[Differing]:
         """The variants that differ by more than the error of the calculation."""
-        return [one for one in self.variants if not one.within_error]
+        return [variant for variant in self.variants if not variant.within_error]
 
     @property
     def within_error(self) -> list[Name]:
         """The variants that differ only within the error of the calculation."""
-        return [one.name for one in self.variants if one.within_error]
+        return [variant.name for variant in self.variants if variant.within_error]
 
     @property
     def shared(self) -> dict[Change, list[Name]]:
         """Return every change of a table or setting with the variants that use it."""
-        found: dict[Change, list[Name]] = {}
-        for one in self.variants:
-            for change in one.used:
-                found.setdefault(change, []).append(one.name)
-        return found
+        users: dict[Change, list[Name]] = {}
+        for variant in self.variants:
+            for change in variant.used:
+                users.setdefault(change, []).append(variant.name)
+        return users
 
     def as_dictionary(self) -> dict[str, Any]:
         """Return the object that `flexlash diff --json` prints."""
@@ -140,7 +140,7 @@ def difference(old: Side, new: Side, tolerance: float = ROUNDING) -> Difference:
     """Return what differs between two files; numbers of Results may differ by `tolerance` of themselves."""
     before, after = old.entries(), new.entries()
     common = [name for name in after if name in before]
-    found = []
+    differing = []
     for name in common:
         entered = list(_entered(before[name], after[name]))
         used = list(_used(old, new, name))
@@ -149,14 +149,14 @@ def difference(old: Side, new: Side, tolerance: float = ROUNDING) -> Difference:
             limit = _limit(old, new, name)
             only_points = bool(used) and not entered and not limit and all(change.key in POINTS for change in used)
             within = only_points and _is_within(old, new, name, results)
-            found.append(
+            differing.append(
                 Differing(name=name, entered=entered, used=used, results=results, limit=limit, within_error=within)
             )
     return Difference(
         old=old,
         new=new,
         common=len(common),
-        variants=found,
+        variants=differing,
         removed=[name for name in before if name not in after],
         added=[name for name in after if name not in before],
     )
@@ -194,17 +194,17 @@ def _values(sheet: str, old: Used | None, new: Used | None) -> Iterator[Change]:
     if old is None or new is None or old.owner != new.owner:
         return
     for key in dict.fromkeys([*old.values, *new.values]):
-        one, other = old.values.get(key), new.values.get(key)
-        named = one or other
-        if named and not equal(one and one.value, other and other.value):
+        before, after = old.values.get(key), new.values.get(key)
+        value = before or after
+        if value and not equal(before and before.value, after and after.value):
             yield Change(
                 sheet=sheet,
                 owner=old.name,
                 key=key,
-                label=named.label,
-                unit=named.unit,
-                old=one.shown if one else None,
-                new=other.shown if other else None,
+                label=value.label,
+                unit=value.unit,
+                old=before.shown if before else None,
+                new=after.shown if after else None,
             )
 
 
@@ -212,14 +212,14 @@ def _results(old: Side, new: Side, name: Name, tolerance: float) -> list[Change]
     """Return what differs between the Results of a variant; without them, whether it can be computed."""
     if old.results is None or new.results is None:
         pair = old.hindrance(name), new.hindrance(name)
-        words = [f"no, {one}" if one else "yes" for one in pair]
-        told = Change(sheet="Variants", key="status", label="Computable", old=words[0], new=words[1])
-        return [told] if bool(pair[0]) != bool(pair[1]) else []
+        words = [f"no, {reason}" if reason else "yes" for reason in pair]
+        change = Change(sheet="Variants", key="status", label="Computable", old=words[0], new=words[1])
+        return [change] if bool(pair[0]) != bool(pair[1]) else []
     before, after = old.results.get(name), new.results.get(name)
     if before is None or after is None:
         words = ["missing" if row is None else "there" for row in (before, after)]
-        told = Change(sheet="Results", key="status", label="Row of Results", old=words[0], new=words[1])
-        return [] if before is after else [told]
+        change = Change(sheet="Results", key="status", label="Row of Results", old=words[0], new=words[1])
+        return [] if before is after else [change]
     return changed_results(before, after, tolerance)
 
 
@@ -252,11 +252,11 @@ def _limit(old: Side, new: Side, name: Name) -> str:
     return "over" if verdicts[1] else "within"
 
 
-def equal(one: Any, other: Any, tolerance: float = ROUNDING) -> bool:
+def equal(old: Any, new: Any, tolerance: float = ROUNDING) -> bool:
     """Whether two values say the same; numbers, alone or in a row, may differ by their rounding."""
-    if isinstance(one, tuple) and isinstance(other, tuple):
-        pairs = zip(one, other, strict=False)
-        return len(one) == len(other) and all(equal(*pair, tolerance) for pair in pairs)
-    if isinstance(one, int | float) and isinstance(other, int | float):
-        return math.isclose(one, other, rel_tol=tolerance)
-    return bool(one == other)
+    if isinstance(old, tuple) and isinstance(new, tuple):
+        pairs = zip(old, new, strict=False)
+        return len(old) == len(new) and all(equal(*pair, tolerance) for pair in pairs)
+    if isinstance(old, int | float) and isinstance(new, int | float):
+        return math.isclose(old, new, rel_tol=tolerance)
+    return bool(old == new)

@@ -15,7 +15,7 @@ __all__ = ["comparison_line", "difference_lines"]
 
 _NAME = 30
 _NAMED = 3
-_TOLD = 20
+_LISTED = 20
 """Most variants that are told one by one."""
 
 _SHARE = ("probability", "share")
@@ -25,28 +25,28 @@ _UNITS = ((1e-3, 100.0, " %"), (1e-7, 1e6, " ppm"), (0.0, 1e9, " ppb"))
 _BLANK = "–"
 
 
-def difference_lines(found: Difference, *, every: bool = False) -> Iterator[str]:
+def difference_lines(difference: Difference, *, every: bool = False) -> Iterator[str]:
     """Yield a difference line by line; `every` tells all columns of Results and all variants."""
-    if found.variants:
-        yield _count(found)
-    yield from _made_otherwise(found)
-    for change, names in found.shared.items():
-        yield f"{_owner(change)}, {_words(change)}, used by {_who(names, found.common)}"
-    if found.within_error:
-        who = _who(found.within_error, found.common)
+    if difference.variants:
+        yield _count(difference)
+    yield from _how_reports_differ(difference)
+    for change, names in difference.shared.items():
+        yield f"{_owner(change)}, {_words(change)}, used by {_who(names, difference.common)}"
+    if difference.within_error:
+        who = _who(difference.within_error, difference.common)
         yield f"Within the error of the calculation ({AGREEING:g} combined standard errors): {who}"
-    yield from _told_one_by_one(found, every=every)
-    for file, names in zip(_files(found), (found.removed, found.added), strict=True):
+    yield from _each_variant(difference, every=every)
+    for file, names in zip(_files(difference), (difference.removed, difference.added), strict=True):
         if names:
-            yield f"Only in {file}: {_named(names, None if every else _TOLD)}"
-    yield _verdict(found)
+            yield f"Only in {file}: {_named(names, None if every else _LISTED)}"
+    yield _verdict(difference)
 
 
-def _count(found: Difference) -> str:
+def _count(difference: Difference) -> str:
     """Return how many variants differ, and how many do not."""
-    differing, within = len(found.differing), len(found.within_error)
-    equal = found.common - differing - within
-    parts = [f"{differing} of {found.common} variants {'differs' if differing == 1 else 'differ'}"]
+    differing, within = len(difference.differing), len(difference.within_error)
+    equal = difference.common - differing - within
+    parts = [f"{differing} of {difference.common} variants {'differs' if differing == 1 else 'differ'}"]
     if within:
         parts = [f"{parts[0]} beyond the error of the calculation", f"{within} within it"]
     if equal or not within:
@@ -54,12 +54,12 @@ def _count(found: Difference) -> str:
     return f"{', '.join(parts)}."
 
 
-def _made_otherwise(found: Difference) -> Iterator[str]:
+def _how_reports_differ(difference: Difference) -> Iterator[str]:
     """Yield what is known of how two reports were made that their cells do not show."""
-    if not found.has_results:
+    if not difference.has_results:
         return
-    old, new = found.old, found.new
-    files = _files(found)
+    old, new = difference.old, difference.new
+    files = _files(difference)
     if old.version != new.version:
         yield f"{files[0]} was made by flexlash {shown(old.version)}, {files[1]} by flexlash {shown(new.version)}."
     for name in SWITCHES:
@@ -68,43 +68,43 @@ def _made_otherwise(found: Difference) -> Iterator[str]:
             yield f"Only {files[switched.index(True)]} was made with --{name.replace('_', '-')}."
 
 
-def _files(found: Difference) -> tuple[str, str]:
+def _files(difference: Difference) -> tuple[str, str]:
     """Return what both files are called; files of one name are told apart as in the command."""
-    old, new = (shown(side.file, _NAME * 2) for side in (found.old, found.new))
+    old, new = (shown(side.file, _NAME * 2) for side in (difference.old, difference.new))
     return (f"{old} (A)", f"{new} (B)") if old == new else (old, new)
 
 
-def _told_one_by_one(found: Difference, *, every: bool) -> Iterator[str]:
+def _each_variant(difference: Difference, *, every: bool) -> Iterator[str]:
     """Yield the variants that differ, the most important first."""
-    ordered = sorted(found.variants if every else found.differing, key=_importance, reverse=True)
-    own = [one for one in ordered if one.entered or one.results]
-    for one in own if every else own[:_TOLD]:
-        yield _listed(one.name)
-        yield from (f"    {line}" for line in _variant_lines(one, every=every))
-    if len(own) > _TOLD and not every:
-        yield f"… and {len(own) - _TOLD} more variants (--all tells every one)"
+    ordered = sorted(difference.variants if every else difference.differing, key=_importance, reverse=True)
+    own = [variant for variant in ordered if variant.entered or variant.results]
+    for variant in own if every else own[:_LISTED]:
+        yield _listed(variant.name)
+        yield from (f"    {line}" for line in _variant_lines(variant, every=every))
+    if len(own) > _LISTED and not every:
+        yield f"… and {len(own) - _LISTED} more variants (--all tells every one)"
 
 
-def _importance(one: Differing) -> tuple[bool, float]:
+def _importance(variant: Differing) -> tuple[bool, float]:
     """Return what brings a variant forward: its limit crossed, then how much its P97.5 or backlash changed."""
-    parts = {change.key: abs(change.part or 0.0) for change in one.results}
-    return bool(one.limit), max((parts.get(key, 0.0) for key in ("p97_5_arcmin", "backlash_arcmin")), default=0.0)
+    parts = {change.key: abs(change.part or 0.0) for change in variant.results}
+    return bool(variant.limit), max((parts.get(key, 0.0) for key in ("p97_5_arcmin", "backlash_arcmin")), default=0.0)
 
 
-def _variant_lines(one: Differing, *, every: bool) -> Iterator[str]:
+def _variant_lines(variant: Differing, *, every: bool) -> Iterator[str]:
     """Yield what differs of one variant."""
-    for change in one.entered:
+    for change in variant.entered:
         yield _words(change)
-    told = [change for change in one.results if every or change.key in FIRST]
-    for change in told:
-        yield _words(change) + (_limit_words(one) if change.key == "p97_5_arcmin" else "")
-    if rest := len(one.results) - len(told):
-        yield f"{rest} {'further ' if told else ''}{'column' if rest == 1 else 'columns'} of Results (--all)"
+    listed = [change for change in variant.results if every or change.key in FIRST]
+    for change in listed:
+        yield _words(change) + (_limit_words(variant) if change.key == "p97_5_arcmin" else "")
+    if rest := len(variant.results) - len(listed):
+        yield f"{rest} {'further ' if listed else ''}{'column' if rest == 1 else 'columns'} of Results (--all)"
 
 
-def _limit_words(one: Differing) -> str:
+def _limit_words(variant: Differing) -> str:
     """Return what became of the limit."""
-    return {"over": ", now over its limit", "within": ", now within its limit"}.get(one.limit, "")
+    return {"over": ", now over its limit", "within": ", now within its limit"}.get(variant.limit, "")
 
 
 def _owner(change: Change) -> str:
@@ -156,7 +156,7 @@ def _value(value: str | float | None, digits: int, factor: float, unit: str) -> 
 def _listed(name: Name) -> str:
     """Return a variant's name; a later row of the same name says so."""
     text = shown(name.text, _NAME) or "(row without a name)"
-    return f"{text} (row {name.place} of this name)" if name.place > 1 else text
+    return f"{text} (row {name.occurrence} of this name)" if name.occurrence > 1 else text
 
 
 def _named(names: Sequence[Name], most: int | None = _NAMED) -> str:
@@ -171,29 +171,33 @@ def _who(names: Sequence[Name], common: int) -> str:
     return f"all {common} variants" if len(names) == common > 1 else _named(names)
 
 
-def _verdict(found: Difference) -> str:
+def _verdict(difference: Difference) -> str:
     """Return the last line."""
-    if found.is_none:
-        return "No difference in inputs or results." if found.has_results else "No difference in inputs."
-    beside = [f"{len(names)} {word}" for word, names in (("removed", found.removed), ("added", found.added)) if names]
-    differing = sorted(found.differing, key=_importance, reverse=True)
+    if difference.is_none:
+        return "No difference in inputs or results." if difference.has_results else "No difference in inputs."
+    beside = [
+        f"{len(names)} {word}"
+        for word, names in (("removed", difference.removed), ("added", difference.added))
+        if names
+    ]
+    differing = sorted(difference.differing, key=_importance, reverse=True)
     if not differing:
-        beyond = " beyond the error of the calculation" if found.within_error else ""
+        beyond = " beyond the error of the calculation" if difference.within_error else ""
         if not beside:
             return f"No difference{beyond}."
-        return f"None of {found.common} common variants differs{beyond}; {', '.join(beside)}."
+        return f"None of {difference.common} common variants differs{beyond}; {', '.join(beside)}."
     verb = "differs" if len(differing) == 1 else "differ"
-    names = _named([one.name for one in differing])
+    names = _named([variant.name for variant in differing])
     what = [
         f"{count} in {word}"
         for word, count in (
-            ("inputs", sum(bool(one.entered or one.used) for one in differing)),
-            ("results", sum(bool(one.results) for one in differing) if found.has_results else 0),
+            ("inputs", sum(bool(variant.entered or variant.used) for variant in differing)),
+            ("results", sum(bool(variant.results) for variant in differing) if difference.has_results else 0),
         )
         if count
     ]
     tail = ", ".join([*what, *beside])
-    return f"{len(differing)} of {found.common} variants {verb}: {names} ({tail})."
+    return f"{len(differing)} of {difference.common} variants {verb}: {names} ({tail})."
 
 
 def comparison_line(different: int, numbers: int, report: str) -> str:

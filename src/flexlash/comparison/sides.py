@@ -43,10 +43,10 @@ _ESCAPE = "x005F_"
 
 @dataclass(frozen=True, kw_only=True)
 class Name:
-    """A variant by its name, case as written; `place` counts rows of one name from 1."""
+    """A variant by its name, case as written; `occurrence` counts rows of one name from 1."""
 
     text: str
-    place: int = 1
+    occurrence: int = 1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,9 +104,9 @@ class Side:
         """Return what was entered for each variant: blank cells with their default, faulty ones as entered."""
         table = self.validated.table
         mends = {
-            (found.address, found.column): found.repair
-            for found in self._findings
-            if table and found.sheet == table.sheet and found.repair is not None
+            (finding.address, finding.column): finding.repair
+            for finding in self._findings
+            if table and finding.sheet == table.sheet and finding.repair is not None
         }
         return {name: _entered(record, table, mends) for name, record in self.records.items() if table}
 
@@ -133,17 +133,17 @@ class Side:
     @cached_property
     def _errors(self) -> Mapping[int, list[str]]:
         """The errors of each row that cannot be computed; without one of its own, those elsewhere that stop it."""
-        found: dict[int, list[str]] = defaultdict(list)
+        by_row: dict[int, list[str]] = defaultdict(list)
         sheet = self.validated.table.sheet if self.validated.table else ""
-        for one in self._findings:
-            if one.level == "error" and one.sheet == sheet and one.cell:
-                found[one.row].append(f"{one.code} {one.cell}")
+        for error in self._findings:
+            if error.level == "error" and error.sheet == sheet and error.cell:
+                by_row[error.row].append(f"{error.code} {error.cell}")
         table = self.validated.table
         stops = stopped_by(table, self._nominal.blocked, self._findings) if table else {}
         for row, errors in stops.items():
-            if row not in found:
-                found[row] = [f"{one.code} {one.place}" for one in errors[:_NAMED]]
-        return found
+            if row not in by_row:
+                by_row[row] = [f"{error.code} {error.place}" for error in errors[:_NAMED]]
+        return by_row
 
     @cached_property
     def _rows(self) -> Mapping[int, frozenset[str]]:
@@ -152,10 +152,10 @@ class Side:
     def material(self, name: Name) -> Used | None:
         """Return the material that a variant uses; None for one that is unknown."""
         record = self.records[name]
-        found = self.validated.materials.get(plain(record["material"] or ""))
-        if found is None:
+        material = self.validated.materials.get(plain(record["material"] or ""))
+        if material is None:
             return None
-        constants = found.constants | {"yield": found.yield_strength}
+        constants = material.constants | {"yield": material.yield_strength}
         values = {
             column.dimension: Value(
                 value=number,
@@ -166,7 +166,7 @@ class Side:
             for column in MATERIALS
             if (number := constants.get(column.dimension)) is not None
         }
-        return Used(owner=plain(found.name), name=found.name, values=values)
+        return Used(owner=plain(material.name), name=material.name, values=values)
 
     def tolerances(self, name: Name) -> Used | None:
         """Return the tolerances of a variant's class; None for one that is unknown."""
@@ -220,13 +220,13 @@ def by_variant(rows: Mapping[Name, Mapping[str, Any]], names: Iterable[Name]) ->
 
     Rows of none keep the name they have. A sheet may give `_x0041_` back as A, so that a name is not the key.
     """
-    found = dict(zip(_named(_bare(name.text) for name in rows), rows.items(), strict=True))
+    rows_by_bare_name = dict(zip(_named(_bare(name.text) for name in rows), rows.items(), strict=True))
     wanted = list(names)
-    mine = {}
+    by_name = {}
     for name, bare in zip(wanted, _named(_bare(name.text) for name in wanted), strict=True):
-        if bare in found:
-            mine[name] = found.pop(bare)[1]
-    return mine | {name: row for name, row in found.values() if name not in mine}
+        if bare in rows_by_bare_name:
+            by_name[name] = rows_by_bare_name.pop(bare)[1]
+    return by_name | {name: row for name, row in rows_by_bare_name.values() if name not in by_name}
 
 
 def _bare(text: str) -> str:
@@ -239,18 +239,18 @@ def _bare(text: str) -> str:
 def _named(names: Iterable[str]) -> list[Name]:
     """Return names that tell apart the rows of one name."""
     seen: Counter[str] = Counter()
-    found = []
+    distinct = []
     for name in names:
         seen[name] += 1
-        found.append(Name(text=name, place=seen[name]))
-    return found
+        distinct.append(Name(text=name, occurrence=seen[name]))
+    return distinct
 
 
 def _entered(
     record: Mapping[str, Any], table: Table, mends: Mapping[tuple[CellAddress | None, str], str | float | None]
 ) -> dict[str, Any]:
     """Return a row of Variants as it is compared."""
-    found = {}
+    entered = {}
     for key, column in columns_of("Variants").items():
         value = record[key]
         if (record["row"], key) in table.faulty:
@@ -260,8 +260,8 @@ def _entered(
                 value = mend * table.heading.factors.get(key, 1.0)
         elif value is None and not column.is_number:
             value = column.default
-        found[key] = None if value == 0 and column.zero_is_blank else value
-    return found
+        entered[key] = None if value == 0 and column.zero_is_blank else value
+    return entered
 
 
 def _tolerance(row: ToleranceRow) -> Value:
@@ -290,16 +290,16 @@ def result_rows(sheet: RawSheet | None) -> dict[Name, dict[str, Any]]:
     """Return the rows of a Results sheet by variant; its keys stand in one row, above the first variant."""
     if sheet is None:
         raise Refusal("E122", found="its sheet Results is missing")
-    columns = {column.key: column for column in result_columns(cross_check=True, elasticity=True)}
-    head = next((row for row, cells in sheet.rows.items() if {"variant", "status"} <= _texts(cells)), None)
-    if head is None or head > _TOP:
+    known = {column.key: column for column in result_columns(cross_check=True, elasticity=True)}
+    header_row = next((row for row, cells in sheet.rows.items() if {"variant", "status"} <= _texts(cells)), None)
+    if header_row is None or header_row > _TOP:
         raise Refusal("E122", found="its sheet Results has no row of keys")
-    places = {key: place for place, key in sheet.rows[head].items() if key in columns}
-    numeric = {key: columns[str(key)].is_number for key in places}
+    columns = {key: place for place, key in sheet.rows[header_row].items() if key in known}
+    numeric = {key: known[str(key)].is_number for key in columns}
     rows: list[dict[str, Any]] = [
-        {str(key): _plain_value(cells.get(place), is_number=numeric[key]) for key, place in places.items()}
+        {str(key): _plain_value(cells.get(place), is_number=numeric[key]) for key, place in columns.items()}
         for row, cells in sheet.rows.items()
-        if row > head
+        if row > header_row
     ]
     return dict(zip(_named(row["variant"] or "" for row in rows), rows, strict=True))
 

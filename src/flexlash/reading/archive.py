@@ -45,7 +45,7 @@ def unpacked(data: bytes, limits: ReadingLimits) -> dict[str, bytes]:
             parts = archive.infolist()
             limits.require("parts", len(parts))
             _check_count(data, parts)
-            _check_places(data, parts, archive.start_dir)
+            _check_overlap(data, parts, archive.start_dir)
             parts = [part for part in parts if not _is_litter(part.filename)]
             _check_names(parts)
             _check_sizes(parts, limits)
@@ -93,13 +93,13 @@ def _check_sizes(parts: list[zipfile.ZipInfo], limits: ReadingLimits) -> None:
     limits.require("unpacked_mebibytes", sum(part.file_size for part in parts) / _MEBI)
 
 
-def _check_places(data: bytes, parts: list[zipfile.ZipInfo], directory: int) -> None:
+def _check_overlap(data: bytes, parts: list[zipfile.ZipInfo], directory: int) -> None:
     """Refuse parts that overlap: one stretch of bytes unpacked many times is how small files become enormous.
 
     Python checks this itself only since 3.11.8 and 3.12.2.
     """
     end = 0
-    for part in sorted(parts, key=lambda one: one.header_offset):
+    for part in sorted(parts, key=lambda part: part.header_offset):
         header = _LOCAL_HEADER.unpack_from(data, part.header_offset)
         if part.header_offset < end or header[0] != b"PK\x03\x04":
             raise Refusal("E102")

@@ -50,8 +50,8 @@ def read_report(
     sheets = {sheet.name: sheet for sheet in cells.sheets}
     if SHEET not in sheets:
         raise Refusal("E121" if cells.role == "report" else "E120")
-    found = _parsed(sheets[SHEET])
-    return carried_submission(found, limits), sheets.get(RESULTS), found["version"]
+    carried = _parsed(sheets[SHEET])
+    return carried_submission(carried, limits), sheets.get(RESULTS), carried["version"]
 
 
 def _parsed(sheet: RawSheet) -> Any:
@@ -62,13 +62,15 @@ def _parsed(sheet: RawSheet) -> Any:
         raise Refusal("E122", found=_ALTERED) from fault
 
 
-def carried_submission(found: Any, limits: ReadingLimits) -> Submission:
+def carried_submission(carried: Any, limits: ReadingLimits) -> Submission:
     """Return the submission that a report carries; raise Refusal when it is none that could have been read."""
     try:
-        _require(type(found["form"]) is int, found["form"] >= 1, isinstance(found["version"], str))
-        if found["form"] > FORM:
-            raise Refusal("E122", found=f"flexlash {shown(found['version'])} wrote them, which is later than this one")
-        cells, head = from_wire(found["cells"]), found["submission"]
+        _require(type(carried["form"]) is int, carried["form"] >= 1, isinstance(carried["version"], str))
+        if carried["form"] > FORM:
+            raise Refusal(
+                "E122", found=f"flexlash {shown(carried['version'])} wrote them, which is later than this one"
+            )
+        cells, head = from_wire(carried["cells"]), carried["submission"]
         _check_head(head, cells)
         _check_sheets(cells.sheets, limits)
         return Submission(
@@ -79,7 +81,7 @@ def carried_submission(found: Any, limits: ReadingLimits) -> Submission:
             modified=cells.modified,
             role=cells.role,
             template_version=cells.template_version,
-            run_with=_options(found["options"]),
+            run_with=_options(carried["options"]),
         )
     except _NONSENSE as fault:
         raise Refusal("E122", found=_ALTERED) from fault
@@ -102,15 +104,15 @@ def _check_head(head: dict[str, Any], cells: Cells) -> None:
     )
 
 
-def _options(found: dict[str, Any]) -> dict[str, Any]:
+def _options(carried: dict[str, Any]) -> dict[str, Any]:
     """Return the options of a run, each within the bounds of its setting."""
     columns = {column.key: column for column in SETTINGS}
     for name in ("seed", "samples"):
-        value, column = found[name], columns[name]
+        value, column = carried[name], columns[name]
         fits = type(value) is int and (column.minimum or 0) <= value <= (column.maximum or math.inf)
         _require(fits or (name == "samples" and value is None))
-    _require(found["method"] in columns["method"].choices, *(isinstance(found[name], bool) for name in SWITCHES))
-    return {name: found[name] for name in ("seed", "method", "samples", *SWITCHES)}
+    _require(carried["method"] in columns["method"].choices, *(isinstance(carried[name], bool) for name in SWITCHES))
+    return {name: carried[name] for name in ("seed", "method", "samples", *SWITCHES)}
 
 
 def _check_sheets(sheets: list[RawSheet], limits: ReadingLimits) -> None:
@@ -122,18 +124,18 @@ def _check_sheets(sheets: list[RawSheet], limits: ReadingLimits) -> None:
         rows = list(sheet.rows)
         _require(
             isinstance(sheet.name, str) and 0 < len(sheet.name) <= _LONGEST_NAME,
-            _are_places(rows, MAXIMUM_ROW) and rows == sorted(rows),
-            _are_places(sheet.hidden_rows, MAXIMUM_ROW),
-            all(len(area) == 4 and _are_places(area, MAXIMUM_ROW) for area in sheet.merged),  # noqa: PLR2004
+            _are_numbers(rows, MAXIMUM_ROW) and rows == sorted(rows),
+            _are_numbers(sheet.hidden_rows, MAXIMUM_ROW),
+            all(len(area) == 4 and _are_numbers(area, MAXIMUM_ROW) for area in sheet.merged),  # noqa: PLR2004
             isinstance(sheet.hidden, bool),
             isinstance(sheet.numbers_are_texts, bool),
             sheet.dialect is None or _is_dialect(sheet.dialect),
         )
         for cells in sheet.rows.values():
-            _require(_are_places(cells, MAXIMUM_COLUMN), all(map(_is_value, cells.values())))
+            _require(_are_numbers(cells, MAXIMUM_COLUMN), all(map(_is_value, cells.values())))
 
 
-def _are_places(numbers: Iterable[Any], most: int) -> bool:
+def _are_numbers(numbers: Iterable[Any], most: int) -> bool:
     """Whether these are row or column numbers."""
     return all(type(number) is int and 1 <= number <= most for number in numbers)
 
@@ -149,11 +151,11 @@ def _is_value(value: Any) -> bool:
 
 def _is_dialect(dialect: CsvDialect) -> bool:
     """Whether a delimited text can have been written like this."""
-    places = (dialect.comma_number, dialect.foreign_text)
+    addresses = (dialect.comma_number, dialect.foreign_text)
     return (
         dialect.delimiter in _DELIMITERS
         and isinstance(dialect.encoding, str)
         and isinstance(dialect.file, str)
-        and _are_places(dialect.longer, MAXIMUM_ROW)
-        and all(place is None or (len(place) == 2 and _are_places(place, MAXIMUM_ROW)) for place in places)  # noqa: PLR2004
+        and _are_numbers(dialect.longer, MAXIMUM_ROW)
+        and all(address is None or (len(address) == 2 and _are_numbers(address, MAXIMUM_ROW)) for address in addresses)  # noqa: PLR2004
     )

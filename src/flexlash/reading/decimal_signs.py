@@ -52,7 +52,7 @@ def settle_numbers(
     commas, points = counts["comma"] + counts["thousands_points"], counts["point"] + counts["thousands_commas"]
     settled = Settled(has_decimal_point=points > 0)
     if counts["comma"] and delimiter != "," and commas >= _PREVAILING * points:
-        first = next((number, place) for number, place, _, kind in _numbers(rows, columns) if kind == "comma")
+        first = next((row, column) for row, column, _, kind in _numbers(rows, columns) if kind == "comma")
         open_commas = DoubtfulNumber if points or counts["open_point"] else CommaNumber
         doubtful = dict.fromkeys(("point", "thousands_commas", "open_point"), DoubtfulNumber)
         _mark(rows, others, {"comma": CommaNumber, "open_comma": open_commas, **doubtful})
@@ -67,15 +67,15 @@ def settle_numbers(
 
 def _numbers(rows: _Rows, columns: Collection[int] | None) -> Iterator[tuple[int, int, str, str]]:
     """Yield row, column, text and kind of every number with a sign in it."""
-    for number, cells in rows.items():
-        for place in tuple(cells) if columns is None else columns:
-            cell = cells.get(place)
+    for row, cells in rows.items():
+        for column in tuple(cells) if columns is None else columns:
+            cell = cells.get(column)
             if isinstance(cell, str) and ("." in cell or "," in cell) and (match := _NUMBER.fullmatch(cell)):
-                yield number, place, cell, match.lastgroup or ""
+                yield row, column, cell, match.lastgroup or ""
 
 
 def _mark(rows: _Rows, others: Collection[int], marks: Mapping[str, type[CommaNumber | DoubtfulNumber]]) -> None:
     """Put numbers in the place of texts, by the kind of each."""
-    for number, place, text, kind in _numbers(rows, None):
-        if kind in marks and place not in others:
-            rows[number][place] = marks[kind](text)
+    for row, column, text, kind in _numbers(rows, None):
+        if kind in marks and column not in others:
+            rows[row][column] = marks[kind](text)

@@ -48,11 +48,11 @@ def read_table(data: bytes, name: str, file: str = "", limits: ReadingLimits | N
     limits = limits or ReadingLimits()
     text, encoding = decoded(data)
     text = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\n")
-    told = _SEPARATOR_LINE.match(text)
-    text = text[told.end() :] if told else text
+    separator_line = _SEPARATOR_LINE.match(text)
+    text = text[separator_line.end() :] if separator_line else text
     if '"' not in text:
         limits.require("table_rows", text.count("\n") + 1)
-    delimiter = _delimiter(text, told[1] if told else _DELIMITERS, limits)
+    delimiter = _delimiter(text, separator_line[1] if separator_line else _DELIMITERS, limits)
     read = _rows(_records(text, delimiter, limits), limits)
     if "#" in text:
         _mark_errors(read.rows)
@@ -133,19 +133,17 @@ class _Read:
     width: int = 0
     widths: dict[int, int] = field(default_factory=dict)
 
-    def add(self, number: int, cells: dict[int, RawValue], width: int) -> None:
+    def add(self, row: int, cells: dict[int, RawValue], width: int) -> None:
         """Add a row."""
-        self.rows[number] = cells
+        self.rows[row] = cells
         self.width = self.width or width
         if width != self.width:
-            self.widths[number] = width
+            self.widths[row] = width
 
     def longer_than(self, header: int) -> frozenset[int]:
         """Return the rows below a header row that have more cells than it has."""
         width = self.widths.get(header, self.width)
-        return frozenset(
-            number for number in self.rows if number > header and self.widths.get(number, self.width) > width
-        )
+        return frozenset(row for row in self.rows if row > header and self.widths.get(row, self.width) > width)
 
 
 def _rows(records: Iterator[list[str]], limits: ReadingLimits) -> _Read:
@@ -155,16 +153,16 @@ def _rows(records: Iterator[list[str]], limits: ReadingLimits) -> _Read:
     once = shared.setdefault
     count = 0
     try:
-        for number, values in enumerate(records, start=1):
-            if number > limits.table_rows:
+        for row, values in enumerate(records, start=1):
+            if row > limits.table_rows:
                 raise limits.exceeded("table_rows")
             cells: dict[int, RawValue] = {
-                place: once(text, text) for place, text in enumerate(values, start=1) if text and not text.isspace()
+                column: once(text, text) for column, text in enumerate(values, start=1) if text and not text.isspace()
             }
             if cells:
                 count += len(cells)
                 _count(values, cells, count, limits)
-                read.add(number, cells, len(values))
+                read.add(row, cells, len(values))
             if len(shared) > _SHARED:
                 shared.clear()
     except _TooLong as fault:
@@ -187,9 +185,9 @@ def _count(values: list[str], cells: dict[int, RawValue], count: int, limits: Re
 def _mark_errors(rows: _Rows) -> None:
     """Put errors in the place of Excel's words for them."""
     for cells in rows.values():
-        for place, text in cells.items():
+        for column, text in cells.items():
             if isinstance(text, str) and "#" in text and text.strip() in ERROR_WORDS:
-                cells[place] = ErrorCell(text.strip())
+                cells[column] = ErrorCell(text.strip())
 
 
 def _header(rows: _Rows, schema: str) -> tuple[int, frozenset[int] | None, frozenset[int]]:
@@ -199,29 +197,27 @@ def _header(rows: _Rows, schema: str) -> tuple[int, frozenset[int] | None, froze
     """
     columns = columns_of(schema) if schema in ENTRY_SHEETS else {}
     names = known_names(columns)
-    top = {number: rows[number] for number in range(1, LAST_HEADER_ROW + 1) if number in rows}
-    known = {number: _known(cells, names) for number, cells in top.items()}
-    best = max(known, key=lambda number: len(known[number]), default=0)
+    top = {row: rows[row] for row in range(1, LAST_HEADER_ROW + 1) if row in rows}
+    known = {row: _known(cells, names) for row, cells in top.items()}
+    best = max(known, key=lambda row: len(known[row]), default=0)
     if not best or len(known[best]) < min(2, len(columns)):
         return 0, None, frozenset()
-    numbers = frozenset(place for place, key in known[best].items() if columns[key].is_number)
+    numbers = frozenset(column for column, key in known[best].items() if columns[key].is_number)
     return best, numbers, frozenset(known[best]) - numbers
 
 
 def _known(cells: Mapping[int, RawValue], names: Mapping[str, str]) -> dict[int, str]:
     """Return the keys of the columns that the cells of a row are headers of, by place."""
-    found = {}
-    for place, cell in cells.items():
+    keys = {}
+    for column, cell in cells.items():
         if isinstance(cell, str) and len(cell) <= _LONGEST_HEADER:
             key = names.get(plain(name_and_unit(cell)[0]))
             if key is not None:
-                found[place] = key
-    return found
+                keys[column] = key
+    return keys
 
 
 def _first_foreign(rows: _Rows) -> tuple[int, int] | None:
     """Return where the first text stands that not every encoding shows alike."""
-    texts = ((number, place, cell) for number, cells in rows.items() for place, cell in cells.items())
-    return next(
-        ((number, place) for number, place, cell in texts if isinstance(cell, str) and not cell.isascii()), None
-    )
+    texts = ((row, column, cell) for row, cells in rows.items() for column, cell in cells.items())
+    return next(((row, column) for row, column, cell in texts if isinstance(cell, str) and not cell.isascii()), None)

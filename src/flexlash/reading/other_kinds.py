@@ -112,9 +112,9 @@ def other_kind(data: bytes) -> Refusal | None:
         head = head.decode("utf-16", "ignore").encode()
     heads = (head, head.removeprefix(b"\xef\xbb\xbf").lstrip(b" \t\r\n"))
     for code, kinds in (("E104", _WORKBOOKS), ("E101", _OTHERS)):
-        for pattern, found in kinds:
-            if any(re.match(pattern, one, re.DOTALL) for one in heads):
-                return Refusal(code, found=found)
+        for pattern, kind in kinds:
+            if any(re.match(pattern, head, re.DOTALL) for head in heads):
+                return Refusal(code, found=kind)
     return None
 
 
@@ -122,9 +122,9 @@ def _compound(data: bytes) -> Refusal:
     """Return the refusal of a file in Microsoft's older container."""
     if "EncryptedPackage".encode("utf-16-le") in data:
         return Refusal("E103")
-    for stream, found in _COMPOUNDS:
+    for stream, kind in _COMPOUNDS:
         if stream.encode("utf-16-le") in data and "Workbook".encode("utf-16-le") not in data:
-            return Refusal("E101", found=found)
+            return Refusal("E101", found=kind)
     return Refusal("E104", found="an old Excel file (.xls)")
 
 
@@ -136,12 +136,12 @@ def other_archive(names: Collection[str], mimetype: bytes) -> Refusal | None:
         or ({"content.xml", "META-INF/manifest.xml"} <= set(names) and not mimetype),
         "an Apple Numbers document (in Numbers: File, Export To, Excel)": any(name.endswith(".iwa") for name in names),
     }
-    if found := next((kind for kind, fits in workbook.items() if fits), ""):
-        return Refusal("E104", found=found)
+    if kind := next((kind for kind, fits in workbook.items() if fits), ""):
+        return Refusal("E104", found=kind)
     if mimetype:
         return Refusal("E101", found=f"it is a document of another program; {_CELLS}")
     if "xl/workbook.xml" in names:
         return None
     empty = () if names else ("it is an empty archive",)
-    fits = (found for pattern, found in _PACKAGES if any(re.fullmatch(pattern, name) for name in names))
-    return next((Refusal("E101", found=found) for found in (*empty, *fits)), None)
+    fits = (kind for pattern, kind in _PACKAGES if any(re.fullmatch(pattern, name) for name in names))
+    return next((Refusal("E101", found=kind) for kind in (*empty, *fits)), None)

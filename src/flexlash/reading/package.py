@@ -109,14 +109,14 @@ def _usual_dialect(parts: dict[str, bytes]) -> dict[str, bytes]:
     """Return the parts with the names of the Strict dialect replaced by the usual ones."""
     if not any(_STRICT in part for name, part in parts.items() if name.lower().endswith((".xml", ".rels"))):
         return parts
-    found = {}
+    usual_parts = {}
     for name, part in parts.items():
         usual = part
         if name.lower().endswith((".xml", ".rels")):
             for strict, transitional in STRICT_NAMES:
                 usual = usual.replace(strict, transitional)
-        found[name] = usual
-    return found
+        usual_parts[name] = usual
+    return usual_parts
 
 
 def _workbook_part(parts: Mapping[str, bytes], limits: ReadingLimits) -> str:
@@ -133,7 +133,9 @@ def _workbook_part(parts: Mapping[str, bytes], limits: ReadingLimits) -> str:
 def _check_type(parts: Mapping[str, bytes], workbook: str, limits: ReadingLimits) -> None:
     """Refuse a file whose list of types names another workbook than its relations do: readers would differ."""
     types = Listing(parts[_TYPES], limits, "Override").found if _TYPES in parts else []
-    mains = [one.get("PartName", "") for one in types if one.get("ContentType", "").endswith(".main+xml")]
+    mains = [
+        override.get("PartName", "") for override in types if override.get("ContentType", "").endswith(".main+xml")
+    ]
     if any(name.lstrip("/") != workbook for name in mains):
         raise Refusal("E102")
 
@@ -144,17 +146,17 @@ def _relations(parts: Mapping[str, bytes], workbook: str, limits: ReadingLimits)
     part = f"{folder}/_rels/{name}.rels" if folder else f"_rels/{name}.rels"
     if part not in parts:
         raise Refusal("E102")
-    found = {}
+    relations = {}
     for relation in Listing(parts[part], limits, "Relationship").found:
         target = relation.get("Target", "")
-        place = target.lstrip("/") if target.startswith("/") else posixpath.normpath(posixpath.join(folder, target))
-        found[relation.get("Id", "")] = (relation.get("Type", ""), place)
-    return found
+        path = target.lstrip("/") if target.startswith("/") else posixpath.normpath(posixpath.join(folder, target))
+        relations[relation.get("Id", "")] = (relation.get("Type", ""), path)
+    return relations
 
 
 def _related(relations: Mapping[str, tuple[str, str]], kind: str) -> str:
     """Name of the workbook's part of a kind, an empty text when there is none."""
-    return next((part for found, part in relations.values() if found.endswith(f"/{kind}")), "")
+    return next((part for type_, part in relations.values() if type_.endswith(f"/{kind}")), "")
 
 
 def _sheets(
@@ -208,7 +210,7 @@ def _modified(parts: Mapping[str, bytes], limits: ReadingLimits) -> datetime.dat
         return None
     try:
         (text,) = Texts(parts[_CORE], limits, "modified").found
-        found = datetime.datetime.fromisoformat(text.strip())
-        return (found.astimezone(datetime.UTC) if found.tzinfo else found).replace(tzinfo=None, microsecond=0)
+        moment = datetime.datetime.fromisoformat(text.strip())
+        return (moment.astimezone(datetime.UTC) if moment.tzinfo else moment).replace(tzinfo=None, microsecond=0)
     except (ValueError, OverflowError):
         return None

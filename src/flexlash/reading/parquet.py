@@ -51,10 +51,10 @@ def read_parquet(data: bytes, limits: ReadingLimits | None = None) -> Cells:
         raise Refusal("E102") from fault
     limits.require("characters", max(map(len, frame.columns), default=0))
     rows: dict[int, dict[int, RawValue]] = {1: dict(enumerate(frame.columns, start=1))}
-    for number, values in enumerate(zip(*columns, strict=True), start=2):
-        cells = {place: value for place, value in enumerate(values, start=1) if value is not None}
+    for row, values in enumerate(zip(*columns, strict=True), start=2):
+        cells = {column: value for column, value in enumerate(values, start=1) if value is not None}
         if cells:
-            rows[number] = cells
+            rows[row] = cells
     return Cells(sheets=[RawSheet(name="Variants", rows=rows)])
 
 

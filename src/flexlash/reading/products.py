@@ -47,8 +47,8 @@ def mended_role(original: bytes) -> str:
 
 def results_header(keys: Iterable[object]) -> bool:
     """Whether a header row is that of Results as flexlash writes them; further columns may follow."""
-    found = list(keys)
-    return tuple(found[:2]) == _RESULTS[:2] and set(_RESULTS) <= set(found)
+    header = list(keys)
+    return tuple(header[:2]) == _RESULTS[:2] and set(_RESULTS) <= set(header)
 
 
 def is_made_by_name(path: Path) -> bool:
@@ -75,7 +75,7 @@ def require_submission(submission: Submission, path: Path, given: Iterable[Path]
 
     `given` are all files given with it: a mended file is skipped when its original is among them.
     """
-    if code := _product(submission, path, [Path(one) for one in given], marked_copies=marked_copies):
+    if code := _product(submission, path, [Path(path) for path in given], marked_copies=marked_copies):
         raise Refusal(code)
 
 

@@ -52,13 +52,13 @@ class ReadingLimits:
 
     def times(self, factor: int, *settings: str) -> ReadingLimits:
         """Return limits of which some are so many times higher, as far as they may be."""
-        most = {one.name: one.metadata["most"] for one in fields(self)}
+        most = {limit.name: limit.metadata["most"] for limit in fields(self)}
         return replace(self, **{name: min(factor * getattr(self, name), most[name]) for name in settings})
 
     @classmethod
     def of(cls, settings: Mapping[str, object]) -> ReadingLimits:
         """Return limits with some of them changed; raise ValueError for an unknown name or no whole number above 0."""
-        names = {one.name for one in fields(cls)}
+        names = {limit.name for limit in fields(cls)}
         for name, value in settings.items():
             if name not in names:
                 raise ValueError(f"{shown(name)} is no limit; there are {', '.join(sorted(names))}")
@@ -67,25 +67,25 @@ class ReadingLimits:
         return cls(**{name: int(str(value)) for name, value in settings.items()})
 
     def __post_init__(self) -> None:
-        for one in fields(self):
-            whole_number(one.name, getattr(self, one.name), least=1, most=one.metadata["most"])
+        for limit in fields(self):
+            whole_number(limit.name, getattr(self, limit.name), least=1, most=limit.metadata["most"])
 
-    def exceeded(self, setting: str, found: float | None = None) -> Refusal:
+    def exceeded(self, setting: str, amount: float | None = None) -> Refusal:
         """Return the refusal that names a limit, what was found, and the setting."""
-        (one,) = (one for one in fields(self) if one.name == setting)
-        unit = f" {one.metadata['unit']}" if one.metadata["unit"] else ""
+        (limit,) = (limit for limit in fields(self) if limit.name == setting)
+        unit = f" {limit.metadata['unit']}" if limit.metadata["unit"] else ""
         value = getattr(self, setting)
-        exceeded = f"more than {value:,}" if found is None else f"{found:,.10g}"
+        exceeded = f"more than {value:,}" if amount is None else f"{amount:,.10g}"
         return Refusal(
             "E110",
-            what=one.metadata["what"],
+            what=limit.metadata["what"],
             limit=f"{value:,}{unit}",
             found=f"{exceeded}{unit}",
             setting=setting,
-            detail=one.metadata["remark"],
+            detail=limit.metadata["remark"],
         )
 
-    def require(self, setting: str, found: float) -> None:
+    def require(self, setting: str, amount: float) -> None:
         """Raise the refusal when a number exceeds its limit."""
-        if found > getattr(self, setting):
-            raise self.exceeded(setting, found)
+        if amount > getattr(self, setting):
+            raise self.exceeded(setting, amount)

@@ -56,7 +56,7 @@ class SheetCells:
 
     def properties(self) -> dict[str, str]:
         """Return the document properties that are no standard ones, by name."""
-        return {one.name: str(one.value) for one in self.workbook.custom_doc_props.props}
+        return {property_.name: str(property_.value) for property_ in self.workbook.custom_doc_props.props}
 
     def rows(self, part: bytes) -> Iterator[tuple[int, list[tuple[int, Any]]]]:
         """Yield the rows of a worksheet that hold cells: a number, and each non-blank cell's column and value."""
@@ -72,26 +72,26 @@ class SheetCells:
 
 def _texts(part: bytes) -> list[str]:
     """Return the texts that cells share; openpyxl's own reader drops x005F_, the escape of an underscore, too early."""
-    found = []
+    texts = []
     # The walk has refused document types; the guarded parser that openpyxl takes is slow.
     for _, element in iterparse(_Part(part)):  # noqa: S314
         if element.tag == f"{{{MAIN}}}si":
-            found.append(Text.from_tree(element).content)
+            texts.append(Text.from_tree(element).content)
             element.clear()
-    return found
+    return texts
 
 
 def _percent_styles(workbook: Any) -> frozenset[int]:
     """Return the cell formats that show a number as a percentage."""
     own = workbook._number_formats  # noqa: SLF001
-    found = set()
-    for place, style in enumerate(workbook._cell_styles):  # noqa: SLF001
+    percentages = set()
+    for index, style in enumerate(workbook._cell_styles):  # noqa: SLF001
         number = style.numFmtId
         custom = number - _FIRST_OWN_FORMAT
         shape = own[custom] if 0 <= custom < len(own) else BUILTIN_FORMATS.get(number, "")
         if "%" in _QUOTED.sub("", shape):
-            found.add(place)
-    return frozenset(found)
+            percentages.add(index)
+    return frozenset(percentages)
 
 
 class _Parser(WorkSheetParser):  # type: ignore[misc]

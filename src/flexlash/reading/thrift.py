@@ -42,15 +42,15 @@ class _Reader:
         self.depth += 1
         if self.depth > _DEPTH:
             raise ValueError("nested too deeply")
-        found: dict[int, Any] = {}
+        fields: dict[int, Any] = {}
         number = 0
         while head := self._byte():
             step, kind = head >> 4, head & 0x0F
             number = number + step if step else self._signed()
             # The kind of a field that is true or false says which.
-            found[number] = kind == _TRUE if kind in {_TRUE, _FALSE} else self._value(kind)
+            fields[number] = kind == _TRUE if kind in {_TRUE, _FALSE} else self._value(kind)
         self.depth -= 1
-        return found
+        return fields
 
     def _value(self, kind: int) -> Any:
         """Read a value of a kind."""
@@ -86,14 +86,14 @@ class _Reader:
 
     def _unsigned(self) -> int:
         """Read a whole number in groups of seven bits, the lowest first."""
-        found = shift = 0
+        value = shift = 0
         while (byte := self._byte()) & 0x80:
-            found |= (byte & 0x7F) << shift
+            value |= (byte & 0x7F) << shift
             shift += 7
             if shift > 63:  # noqa: PLR2004
                 raise ValueError("a number without end")
-        return found | byte << shift
+        return value | byte << shift
 
     def _signed(self) -> int:
-        found = self._unsigned()
-        return found >> 1 ^ -(found & 1)
+        value = self._unsigned()
+        return value >> 1 ^ -(value & 1)

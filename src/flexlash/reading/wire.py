@@ -41,7 +41,7 @@ _KINDS: dict[str, tuple[type, Callable[[Any], str], Callable[[str], RawValue]]] 
 }
 """How each kind of value that JSON lacks is written and read."""
 
-_PLACES = ("comma_number", "foreign_text")
+_ADDRESSES = ("comma_number", "foreign_text")
 _OWN = frozenset({str, int, float, bool})
 """Kinds of value that JSON has itself."""
 
@@ -53,8 +53,8 @@ def to_wire(cells: Cells) -> dict[str, Any]:
             {
                 "name": sheet.name,
                 "rows": [
-                    [number, [[place, _written(value)] for place, value in row.items()]]
-                    for number, row in sheet.rows.items()
+                    [row, [[column, _written(value)] for column, value in row_cells.items()]]
+                    for row, row_cells in sheet.rows.items()
                 ],
                 "hidden": sheet.hidden,
                 "hidden_rows": sorted(sheet.hidden_rows),
@@ -86,7 +86,7 @@ def from_wire(wire: dict[str, Any]) -> Cells:
         sheets=[
             RawSheet(
                 name=sheet["name"],
-                rows={number: {place: _read(value) for place, value in row} for number, row in sheet["rows"]},
+                rows={row: {column: _read(value) for column, value in cells} for row, cells in sheet["rows"]},
                 hidden=sheet["hidden"],
                 hidden_rows=frozenset(sheet["hidden_rows"]),
                 merged=tuple(tuple(area) for area in sheet["merged"]),
@@ -105,8 +105,8 @@ def _dialect(written: dict[str, Any] | None) -> CsvDialect | None:
     """Return how a delimited text was written."""
     if written is None:
         return None
-    places = {name: place and tuple(place) for name, place in written.items() if name in _PLACES}
-    return CsvDialect(**(written | places | {"longer": frozenset(written.get("longer", ()))}))
+    addresses = {name: address and tuple(address) for name, address in written.items() if name in _ADDRESSES}
+    return CsvDialect(**(written | addresses | {"longer": frozenset(written.get("longer", ()))}))
 
 
 def _read(value: Any) -> RawValue:

@@ -153,14 +153,14 @@ class Worksheet(Elements):
     def _close_cell(self) -> None:
         """Judge a cell's stored value by its kind."""
         self.in_cell = False
-        place = (self.row, self.column)
+        address = (self.row, self.column)
         if self.is_formula and not self.value and not self.has_inline and self.kind != "str":
-            self.unstored.append(place)
+            self.unstored.append(address)
         elif self.kind == "e":
-            self.errors.append(place)
+            self.errors.append(address)
         elif self.kind == "inlineStr":
             if self.value and not self.has_inline:
-                self.texts[place] = self.value
+                self.texts[address] = self.value
         elif self.value and (
             (self.kind == "n" and not _NUMBER.fullmatch(self.value))
             or (self.kind == "s" and _index(self.value) >= self.strings)

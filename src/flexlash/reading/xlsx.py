@@ -69,13 +69,13 @@ def _check_texts(cells: Cells, limits: ReadingLimits) -> None:
 
 def look_at(package: Package, limits: ReadingLimits) -> dict[str, Worksheet]:
     """Walk through every worksheet, by title; the limit of cells is that of the whole file."""
-    found = {}
+    worksheets = {}
     cells = 0
     for sheet in package.sheets:
-        found[sheet.title] = Worksheet(package.parts[sheet.part], limits, package.styles, package.texts)
-        cells += found[sheet.title].cells
+        worksheets[sheet.title] = Worksheet(package.parts[sheet.part], limits, package.styles, package.texts)
+        cells += worksheets[sheet.title].cells
         limits.require("cells", cells)
-    return found
+    return worksheets
 
 
 def _read(data: bytes, package: Package, looked_at: dict[str, Worksheet]) -> Cells:
@@ -87,16 +87,16 @@ def _read(data: bytes, package: Package, looked_at: dict[str, Worksheet]) -> Cel
     for part in package.sheets:
         seen = looked_at[part.title]
         rows = {
-            row: {place: _plain(value) for place, value in cells}
+            row: {column: _plain(value) for column, value in cells}
             for row, cells in reader.rows(package.parts[part.part])
         }
-        for (row, place), text in seen.texts.items():
-            rows.setdefault(row, {})[place] = _plain(text)
-        for row, place in seen.errors:
-            shows = rows.setdefault(row, {}).get(place, "an error")
-            rows[row][place] = shows if isinstance(shows, ErrorCell) else ErrorCell(str(shows))
-        for row, place in seen.unstored:
-            rows.setdefault(row, {})[place] = Unstored()
+        for (row, column), text in seen.texts.items():
+            rows.setdefault(row, {})[column] = _plain(text)
+        for row, column in seen.errors:
+            shows = rows.setdefault(row, {}).get(column, "an error")
+            rows[row][column] = shows if isinstance(shows, ErrorCell) else ErrorCell(str(shows))
+        for row, column in seen.unstored:
+            rows.setdefault(row, {})[column] = Unstored()
         sheets.append(
             RawSheet(
                 name=part.title,
