@@ -9,7 +9,7 @@ import pytest
 import regenerate
 import xlsxwriter
 
-from flexlash.feedback.template.leftovers import leftovers
+from flexlash.feedback.template.leftovers import leftovers_of
 from flexlash.reading.limited_process import ask
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
@@ -48,10 +48,10 @@ def _with(data, parts):
 
 def test_each_kind_is_found():
     """Formulas with their text, notes with their cell, charts, pictures and text boxes with their number."""
-    found = leftovers(_book(), ReadingLimits())
+    found = leftovers_of(_book(), ReadingLimits())
     assert found.formulas == {"One": {(2, 2): "1+2", (9, 4): 'IF(A1<>"","x","")'}, "Two": {}}
     assert found.notes == {"One": [], "Two": [(1, 1), (7, 3)]}
-    assert found.things == {"chart": 1, "picture": 1, "text box or shape": 1}
+    assert found.objects == {"chart": 1, "picture": 1, "text box or shape": 1}
 
 
 @pytest.mark.parametrize(
@@ -66,15 +66,15 @@ def test_each_kind_is_found():
 )
 def test_parts_tell_what_they_hold(part, name):
     """What no cell shows is known by the name of its part."""
-    found = leftovers(_with(_book(), {part: b"<x/>"}), ReadingLimits())
-    assert found.things[name] == 1
+    found = leftovers_of(_with(_book(), {part: b"<x/>"}), ReadingLimits())
+    assert found.objects[name] == 1
 
 
 def test_the_limited_process_finds_the_same():
     """What comes back from the process of its own is what is found in this one."""
     data = (regenerate.ROOT / "data" / "needs-fixing.xlsx").read_bytes()
-    there = ask(leftovers, ReadingLimits(), data, ReadingLimits())
-    assert there == leftovers(data, ReadingLimits())
+    there = ask(leftovers_of, ReadingLimits(), data, ReadingLimits())
+    assert there == leftovers_of(data, ReadingLimits())
     assert there.formulas["Variants"][13, 8] == "0.8*2"
     assert len(there.notes["Variants"]) == 24
 
@@ -82,4 +82,4 @@ def test_the_limited_process_finds_the_same():
 def test_limits_hold():
     """A workbook beyond a limit is refused here as well."""
     with pytest.raises(Refusal):
-        leftovers(_book(), ReadingLimits.of({"sheets": 1}))
+        leftovers_of(_book(), ReadingLimits.of({"sheets": 1}))

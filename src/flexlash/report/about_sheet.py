@@ -204,7 +204,7 @@ def write_about(book: Book, outcome: Outcome, later: Sequence[str] = ()) -> None
     sheet.write_string(0, 0, "About this report", book.format("title"))
     sheet.set_row(0, 28)
     row = 2
-    present = [one.get_name() for one in book.workbook.worksheets()] + list(later)
+    present = [worksheet.get_name() for worksheet in book.workbook.worksheets()] + list(later)
     sections: tuple[tuple[str, list[tuple[str, str]]], ...] = (
         ("Provenance and settings", list(_identity(outcome).items())),
         ("Sheets", [*((name, SHEETS.get(name, "")) for name in present), ("", TABS)]),

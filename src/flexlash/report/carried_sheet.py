@@ -50,7 +50,7 @@ def carried_text(outcome: Outcome) -> str:
         | {name: bool(getattr(outcome.options, name)) for name in SWITCHES},
         "cells": to_wire(
             Cells(
-                sheets=_sheets(submission, {found.sheet for found in outcome.findings}),
+                sheets=_sheets(submission, {finding.sheet for finding in outcome.findings}),
                 modified=submission.modified,
                 role=submission.role,
                 template_version=submission.template_version,

@@ -51,8 +51,8 @@ def write_elasticity(book: Book, outcome: Outcome) -> None:
     for row, note in enumerate(NOTES, start=1):
         sheet.merge_range(row, 0, row, len(_COLUMNS), note, book.format("wrap"))
         sheet.set_row(row, 32)
-    for place, heading in enumerate(("Variant", *(heading for _, heading, _ in _COLUMNS))):
-        sheet.write_string(_HEADER, place, heading, book.format("header"))
+    for column, heading in enumerate(("Variant", *(heading for _, heading, _ in _COLUMNS))):
+        sheet.write_string(_HEADER, column, heading, book.format("header"))
     sheet.set_row(_HEADER, 48)
     row = _HEADER
     for record in outcome.results.iter_rows(named=True):
@@ -66,9 +66,9 @@ def write_elasticity(book: Book, outcome: Outcome) -> None:
         elastic = 2 * record["elasticity_windup_rad"] / ARCMIN
         meridian = elastic * (1 + record["elasticity_difference_percent"] / 100)
         values = {**record, "meridian": meridian, "elasticity": elastic}
-        for place, (key, _, number) in enumerate(_COLUMNS, start=1):
+        for column, (key, _, number) in enumerate(_COLUMNS, start=1):
             if values[key] is not None:
-                sheet.write_number(row, place, values[key], book.format("text", number))
+                sheet.write_number(row, column, values[key], book.format("text", number))
     sheet.freeze_panes(_HEADER + 1, 1)
     sheet.repeat_rows(_HEADER)
 

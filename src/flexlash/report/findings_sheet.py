@@ -33,8 +33,8 @@ _BY_KEY = {key: label for (_, key), label in reversed(_LABELS.items())}
 def write_findings(book: Book, outcome: Outcome) -> None:
     """Write the Findings sheet; cells link to the submission as read, variants to Results."""
     sheet = book.sheet("Findings")
-    for place, column in enumerate(FINDINGS):
-        sheet.set_column(place, place, _WIDTHS.get(column.key, 11))
+    for column_index, column in enumerate(FINDINGS):
+        sheet.set_column(column_index, column_index, _WIDTHS.get(column.key, 11))
     sheet.write_string(0, 0, "Findings", book.format("title"))
     sheet.set_row(0, 28)
     if not outcome.findings:
@@ -42,21 +42,21 @@ def write_findings(book: Book, outcome: Outcome) -> None:
         return
     sheet.write_string(1, 0, _counts(outcome), book.format("quiet"))
     header = _write_rules(book, sheet, rules_of(outcome))
-    for place, column in enumerate(FINDINGS):
-        sheet.write_string(header, place, column.label, book.format("header"))
-        sheet.write_comment(header, place, column.help)
+    for column_index, column in enumerate(FINDINGS):
+        sheet.write_string(header, column_index, column.label, book.format("header"))
+        sheet.write_comment(header, column_index, column.help)
     findings, rows, by_name = finding_list(outcome), result_rows(outcome), _rows_by_name(outcome)
     titles = titles_of(outcome.submission)
-    for row, found in enumerate(findings, start=header + 1):
-        result = rows.get(row_of(outcome, found), by_name.get(found.variant))
-        _write_finding(book, sheet, row, found, title=titles.get(found.sheet, ""), result=result)
+    for row, finding in enumerate(findings, start=header + 1):
+        result = rows.get(row_of(outcome, finding), by_name.get(finding.variant))
+        _write_finding(book, sheet, row, finding, title=titles.get(finding.sheet, ""), result=result)
     sheet.autofilter(header, 0, header + len(findings), len(FINDINGS) - 1)
     sheet.freeze_panes(0, 2)
 
 
 def _counts(outcome: Outcome) -> str:
     """Return how much was found, and where more is told."""
-    levels: Counter[str] = Counter(found.level for found in outcome.findings)
+    levels: Counter[str] = Counter(finding.level for finding in outcome.findings)
     counts = f"Errors: {levels['error']}, warnings: {levels['warning']}, notes: {levels['info']}."
     return (
         f"{counts} An error keeps its row from being computed, a warning flags it. First each rule once, below every "
@@ -75,12 +75,12 @@ def _write_rules(book: Book, sheet: Any, rules: Mapping[str, list[Finding]]) -> 
     row = _RULES_HEADER
     headings = {0: "Level", 1: "Code", 2: "Count", 3: "Rule", 6: "More", 7: "How to mend"}
     last = len(FINDINGS) - 1
-    for place in range(last + 1):
-        sheet.write_string(row, place, headings.get(place, ""), book.format("header"))
+    for column_index in range(last + 1):
+        sheet.write_string(row, column_index, headings.get(column_index, ""), book.format("header"))
     sheet.merge_range(row, 3, row, 5, "Rule", book.format("header"))
     sheet.merge_range(row, 7, row, last, "How to mend", book.format("header"))
     for row, (code, group) in enumerate(rules.items(), start=_RULES_HEADER + 1):
-        fixes = {found.fix for found in group}
+        fixes = {finding.fix for finding in group}
         mend = fixes.pop() if len(fixes) == 1 else explanation_of(code, {}).mend
         sheet.write_string(row, 0, group[0].level, book.format(_STYLES[group[0].level]))
         sheet.write_string(row, 1, code, book.format("text"))
@@ -96,26 +96,31 @@ def _write_rules(book: Book, sheet: Any, rules: Mapping[str, list[Finding]]) -> 
     return header
 
 
-def _write_finding(book: Book, sheet: Any, row: int, found: Finding, *, title: str, result: int | None) -> None:
+def _write_finding(book: Book, sheet: Any, row: int, finding: Finding, *, title: str, result: int | None) -> None:
     """Write one finding, its level coloured, its variant linked to Results and its cell to the submission."""
-    texts = found.as_dictionary()
-    label = _LABELS.get((_schema(title), found.column)) or _BY_KEY.get(found.column)
+    texts = finding.as_dictionary()
+    label = _LABELS.get((_schema(title), finding.column)) or _BY_KEY.get(finding.column)
     if label:
-        texts["column"] = f"{label}\n{found.column}"
+        texts["column"] = f"{label}\n{finding.column}"
     lines = [1 + len(texts[key]) // width for key, width in _PER_LINE.items()]
     sheet.set_row(row, _LINE * max(2 if label else 1, *lines))
     wrap = book.format("wrap")
-    for place, (key, text) in enumerate(texts.items()):
+    for column_index, (key, text) in enumerate(texts.items()):
         if key == "level":
-            sheet.write_string(row, place, text, book.format(_STYLES[found.level]))
+            sheet.write_string(row, column_index, text, book.format(_STYLES[finding.level]))
         elif key == "cell" and text and title:
-            write_link(sheet, row, place, f"{title}!{text}", text, style=book.format("link"))
+            write_link(sheet, row, column_index, f"{title}!{text}", text, style=book.format("link"))
         elif key == "variant" and text and result is not None:
             write_link(
-                sheet, row, place, f"Results!A{result + 1}", shown(text, longest=_NAME), style=book.format("link")
+                sheet,
+                row,
+                column_index,
+                f"Results!A{result + 1}",
+                shown(text, longest=_NAME),
+                style=book.format("link"),
             )
         elif text:
-            sheet.write_string(row, place, text, wrap)
+            sheet.write_string(row, column_index, text, wrap)
 
 
 def _schema(title: str) -> str:

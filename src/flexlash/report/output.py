@@ -37,12 +37,12 @@ def _as_parquet(outcome: Outcome) -> bytes:
 
 def _as_json(outcome: Outcome) -> bytes:
     """Return the Results and the findings as one JSON object, the stamp last."""
-    found = {
+    content = {
         "results": results_table(outcome).to_dicts(),
-        "findings": [found.as_dictionary() for found in outcome.findings],
+        "findings": [content.as_dictionary() for content in outcome.findings],
         "stamp": placeholder(_ROLE),
     }
-    return (json.dumps(found, ensure_ascii=False, indent=1) + "\n").encode()
+    return (json.dumps(content, ensure_ascii=False, indent=1) + "\n").encode()
 
 
 _TABLES = {".csv": _as_csv, ".parquet": _as_parquet, ".json": _as_json}

@@ -85,12 +85,12 @@ def write_results(book: Book, outcome: Outcome) -> None:
     results = outcome.results
     columns = [column for column in result_columns(cross_check=True, elasticity=True) if column.key in results.columns]
     widths = [_width(results, column) for column in columns]
-    for place, (column, width) in enumerate(zip(columns, widths, strict=True)):
+    for index, (column, width) in enumerate(zip(columns, widths, strict=True)):
         options = {"level": 1} if _is_detail(column) else {}
         number = usual_format(column) if column.is_number else ""
-        sheet.set_column(place, place, width, book.format("text", number), options)
+        sheet.set_column(index, index, width, book.format("text", number), options)
         text = f"{column.help} {_REMARKS.get(column.key, '')}".strip()
-        _write_heading(book, sheet, place, (column.label, column.key, text))
+        _write_heading(book, sheet, index, (column.label, column.key, text))
     _write_cells(book, sheet, results, columns)
     _write_links(book, sheet, outcome, columns)
     right = _write_passed(book, sheet, outcome, len(columns))
@@ -101,7 +101,7 @@ def write_results(book: Book, outcome: Outcome) -> None:
     sheet.freeze_panes(FIRST_ROW, 1)
     sheet.autofilter(1, 0, last, right - 1)
     sheet.repeat_rows(0, 1)
-    breaks = [place for place, column in enumerate(columns) if column.key in _NEW_PAGE]
+    breaks = [index for index, column in enumerate(columns) if column.key in _NEW_PAGE]
     print_readably(sheet, [*widths, *[_PASSED] * (right - len(columns))], breaks=breaks)
     _write_conditions(book, sheet, columns, last)
 
@@ -115,12 +115,12 @@ def _width(results: pl.DataFrame, column: Column) -> float:
     return min(max(int(str(longest or 0)) + 2, least), most)
 
 
-def _write_heading(book: Book, sheet: Any, place: int, texts: tuple[str, str, str]) -> None:
+def _write_heading(book: Book, sheet: Any, index: int, texts: tuple[str, str, str]) -> None:
     """Write label and key of a column and say in a comment what it holds."""
     label, key, text = texts
-    sheet.write_string(0, place, label, book.format("header"))
-    sheet.write_comment(0, place, text)
-    sheet.write_string(1, place, key, book.format("key"))
+    sheet.write_string(0, index, label, book.format("header"))
+    sheet.write_comment(0, index, text)
+    sheet.write_string(1, index, key, book.format("key"))
 
 
 def _write_cells(book: Book, sheet: Any, results: pl.DataFrame, columns: Sequence[Column]) -> None:
@@ -134,13 +134,13 @@ def _write_cells(book: Book, sheet: Any, results: pl.DataFrame, columns: Sequenc
     ):
         if row in heights:
             sheet.set_row(row, heights[row])
-        for place, value in enumerate(values):
+        for index, value in enumerate(values):
             if value is None:
                 continue
             if isinstance(value, str):
-                write_string(row, place, value, formats[place])
+                write_string(row, index, value, formats[index])
             else:
-                write_number(row, place, value, formats[place])
+                write_number(row, index, value, formats[index])
 
 
 def _heights(results: pl.DataFrame, columns: Sequence[Column]) -> dict[int, float]:
@@ -157,9 +157,9 @@ def stored_values(results: pl.DataFrame, column: Column) -> list[Any]:
     """Return the numbers of a column as the workbook holds them: errors and estimated shares rounded."""
     values = results[column.key].to_list()
     if "standard_error" in column.key:
-        return [None if one is None else float(f"{one:.{ERROR_DIGITS}g}") for one in values]
+        return [None if value is None else float(f"{value:.{ERROR_DIGITS}g}") for value in values]
     if column.key in ESTIMATED_SHARES:
-        return [None if one is None else round(one, SHARE_DECIMALS) for one in values]
+        return [None if value is None else round(value, SHARE_DECIMALS) for value in values]
     return values
 
 
@@ -174,41 +174,41 @@ def _write_links(book: Book, sheet: Any, outcome: Outcome, columns: Sequence[Col
     """Lead from each variant to its row of the submission, and from its findings to the first of them."""
     style, letters = book.format("link"), name_cell(outcome)
     findings = finding_rows(outcome)
-    place = [column.key for column in columns].index("findings")
+    findings_index = [column.key for column in columns].index("findings")
     rows = result_rows(outcome)
     texts = outcome.results.select("variant", "findings").iter_rows()
     for (number, row), (name, listed) in zip(rows.items(), texts, strict=False):
         if name:
             write_link(sheet, row, 0, f"Submission!{letters}{number}", name, style=style)
         if listed and number in findings:
-            write_link(sheet, row, place, f"Findings!A{findings[number] + 1}", listed, style=style)
+            write_link(sheet, row, findings_index, f"Findings!A{findings[number] + 1}", listed, style=style)
 
 
-def _write_passed(book: Book, sheet: Any, outcome: Outcome, place: int) -> int:
+def _write_passed(book: Book, sheet: Any, outcome: Outcome, index: int) -> int:
     """Write the columns of the submission that flexlash does not use; return the place after the last."""
     table = outcome.validated.table if outcome.validated else None
     rows = result_rows(outcome)
     for column, header in sorted(table.heading.extra.items()) if table is not None else ():
-        sheet.set_column(place, place, _PASSED)
+        sheet.set_column(index, index, _PASSED)
         text = f"Column {header} of the submission as read; nothing is computed from it."
-        _write_heading(book, sheet, place, (header, AS_SUBMITTED, text))
+        _write_heading(book, sheet, index, (header, AS_SUBMITTED, text))
         for number, row in rows.items():
             value = table.cells[number].get(column) if table is not None else None
             if value is not None:
-                write_raw(book, sheet, (row, place), value)
-        place += 1
-    return place
+                write_raw(book, sheet, (row, index), value)
+        index += 1
+    return index
 
 
 def _write_conditions(book: Book, sheet: Any, columns: Sequence[Column], last: int) -> None:
     """Colour the status and draw shares as bars from 0 to 1."""
     keys = [column.key for column in columns]
-    place = keys.index("status")
+    index = keys.index("status")
     for status in ("error", "warning", "ok"):
         rule = {"type": "cell", "criteria": "==", "value": f'"{status}"', "format": book.format(status)}
-        sheet.conditional_format(FIRST_ROW, place, last, place, rule)
+        sheet.conditional_format(FIRST_ROW, index, last, index, rule)
     ends = {"min_type": "num", "max_type": "num", "min_value": 0, "max_value": 1}
     for key, colour in _BARS.items():
-        place = keys.index(key)
+        index = keys.index(key)
         bar = {"type": "data_bar", "bar_color": PALETTE[colour], **ends}
-        sheet.conditional_format(FIRST_ROW, place, last, place, bar)
+        sheet.conditional_format(FIRST_ROW, index, last, index, bar)

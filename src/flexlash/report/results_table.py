@@ -61,8 +61,8 @@ def _own_columns(outcome: Outcome) -> Iterator[tuple[str, list[RawValue | None]]
     if outcome.validated is None or table is None:
         return
     rows = [row for row, _, _ in outcome.validated.submitted]
-    for place, header in sorted(table.heading.extra.items()):
-        values = [table.cells[row].get(place) for row in rows]
+    for column, header in sorted(table.heading.extra.items()):
+        values = [table.cells[row].get(column) for row in rows]
         if table.numbers_are_texts:
             numbers = [None if value is None else _number_of(value) for value in values]
             is_numeric = all((value is None) == (number is None) for value, number in zip(values, numbers, strict=True))

@@ -36,7 +36,7 @@ def section_png(check: ElasticityCheck, greatest: float) -> bytes:
         mesh = Triangulation(radius, height, triangles)
         details = check.section.details
         whole, *near = _axes(figure, len(details))
-        for axes, size in ((whole, 8), *((one, 7) for one in near)):
+        for axes, size in ((whole, 8), *((axes, 7) for axes in near)):
             drawn = axes.tripcolor(mesh, stress, shading="gouraud", cmap="cividis", vmin=0, vmax=greatest / _MEGAPASCAL)
             axes.set_aspect("equal")
             axes.tick_params(labelsize=size)
@@ -44,9 +44,9 @@ def section_png(check: ElasticityCheck, greatest: float) -> bytes:
         whole.set_xlim(middle - half, middle + half)
         whole.set_xlabel("radius [mm]", fontsize=8)
         whole.set_ylabel("height over the disk [mm]", fontsize=8)
-        for axes, (name, place, level, reach) in zip(near, details, strict=True):
+        for axes, (name, radius_there, level, reach) in zip(near, details, strict=True):
             axes.set_title(name, fontsize=8, color=PALETTE["ink"])
-            axes.set_xlim((place - reach) / _MILLIMETRE, (place + reach) / _MILLIMETRE)
+            axes.set_xlim((radius_there - reach) / _MILLIMETRE, (radius_there + reach) / _MILLIMETRE)
             axes.set_ylim((level - reach) / _MILLIMETRE, (level + reach) / _MILLIMETRE)
         bar = figure.colorbar(drawn, ax=[whole, *near], extend="max", shrink=0.9, pad=0.02)
         bar.set_label("shear stress [MPa]", fontsize=8)
@@ -60,7 +60,7 @@ def _axes(figure: Any, details: int) -> list[Any]:
     if not details:
         return [figure.add_subplot()]
     grid = figure.add_gridspec(details, 2, width_ratios=(1, 1))
-    return [figure.add_subplot(grid[:, 0]), *(figure.add_subplot(grid[place, 1]) for place in range(details))]
+    return [figure.add_subplot(grid[:, 0]), *(figure.add_subplot(grid[row, 1]) for row in range(details))]
 
 
 def _triangles(check: ElasticityCheck) -> tuple[Array, Array, Any, Array]:
@@ -71,11 +71,11 @@ def _triangles(check: ElasticityCheck) -> tuple[Array, Array, Any, Array]:
     section = check.section
     columns, rows = np.nonzero(section.cells)
     across, along = np.meshgrid(range(3), range(3), indexing="ij")
-    place = np.ravel_multi_index(
+    point = np.ravel_multi_index(
         (2 * columns[:, None] + across.ravel(), 2 * rows[:, None] + along.ravel()), section.radius.shape
     )
-    nodes, number = np.unique(place, return_inverse=True)
-    number = number.reshape(place.shape)
+    nodes, number = np.unique(point, return_inverse=True)
+    number = number.reshape(point.shape)
     counts = np.bincount(number.ravel())
     stress = np.bincount(number.ravel(), weights=check.shear.ravel()) / counts
     corners = number.reshape(-1, 3, 3)

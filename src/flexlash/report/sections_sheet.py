@@ -57,18 +57,18 @@ def write_sections(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
     sheet.set_column(1, len(headings), 13)
     few = len(drawn) <= _FEW
     header = _CHART_TOP + _CHART_ROWS[few] + 1
-    for place, heading in enumerate(("Variant", *headings)):
-        sheet.write_string(header, place, heading, book.format("header"))
+    for column, heading in enumerate(("Variant", *headings)):
+        sheet.write_string(header, column, heading, book.format("header"))
     sheet.set_row(header, 48)
-    labels = distinct_labels([one.row["variant"] for one in drawn], _NAME)
-    for row, (one, label) in enumerate(zip(drawn, labels, strict=True), start=header + 1):
+    labels = distinct_labels([variant.row["variant"] for variant in drawn], _NAME)
+    for row, (variant, label) in enumerate(zip(drawn, labels, strict=True), start=header + 1):
         sheet.write_string(row, 0, label, book.format("text"))
-        for place, (segment, _, _) in enumerate(_SEGMENTS, start=1):
-            angle = getattr(one.computed.nominal, f"{segment}_windup")
+        for column, (segment, _, _) in enumerate(_SEGMENTS, start=1):
+            angle = getattr(variant.computed.nominal, f"{segment}_windup")
             if isinstance(angle, float):
-                sheet.write_number(row, place, 2 * angle / ARCMIN, book.format("text", "arcmin"))
-        for place, (key, _, number) in enumerate(_BESIDE, start=1 + len(_SEGMENTS)):
-            sheet.write_number(row, place, one.row[key], book.format("text", number))
+                sheet.write_number(row, column, 2 * angle / ARCMIN, book.format("text", "arcmin"))
+        for column, (key, _, number) in enumerate(_BESIDE, start=1 + len(_SEGMENTS)):
+            sheet.write_number(row, column, variant.row[key], book.format("text", number))
     if drawn:
         _draw(book, sheet, header, min(len(drawn), _CHARTED))
     sheet.freeze_panes(0, 1)
@@ -82,11 +82,11 @@ def _draw(book: Book, sheet: Any, header: int, count: int) -> None:
     """Draw the segments of the worst variants as stacked bars."""
     chart = book.chart("bar", "Backlash by segment, worst variants first [arcmin]", subtype="stacked")
     last = header + count
-    for place, (_, name, colour) in enumerate(_SEGMENTS, start=1):
+    for column, (_, name, colour) in enumerate(_SEGMENTS, start=1):
         chart.add_series({
             "name": name,
             "categories": ["Sections", header + 1, 0, last, 0],
-            "values": ["Sections", header + 1, place, last, place],
+            "values": ["Sections", header + 1, column, last, column],
             "fill": {"color": colour},
             "border": {"color": "#FFFFFF", "width": 0.5},
             "gap": 40,

@@ -35,7 +35,11 @@ def write_sensitivity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> N
     sheet.set_row(0, 28)
     sheet.set_column(0, 0, _NAME_WIDTH)
     sheet.set_column(1, 2 * len(DIMENSIONS) + 2, _WIDTH)
-    rows = [(one.variant.name, one.spread) for one in outcome.computed.values() if one.spread is not None]
+    rows = [
+        (computed.variant.name, computed.spread)
+        for computed in outcome.computed.values()
+        if computed.spread is not None
+    ]
     names = [name for name in DIMENSIONS if any(name in spread.shares for _, spread in rows)]
     widths = [_NAME_WIDTH, *[_WIDTH] * len(names), _GAP, *[_WIDTH] * len(names)]
     totals = len(names) + 2
@@ -59,8 +63,8 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn, width: int) -> None:
     text = f"Worst variant, {name}: backlash [arcmin] with one dimension at its limits, by its share of variance."
     sheet.write_string(1, 0, text, book.format("quiet"))
     headings = ("Dimension", "At lower limit", "At upper limit", "Share of variance", "Share with interactions")
-    for place, heading in enumerate(headings):
-        sheet.write_string(3, place, heading, book.format("header"))
+    for column, heading in enumerate(headings):
+        sheet.write_string(3, column, heading, book.format("header"))
     sheet.set_row(3, 32)
     share = book.format("text", percent_of(SHARE_OF_VARIANCE_ERROR))
     swings = sorted(spread.swings.items(), key=lambda item: -spread.shares[item[0]])
@@ -78,14 +82,14 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn, width: int) -> None:
 def _tornado(book: Book, name: str, last: int, middle: float) -> Any:
     """Return the tornado; both bars of a dimension start at the middle."""
     chart = book.chart("bar", f"Tornado of {name} [arcmin]")
-    for place, label, colour in (
+    for column, label, colour in (
         (1, "at the lower limit", PALETTE["sky"]),
         (2, "at the upper limit", PALETTE["blue"]),
     ):
         chart.add_series({
             "name": label,
             "categories": ["Sensitivity", 4, 0, last, 0],
-            "values": ["Sensitivity", 4, place, last, place],
+            "values": ["Sensitivity", 4, column, last, column],
             "fill": {"color": colour},
             "overlap": 100,
             "gap": 40,
@@ -106,17 +110,17 @@ def _write_shares(book: Book, sheet: Any, rows: Sequence[tuple[str, SpreadStatis
     )
     sheet.write_string(_HEADER - 1, 0, text, book.format("quiet"))
     sheet.write_string(_HEADER, 0, "Variant", book.format("header"))
-    for place, name in enumerate(names, start=1):
-        sheet.write_string(_HEADER, place, dimension_words(name), book.format("header"))
-        sheet.write_string(_HEADER, place + right, f"{dimension_words(name)}, total", book.format("header"))
+    for column, name in enumerate(names, start=1):
+        sheet.write_string(_HEADER, column, dimension_words(name), book.format("header"))
+        sheet.write_string(_HEADER, column + right, f"{dimension_words(name)}, total", book.format("header"))
     sheet.set_row(_HEADER, 48)
     plain, share = book.format("text"), book.format("text", percent_of(SHARE_OF_VARIANCE_ERROR))
     for row, (variant, spread) in enumerate(rows, start=_HEADER + 1):
         sheet.write_string(row, 0, variant, plain)
         for start, indices in ((1, spread.shares), (1 + right, spread.total_shares)):
-            for place, name in enumerate(names, start=start):
+            for column, name in enumerate(names, start=start):
                 if name in indices:
-                    sheet.write_number(row, place, round(indices[name], SHARE_DECIMALS), share)
+                    sheet.write_number(row, column, round(indices[name], SHARE_DECIMALS), share)
     if rows and names:
         last = _HEADER + len(rows)
         sheet.autofilter(_HEADER, 0, last, right + len(names))

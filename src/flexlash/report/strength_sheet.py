@@ -63,19 +63,19 @@ def write_strength(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
     sheet.set_column(0, 0, _NAME_WIDTH)
     sheet.set_column(1, len(_COLUMNS), _WIDTH)
     print_readably(sheet, [_NAME_WIDTH, *[_WIDTH] * len(_COLUMNS)], least=SMALL)
-    for place, heading in enumerate(("Variant", *(heading for _, heading, _ in _COLUMNS))):
-        sheet.write_string(_HEADER, place, heading, book.format("header"))
+    for column, heading in enumerate(("Variant", *(heading for _, heading, _ in _COLUMNS))):
+        sheet.write_string(_HEADER, column, heading, book.format("header"))
     sheet.set_row(_HEADER, 48)
-    labels = distinct_labels([one.row["variant"] for one in drawn], _NAME)
-    for row, (one, label) in enumerate(zip(drawn, labels, strict=True), start=_HEADER + 1):
+    labels = distinct_labels([variant.row["variant"] for variant in drawn], _NAME)
+    for row, (variant, label) in enumerate(zip(drawn, labels, strict=True), start=_HEADER + 1):
         sheet.write_string(row, 0, label, book.format("text"))
-        for place, (key, _, number) in enumerate(_COLUMNS, start=1):
-            value = one.row[key] if key in one.row else getattr(one.computed.nominal, key)
+        for column, (key, _, number) in enumerate(_COLUMNS, start=1):
+            value = variant.row[key] if key in variant.row else getattr(variant.computed.nominal, key)
             if isinstance(value, float) and key.endswith("von_mises"):
                 value /= _MEGAPASCAL
             if isinstance(value, str):
-                sheet.write_string(row, place, value, book.format("indented"))
+                sheet.write_string(row, column, value, book.format("indented"))
             elif value is not None:
-                sheet.write_number(row, place, value, book.format("text", number))
+                sheet.write_number(row, column, value, book.format("text", number))
     sheet.freeze_panes(_HEADER + 1, 1)
     sheet.repeat_rows(_HEADER)

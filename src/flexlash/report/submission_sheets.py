@@ -71,8 +71,10 @@ def write_submission(book: Book, outcome: Outcome) -> None:
     for schema, title in _TITLES.items():
         raw = by_title.get(title)
         if raw:
-            mine = {(row - 1, place - 1): guilt for (name, row, place), guilt in guilty.items() if name == raw.name}
-            mirror = _Mirror(raw=raw, title=title, header=headers.get(schema, 0), guilty=mine)
+            of_sheet = {
+                (row - 1, column - 1): guilt for (name, row, column), guilt in guilty.items() if name == raw.name
+            }
+            mirror = _Mirror(raw=raw, title=title, header=headers.get(schema, 0), guilty=of_sheet)
             if schema == "Variants" and table is not None:
                 linked = table.heading.places.get("variant", 0) - 1
                 mirror = replace(mirror, linked=linked, targets=result_rows(outcome))
@@ -83,14 +85,14 @@ def write_submission(book: Book, outcome: Outcome) -> None:
 
 def _guilty(outcome: Outcome) -> dict[tuple[str, int, int], _Guilt]:
     """Return what is wrong with each cell, by sheet, row and column, errors first; the first alone have messages."""
-    found: dict[tuple[str, int, int], _Guilt] = {}
-    for one in finding_list(outcome):
-        if one.address and one.level != "info":
-            guilt = found.setdefault((one.sheet, *one.address), _Guilt(level=one.level))
-            guilt.messages.append(f"{one.code} {one.message}")
-    for guilt in list(found.values())[MOST_COMMENTS:]:
+    guilty: dict[tuple[str, int, int], _Guilt] = {}
+    for finding in finding_list(outcome):
+        if finding.address and finding.level != "info":
+            guilt = guilty.setdefault((finding.sheet, *finding.address), _Guilt(level=finding.level))
+            guilt.messages.append(f"{finding.code} {finding.message}")
+    for guilt in list(guilty.values())[MOST_COMMENTS:]:
         guilt.messages.clear()
-    return found
+    return guilty
 
 
 def _write_mirror(book: Book, mirror: _Mirror) -> None:
@@ -98,16 +100,16 @@ def _write_mirror(book: Book, mirror: _Mirror) -> None:
     raw, header = mirror.raw, mirror.header
     sheet = book.sheet(mirror.title)
     ignored = {
-        place
-        for place, value in raw.rows.get(header, {}).items()
+        column
+        for column, value in raw.rows.get(header, {}).items()
         if isinstance(value, str) and plain(value) == plain(STATUS_HEADER)
     }
-    places = [(row, place) for row, cells in raw.rows.items() for place in cells if place not in ignored]
-    bottom = max((row for row, _ in places), default=1)
-    last = max((place for _, place in places), default=1)
+    addresses = [(row, column) for row, cells in raw.rows.items() for column in cells if column not in ignored]
+    bottom = max((row for row, _ in addresses), default=1)
+    last = max((column for _, column in addresses), default=1)
     widths = _widths(mirror, last)
-    for place, width in enumerate(widths):
-        sheet.set_column(place, place, width)
+    for column, width in enumerate(widths):
+        sheet.set_column(column, column, width)
     print_readably(sheet, widths)
     sheet.ignore_errors({"number_stored_as_text": f"A1:XFD{bottom}"})
     if header:
@@ -118,19 +120,19 @@ def _write_mirror(book: Book, mirror: _Mirror) -> None:
     for row, cells in raw.rows.items():
         if row > header:
             _set_height(
-                sheet, row, [(cells[place], width) for place, width in enumerate(widths, start=1) if place in cells]
+                sheet, row, [(cells[column], width) for column, width in enumerate(widths, start=1) if column in cells]
             )
-        for place, value in cells.items():
-            if place not in ignored and not (isinstance(value, Unstored) and row < header):
-                guilt = mirror.guilty.get((row - 1, place - 1))
-                style = guilt.level if guilt else _style(mirror, row, place, value)
-                if place - 1 == mirror.linked and row in mirror.targets and isinstance(value, str):
+        for column, value in cells.items():
+            if column not in ignored and not (isinstance(value, Unstored) and row < header):
+                guilt = mirror.guilty.get((row - 1, column - 1))
+                style = guilt.level if guilt else _style(mirror, row, column, value)
+                if column - 1 == mirror.linked and row in mirror.targets and isinstance(value, str):
                     link = book.format(style if guilt else "link")
                     write_link(
-                        sheet, row - 1, place - 1, f"Results!A{mirror.targets[row] + 1}", raw_text(value), style=link
+                        sheet, row - 1, column - 1, f"Results!A{mirror.targets[row] + 1}", raw_text(value), style=link
                     )
                 else:
-                    write_raw(book, sheet, (row - 1, place - 1), value, style)
+                    write_raw(book, sheet, (row - 1, column - 1), value, style)
     _write_guilt(book, sheet, mirror)
 
 
@@ -139,9 +141,9 @@ def _widths(mirror: _Mirror, last: int) -> list[float]:
     widths = [_NAME, *[_LEAST] * (last - 1)]
     for row, cells in mirror.raw.rows.items():
         if row > mirror.header:
-            for place, value in cells.items():
-                if isinstance(value, str) and place <= last:
-                    widths[place - 1] = min(max(widths[place - 1], len(value) + 2.0), _MOST)
+            for column, value in cells.items():
+                if isinstance(value, str) and column <= last:
+                    widths[column - 1] = min(max(widths[column - 1], len(value) + 2.0), _MOST)
     return widths
 
 
@@ -157,22 +159,22 @@ def _is_wrapped(value: object) -> TypeGuard[str]:
     return isinstance(value, str) and len(value) > _MOST - 2
 
 
-def _style(mirror: _Mirror, row: int, place: int, value: object) -> str:
+def _style(mirror: _Mirror, row: int, column: int, value: object) -> str:
     """Return the format of a cell without fault; what stands above the header of our template looks as there."""
     if row == mirror.header:
         return "header"
     if row < mirror.header and mirror.raw.rows.get(1, {}).get(1) in _TEMPLATE_TITLES:
-        return "title" if row == 1 and place == 1 else "label" if row == mirror.header - 1 else "quiet"
+        return "title" if row == 1 and column == 1 else "label" if row == mirror.header - 1 else "quiet"
     return "wrap" if _is_wrapped(value) else "text"
 
 
 def _write_guilt(book: Book, sheet: Any, mirror: _Mirror) -> None:
     """Colour guilty cells that are blank and say at the guilty cells what is wrong."""
-    for (row, place), guilt in mirror.guilty.items():
-        if place + 1 not in mirror.raw.rows.get(row + 1, {}):
-            sheet.write_blank(row, place, None, book.format(guilt.level))
+    for (row, column), guilt in mirror.guilty.items():
+        if column + 1 not in mirror.raw.rows.get(row + 1, {}):
+            sheet.write_blank(row, column, None, book.format(guilt.level))
         if guilt.messages:
             text = "\n".join(guilt.messages)
             lines = min(sum(1 + len(message) // _PER_LINE for message in guilt.messages), _MOST_LINES)
             size = {"width": _COMMENT_WIDTH, "height": _COMMENT_LINE * (lines + 1)}
-            sheet.write_comment(row, place, text, {"font_size": 9, **size})
+            sheet.write_comment(row, column, text, {"font_size": 9, **size})

@@ -74,23 +74,23 @@ class CellWriter:
         self.sheet = sheet
         self.dates = dates
 
-    def write(self, row: int, place: int, value: Any, style: Any) -> None:
+    def write(self, row: int, column: int, value: Any, style: Any) -> None:
         """Write a value, None not at all."""
         value = None if value is None else writable(value)
         if isinstance(value, str):
-            self.sheet.write_string(row, place, value, style)
+            self.sheet.write_string(row, column, value, style)
         elif isinstance(value, bool):
-            self.sheet.write_boolean(row, place, value, style)
+            self.sheet.write_boolean(row, column, value, style)
         elif isinstance(value, datetime.date | datetime.time | datetime.timedelta):
-            self.sheet.write_datetime(row, place, value, self.dates[_kind(value)])
+            self.sheet.write_datetime(row, column, value, self.dates[_kind(value)])
         elif isinstance(value, ErrorCell):
-            self.sheet.write_formula(row, place, f"={value.text}", style, value.text)
+            self.sheet.write_formula(row, column, f"={value.text}", style, value.text)
         elif isinstance(value, Formula | Unstored):
             formula = Formula(text=_EXAMPLE) if isinstance(value, Unstored) else value
-            self.sheet.write_formula(row, place, formula.text, style, "" if formula.result is None else formula.result)
+            self.sheet.write_formula(row, column, formula.text, style, "" if formula.result is None else formula.result)
         elif value is not None:
             shape = self.dates["percentage"] if isinstance(value, Percentage) else style
-            self.sheet.write_number(row, place, _Exact(value), shape)
+            self.sheet.write_number(row, column, _Exact(value), shape)
 
 
 def _kind(value: datetime.date | datetime.time | datetime.timedelta) -> str:

@@ -21,9 +21,9 @@ def write_dictionary(sheet: Any, formats: Mapping[str, Any]) -> None:
         "Default": 12,
         "Meaning": 90,
     }
-    for place, (heading, width) in enumerate(headings.items()):
-        sheet.set_column(place, place, width)
-        sheet.write_string(0, place, heading, formats["header"])
+    for index, (heading, width) in enumerate(headings.items()):
+        sheet.set_column(index, index, width)
+        sheet.write_string(0, index, heading, formats["header"])
     entries = [column for columns in ENTRY_SHEETS.values() for column in columns]
     for row, column in enumerate(entries, start=1):
         default = "" if column.default is None else f"{column.default}"
@@ -37,8 +37,8 @@ def write_dictionary(sheet: Any, formats: Mapping[str, Any]) -> None:
             default,
             column.help,
         )
-        for place, text in enumerate(texts):
-            sheet.write_string(row, place, text, formats["wrap"])
+        for index, text in enumerate(texts):
+            sheet.write_string(row, index, text, formats["wrap"])
     sheet.freeze_panes(1, 0)
     sheet.set_landscape()
     sheet.set_paper(9)

@@ -42,7 +42,7 @@ _LISTS = {
 }
 
 
-def cell_rule(column: Column, place: int) -> dict[str, Any]:
+def cell_rule(column: Column, index: int) -> dict[str, Any]:
     """Return the data validation of a column: hint, rule, error text."""
     rule: dict[str, Any] = {
         "validate": "any",
@@ -63,7 +63,7 @@ def cell_rule(column: Column, place: int) -> dict[str, Any]:
         else:
             rule |= {"criteria": ">" if column.exclusive_minimum else ">=", "value": column.minimum}
     elif column.key == "variant":
-        cell = xl_rowcol_to_cell(FIRST_ROW, place)
+        cell = xl_rowcol_to_cell(FIRST_ROW, index)
         rule |= {"validate": "custom", "value": f"=COUNTIF(fl_variants,{cell})=1"}
         rule["error_message"] = "This name is already used. Give each variant a name of its own."
     return rule
@@ -84,10 +84,10 @@ def write_lists(workbook: Any, sheet: Any, classes: Sequence[str], rows: int = S
         "fl_methods": next(column.choices for column in SETTINGS if column.key == "method"),
         "fl_settings": choices["setting"],
     }
-    for place, (name, entries) in enumerate(lists.items()):
-        letter = xl_col_to_name(place)
-        sheet.write_string(0, place, name)
-        sheet.write_column(1, place, entries)
+    for index, (name, entries) in enumerate(lists.items()):
+        letter = xl_col_to_name(index)
+        sheet.write_string(0, index, name)
+        sheet.write_column(1, index, entries)
         workbook.define_name(name, f"=Lists!${letter}$2:${letter}${len(entries) + 1}")
     first, last = FIRST_ROW + 1, FIRST_ROW + rows
     for name, title in (("Materials", "fl_materials"), ("Tolerances", "fl_tolerance_rows")):
@@ -99,20 +99,20 @@ def write_lists(workbook: Any, sheet: Any, classes: Sequence[str], rows: int = S
     sheet.protect()
 
 
-def _write_classes(workbook: Any, sheet: Any, place: int, classes: Sequence[str], last: int) -> None:
+def _write_classes(workbook: Any, sheet: Any, index: int, classes: Sequence[str], last: int) -> None:
     """Write the formulas that collect the names of the tolerance classes, each once."""
-    letter = xl_col_to_name(place)
+    letter = xl_col_to_name(index)
     rows = f"Tolerances!$A${FIRST_ROW + 1}:$A${last}"
     # LOOKUP finds the last name that is not listed yet, so the names after the first stand in reverse.
     first, *others = dict.fromkeys(classes) or ("",)
     names = [first, *(name for name in reversed(others) if name)]
-    sheet.write_string(0, place, "fl_tolerance_classes")
-    sheet.write_formula(1, place, f'={rows.split(":", maxsplit=1)[0]}&""', None, names[0])
+    sheet.write_string(0, index, "fl_tolerance_classes")
+    sheet.write_formula(1, index, f'={rows.split(":", maxsplit=1)[0]}&""', None, names[0])
     for row in range(2, _LIST_ROWS + 2):
         above = f"${letter}$2:${letter}${row}"
         formula = f'=IFERROR(LOOKUP(2,1/((COUNTIF({above},{rows})=0)*({rows}<>"")),{rows}),"")'
         value = names[row - 1] if row - 1 < len(names) else ""
-        sheet.write_formula(row, place, formula, None, value)
+        sheet.write_formula(row, index, formula, None, value)
     block = f"Lists!${letter}$2:${letter}${_LIST_ROWS + 2}"
     end = f'INDEX({block},MAX(1,COUNTIF({block},"?*")))'
     workbook.define_name("fl_tolerance_classes", f"=Lists!${letter}$2:{end}")

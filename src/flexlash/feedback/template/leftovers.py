@@ -12,13 +12,11 @@ from flexlash.reading.archive import unpacked
 from flexlash.reading.elements import MAIN, Elements, Listing
 from flexlash.reading.package import Package, SheetPart, open_package
 from flexlash.reading.reading_limits import ReadingLimits
-from flexlash.schema.cell_addresses import cell_address
+from flexlash.schema.cell_addresses import CellAddress, cell_address
 
-__all__ = ["Leftovers", "Place", "leftovers"]
+__all__ = ["Leftovers", "leftovers_of"]
 
-Place = tuple[int, int]
-
-_THINGS = (
+_OBJECTS = (
     ("chart", r"charts/chart\d*\.xml"),
     ("picture", r"media/[^/]+"),
     ("pivot table", r"pivotTables/[^/]+\.xml"),
@@ -27,7 +25,7 @@ _THINGS = (
     ("link to another workbook", r"externalLinks/[^/]+\.xml"),
     ("set of macros", r"vbaProject\.bin"),
 )
-"""What parts of a workbook hold, by their names."""
+"""What parts of a workbook hold, with a pattern of their names."""
 
 _DRAWING = re.compile(r"(?:.*/)?drawings/drawing\d*\.xml")
 _SHAPES = ("sp", "cxnSp")
@@ -35,25 +33,25 @@ _SHAPES = ("sp", "cxnSp")
 
 @dataclass(frozen=True, kw_only=True)
 class Leftovers:
-    """Formulas as (row, column) → text and notes as (row, column), each by sheet; other things counted by name."""
+    """The texts of formulas by their cells, and the cells with notes, each by sheet; other objects counted by name."""
 
-    formulas: Mapping[str, Mapping[Place, str]] = field(default_factory=dict)
-    notes: Mapping[str, Sequence[Place]] = field(default_factory=dict)
-    things: Mapping[str, int] = field(default_factory=dict)
+    formulas: Mapping[str, Mapping[CellAddress, str]] = field(default_factory=dict)
+    notes: Mapping[str, Sequence[CellAddress]] = field(default_factory=dict)
+    objects: Mapping[str, int] = field(default_factory=dict)
 
 
-def leftovers(data: bytes, limits: ReadingLimits) -> Leftovers:
+def leftovers_of(data: bytes, limits: ReadingLimits) -> Leftovers:
     """Return what a workbook holds beside values; raise Refusal when it exceeds a limit."""
     package = open_package(unpacked(data, limits), limits)
-    things: Counter[str] = Counter()
+    objects: Counter[str] = Counter()
     for part, content in package.parts.items():
-        things.update(name for name, pattern in _THINGS if re.fullmatch(rf"(?:.*/)?{pattern}", part))
+        objects.update(name for name, pattern in _OBJECTS if re.fullmatch(rf"(?:.*/)?{pattern}", part))
         if _DRAWING.fullmatch(part):
-            things["text box or shape"] += sum(len(Listing(content, limits, shape).found) for shape in _SHAPES)
+            objects["text box or shape"] += sum(len(Listing(content, limits, shape).found) for shape in _SHAPES)
     return Leftovers(
         formulas={sheet.title: _Formulas(package.parts[sheet.part], limits).found for sheet in package.sheets},
         notes={sheet.title: _notes(package, sheet, limits) for sheet in package.sheets},
-        things={name: count for name, count in sorted(things.items()) if count},
+        objects={name: count for name, count in sorted(objects.items()) if count},
     )
 
 
@@ -63,18 +61,18 @@ class _Formulas(Elements):
     def __init__(self, data: bytes, limits: ReadingLimits) -> None:
         self.row = self.column = 0
         self.open = False
-        self.found: dict[Place, str] = {}
+        self.found: dict[CellAddress, str] = {}
         super().__init__(data, limits)
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
-        """Follow rows and cells, whether they name their place or not."""
+        """Follow rows and cells, whether they name their address or not."""
         if name == f"{MAIN} row":
             self.row, self.column = int(attributes.get("r", self.row + 1)), 0
         elif name == f"{MAIN} c":
-            self.column = _place(attributes["r"])[1] if "r" in attributes else self.column + 1
+            self.column = _address(attributes["r"]).column if "r" in attributes else self.column + 1
         elif name == f"{MAIN} f":
             self.open = True
-            self.found[self.row, self.column] = ""
+            self.found[CellAddress(self.row, self.column)] = ""
 
     def end(self, name: str) -> None:
         """Leave a formula."""
@@ -83,22 +81,24 @@ class _Formulas(Elements):
     def text(self, text: str) -> None:
         """Collect a formula's text."""
         if self.open:
-            self.found[self.row, self.column] += text
+            self.found[CellAddress(self.row, self.column)] += text
 
 
-def _notes(package: Package, sheet: SheetPart, limits: ReadingLimits) -> list[Place]:
+def _notes(package: Package, sheet: SheetPart, limits: ReadingLimits) -> list[CellAddress]:
     """Return the cells of a sheet that have a note."""
     folder, name = posixpath.split(sheet.part)
     relations = package.parts.get(f"{folder}/_rels/{name}.rels", b"")
-    places: list[Place] = []
+    addresses: list[CellAddress] = []
     for relation in Listing(relations, limits, "Relationship").found if relations else ():
         target = relation.get("Target", "")
         part = target.lstrip("/") if target.startswith("/") else posixpath.normpath(posixpath.join(folder, target))
         if relation.get("Type", "").endswith("/comments") and part in package.parts:
-            places += [_place(note.get("ref", "")) for note in Listing(package.parts[part], limits, "comment").found]
-    return sorted(places)
+            addresses += [
+                _address(note.get("ref", "")) for note in Listing(package.parts[part], limits, "comment").found
+            ]
+    return sorted(addresses)
 
 
-def _place(reference: str) -> Place:
+def _address(reference: str) -> CellAddress:
     """Return row and column of an address; what is none counts as row and column 0."""
-    return cell_address(reference) or (0, 0)
+    return cell_address(reference) or CellAddress(0, 0)

@@ -137,18 +137,18 @@ class _Template:
         title, hint = TITLES[name]
         sheet, columns = self.sheets[name], entries.columns
         for row in range(HEADER_ROW):
-            for place in range(len(columns) + 1):
-                sheet.write_blank(row, place, None, self.formats["plain"])
+            for index in range(len(columns) + 1):
+                sheet.write_blank(row, index, None, self.formats["plain"])
         sheet.write_string(0, 0, title, self.formats["title"])
         sheet.write_string(1, 0, hint, self.formats["hint"])
         sheet.set_row(0, 26)
         sheet.set_row(HEADER_ROW, 62)
-        for place, column in enumerate(columns):
+        for index, column in enumerate(columns):
             style = "required" if column.required else "header"
             width = _WIDTHS.get(column.key, 13)
-            sheet.set_column(place, place, width, self._format(column), self._outline(column))
-            sheet.write_string(HEADER_ROW, place, column.label, self.formats[style])
-            sheet.write_comment(HEADER_ROW, place, header_note(column), {"x_scale": 2, "y_scale": 1.2})
+            sheet.set_column(index, index, width, self._format(column), self._outline(column))
+            sheet.write_string(HEADER_ROW, index, column.label, self.formats[style])
+            sheet.write_comment(HEADER_ROW, index, header_note(column), {"x_scale": 2, "y_scale": 1.2})
         sheet.data_validation(
             HEADER_ROW,
             0,
@@ -180,22 +180,22 @@ class _Template:
         sheet.write_string(0, 9, f"Template version {TEMPLATE_VERSION}", self.formats["hint"])
         sheet.set_row(2, 18)
         groups: list[str] = []
-        for place, column in enumerate(columns):
-            sheet.write_string(2, place, "" if column.group in groups else column.group, self.formats["group"])
+        for index, column in enumerate(columns):
+            sheet.write_string(2, index, "" if column.group in groups else column.group, self.formats["group"])
             groups.append(column.group)
         sheet.write_string(2, status, "", self.formats["group"])
         sheet.write_string(HEADER_ROW, status, STATUS_HEADER, self.formats["header"])
         sheet.write_comment(HEADER_ROW, status, "Calculated while you type: what the row still lacks.")
         sheet.set_column(status, status, 36, self.formats["status"])
         self._fill(sheet, entries, status + 1)
-        letters = {column.key: xl_col_to_name(place) for place, column in enumerate(columns)}
+        letters = {column.key: xl_col_to_name(index) for index, column in enumerate(columns)}
         texts = stored_statuses(entries, materials, classes)
         prepared = max(PREPARED_ROWS, len(texts))
-        for place in range(prepared):
-            text = texts[place] if place < len(texts) else ""
-            if text or place < PREPARED_ROWS:
-                formula = status_formula(FIRST_ROW + place + 1, letters)
-                sheet.write_formula(FIRST_ROW + place, status, formula, self.formats["status"], text)
+        for index in range(prepared):
+            text = texts[index] if index < len(texts) else ""
+            if text or index < PREPARED_ROWS:
+                formula = status_formula(FIRST_ROW + index + 1, letters)
+                sheet.write_formula(FIRST_ROW + index, status, formula, self.formats["status"], text)
         self._progress(sheet, xl_col_to_name(status), texts, prepared)
         self._entry_rules(sheet, columns, prepared)
         self._shading(sheet, columns, prepared)
@@ -220,12 +220,12 @@ class _Template:
         last = FIRST_ROW + prepared - 1
         first, end = xl_col_to_name(0), xl_col_to_name(status - 1)
         row = FIRST_ROW + 1
-        for place, column in enumerate(columns):
+        for index, column in enumerate(columns):
             if column.required:
-                cell = xl_rowcol_to_cell(FIRST_ROW, place)
+                cell = xl_rowcol_to_cell(FIRST_ROW, index)
                 criteria = f'=AND(COUNTA(${first}{row}:${end}{row})>0,{cell}="")'
                 rule = {"type": "formula", "criteria": criteria, "format": self.formats["open"]}
-                sheet.conditional_format(FIRST_ROW, place, last, place, rule)
+                sheet.conditional_format(FIRST_ROW, index, last, index, rule)
         sheet.conditional_format(FIRST_ROW, 0, last, 0, {"type": "duplicate", "format": self.formats["open"]})
         cell = f"${xl_col_to_name(status)}{row}"
         # Each rule excludes the other, since LibreOffice forgets which of them would stop the next.
@@ -235,27 +235,27 @@ class _Template:
             sheet.conditional_format(FIRST_ROW, status, last, status, rule)
 
     def _fill(self, sheet: Any, entries: Entries, own: int, styles: Mapping[str, Any] | None = None) -> None:
-        """Write the given rows, and the user's own columns from the place `own` on; `styles` are formats by key."""
+        """Write the given rows, and the user's own columns from the column `own` on; `styles` are formats by key."""
         cells = CellWriter(sheet, self.formats)
         styles = styles or {column.key: self._format(column) for column in entries.columns}
-        places: dict[str | int, tuple[int, Any]] = {
-            column.key: (place, styles[column.key]) for place, column in enumerate(entries.columns)
+        targets: dict[str | int, tuple[int, Any]] = {
+            column.key: (index, styles[column.key]) for index, column in enumerate(entries.columns)
         }
         for number, header in enumerate(entries.own):
-            places[number] = (own + number, self.formats["number"])
+            targets[number] = (own + number, self.formats["number"])
             sheet.set_column(own + number, own + number, _OWN_WIDTH, self.formats["number"])
             cells.write(HEADER_ROW, own + number, header, self.formats["header"])
             for row in range(HEADER_ROW):
                 sheet.write_blank(row, own + number, None, self.formats["plain"])
         for row, values in enumerate(entries.rows, start=FIRST_ROW):
-            for key, (place, style) in places.items() if values else ():
-                cells.write(row, place, values.get(key), style)
+            for key, (index, style) in targets.items() if values else ():
+                cells.write(row, index, values.get(key), style)
 
     def _entry_rules(self, sheet: Any, columns: Sequence[Column], rows: int) -> None:
         """Give every cell of every column its hint and its rule."""
-        for place, column in enumerate(columns):
-            rule = cell_rule(column, place)
-            sheet.data_validation(FIRST_ROW, place, FIRST_ROW + rows - 1, place, rule)
+        for index, column in enumerate(columns):
+            rule = cell_rule(column, index)
+            sheet.data_validation(FIRST_ROW, index, FIRST_ROW + rows - 1, index, rule)
 
     def _side(self, name: str, entries: Entries) -> None:
         """Write Materials or Tolerances."""
@@ -267,11 +267,11 @@ class _Template:
         """Write Settings: fixed names, free values, what they mean beside them."""
         sheet = self._heading("Settings", entries)
         meaning = len(entries.columns)
-        for place in range(len(entries.rows)):
-            sheet.write_blank(FIRST_ROW + place, 1, None, self.formats["number"])
+        for index in range(len(entries.rows)):
+            sheet.write_blank(FIRST_ROW + index, 1, None, self.formats["number"])
         self._fill(sheet, entries, meaning + 1, {"setting": self.formats["plain"], "value": self.formats["number"]})
-        for place, column in enumerate(SETTINGS):
-            row = FIRST_ROW + place
+        for index, column in enumerate(SETTINGS):
+            row = FIRST_ROW + index
             sheet.write_string(row, meaning, f"{column.help} Allowed: {column.requirement}.", self.formats["meaning"])
             rule = cell_rule(column, 1)
             if column.choices:

@@ -11,7 +11,7 @@ from typing import Any
 from flexlash.feedback.template.cell_writer import Formula, writable
 from flexlash.feedback.template.entry_rules import FIRST_ROW
 from flexlash.feedback.template.filling import Entries, Filling
-from flexlash.feedback.template.leftovers import Leftovers, Place, leftovers
+from flexlash.feedback.template.leftovers import Leftovers, leftovers_of
 from flexlash.feedback.template.template_workbook import TITLES, template_bytes
 from flexlash.reading.limited_process import ask
 from flexlash.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored
@@ -70,16 +70,16 @@ def _upgraded(source: Source, limits: ReadingLimits) -> Upgrade:
         raise Refusal("E101", found="it is a report or a marked copy made by flexlash")
     if submission.kind != "workbook":
         return refilled(submission, limits)
-    upgrade = refilled(submission, limits, leftovers(source.data, limits))
+    upgrade = refilled(submission, limits, leftovers_of(source.data, limits))
     return replace(upgrade, remarks=(*upgrade.remarks, _WITHOUT_FORMAT))
 
 
-def refilled(submission: Submission, limits: ReadingLimits, beside: Leftovers | None = None) -> Upgrade:
-    """Return a template of this version, filled with what was read and with what stood `beside` the values.
+def refilled(submission: Submission, limits: ReadingLimits, leftovers: Leftovers | None = None) -> Upgrade:
+    """Return a template of this version, filled with what was read and with what else the file held.
 
     Raises Refusal when there is no header row, or a newer template's.
     """
-    beside = beside or Leftovers()
+    leftovers = leftovers or Leftovers()
     validated = validate(submission, limits)
     if validated.table is None:
         raise Refusal("E109", sheet="Variants", cell="A1")
@@ -87,10 +87,10 @@ def refilled(submission: Submission, limits: ReadingLimits, beside: Leftovers | 
     remarks: list[str] = []
     sheets = _entry_sheets(submission, limits, remarks)
     for schema, sheet in sheets.items():
-        carried = _Carried(sheet, schema, beside, limits)
+        carried = _Carried(sheet, schema, leftovers, limits)
         filled |= {schema: carried.entries} if carried.entries else {}
         remarks += carried.remarks
-    remarks += _beside(submission, [sheet.name for sheet in sheets.values()], beside)
+    remarks += _left_behind(submission, [sheet.name for sheet in sheets.values()], leftovers)
     return Upgrade(
         data=template_bytes(Filling(sheets=filled)),
         version=template_version(submission),
@@ -100,24 +100,24 @@ def refilled(submission: Submission, limits: ReadingLimits, beside: Leftovers | 
 
 
 def _entry_sheets(submission: Submission, limits: ReadingLimits, remarks: list[str]) -> dict[str, RawSheet]:
-    """Return the entry sheets by schema, one of another name in the place that was meant."""
-    found = entry_sheets(submission, limits)
-    for schema, sheet in found.items():
+    """Return the entry sheets by schema, one of another name as the one that was meant."""
+    sheets = entry_sheets(submission, limits)
+    for schema, sheet in sheets.items():
         if submission.kind == "workbook" and plain(sheet.name) != plain(schema):
             remarks.append(f"The sheet {sheet.name} was taken as {schema}.")
-    return found
+    return sheets
 
 
 class _Carried:
     """One entry sheet of the old file as the new template takes it; `entries` is None when it has no header row."""
 
-    def __init__(self, sheet: RawSheet, schema: str, beside: Leftovers, limits: ReadingLimits) -> None:
+    def __init__(self, sheet: RawSheet, schema: str, leftovers: Leftovers, limits: ReadingLimits) -> None:
         limits.require("rows", len(sheet.rows))
         limits.require("columns", max((max(cells) for cells in sheet.rows.values()), default=0))
         self.sheet = sheet
         self.schema = schema
-        self.formulas = beside.formulas.get(sheet.name, {})
-        self.notes = beside.notes.get(sheet.name, ())
+        self.formulas = leftovers.formulas.get(sheet.name, {})
+        self.notes = leftovers.notes.get(sheet.name, ())
         self.remarks: list[str] = []
         self.entries: Entries | None = None
         ledger = Ledger("")
@@ -125,103 +125,104 @@ class _Carried:
         if heading is None:
             self._remark(f"{len(sheet.rows)} rows have no header row above them and were left behind", ())
             return
-        told = {found.address for found in ledger.findings}
+        reported = {finding.address for finding in ledger.findings}
         self.heading = heading
         self.keys = _keys(heading)
-        self.own = self._own_places()
+        self.own = self._own_columns()
         self.entries = Entries(
             rows=self._rows(),
-            columns=[self._column(column, told) for column in ENTRY_SHEETS[schema]],
-            own=[sheet.rows[heading.row].get(place) for place in self.own],
+            columns=[self._column(column, reported) for column in ENTRY_SHEETS[schema]],
+            own=[sheet.rows[heading.row].get(column) for column in self.own],
         )
-        self._tell()
+        self._remark_losses()
 
-    def _remark(self, text: str, places: Iterable[Place]) -> None:
-        """Say something of cells, naming the first few."""
-        self.remarks.append(f"{_addresses(self.sheet.name, list(places))}: {text}.")
+    def _remark(self, text: str, addresses: Iterable[CellAddress]) -> None:
+        """Add a remark on cells, naming the first few."""
+        self.remarks.append(f"{_addresses(self.sheet.name, list(addresses))}: {text}.")
 
-    def _own_places(self) -> list[int]:
+    def _own_columns(self) -> list[int]:
         """Return the columns of the user, in order: unknown or doubled headers, and values without a header."""
-        below = {place for row, cells in self.sheet.rows.items() if row >= self.heading.row for place in cells}
+        below = {column for row, cells in self.sheet.rows.items() if row >= self.heading.row for column in cells}
         explained = {self.heading.places.get("value", 0) + 1} - self.sheet.rows[self.heading.row].keys()
         meanings = explained if self.schema == "Settings" else set()
         return sorted(below - self.keys.keys() - self.heading.ignored - meanings)
 
-    def _column(self, column: Column, told: set[CellAddress | None]) -> Column:
+    def _column(self, column: Column, reported: set[CellAddress | None]) -> Column:
         """Return a column under the user's header, with the unit of that header, where it differs from ours."""
-        place = next((place for place, key in self.keys.items() if key == column.key), 0)
-        if CellAddress(row=self.heading.row, column=place) not in told:
+        number = next((number for number, key in self.keys.items() if key == column.key), 0)
+        header = CellAddress(self.heading.row, number)
+        if header not in reported:
             return column
-        label = str(self.sheet.rows[self.heading.row][place])
+        label = str(self.sheet.rows[self.heading.row][number])
         factor = self.heading.factors.get(column.key, 1.0)
         low, high = (None if bound is None else bound / factor for bound in (column.minimum, column.maximum))
         unit = label.rpartition("[")[2].rstrip("] ") if "[" in label and factor != 1 else column.unit
-        self._remark(
-            f'the header "{label.strip()}" and the values below it are kept as they are', [(self.heading.row, place)]
-        )
+        self._remark(f'the header "{label.strip()}" and the values below it are kept as they are', [header])
         return replace(column, label=label, unit=unit, minimum=low, maximum=high)
 
     def _rows(self) -> list[dict[str | int, Any]]:
         """Return the rows below the header at their distance from it; those of Settings in the template's order."""
         carried = {*self.keys, *self.own}
-        numbers = [row for row, cells in self.sheet.rows.items() if row > self.heading.row and carried & cells.keys()]
-        last = min(max(numbers, default=self.heading.row), _LAST_ROW - FIRST_ROW + self.heading.row)
+        filled_rows = [
+            row for row, cells in self.sheet.rows.items() if row > self.heading.row and carried & cells.keys()
+        ]
+        last = min(max(filled_rows, default=self.heading.row), _LAST_ROW - FIRST_ROW + self.heading.row)
         rows: list[dict[str | int, Any]] = [{}] * (last - self.heading.row)
-        self.values: list[Place] = []
-        self.unstored: list[Place] = []
-        self.texts: list[Place] = []
-        for number in numbers:
-            if number <= last:
-                rows[number - self.heading.row - 1] = self._row(number)
-        if beyond := [(number, 1) for number in numbers if number > last]:
+        self.values: list[CellAddress] = []
+        self.unstored: list[CellAddress] = []
+        self.texts: list[CellAddress] = []
+        for row in filled_rows:
+            if row <= last:
+                rows[row - self.heading.row - 1] = self._row(row)
+        if beyond := [CellAddress(row, 1) for row in filled_rows if row > last]:
             self._remark("beyond the last row of the new sheet, and left behind", beyond)
         return _settings_in_order(rows) if self.schema == "Settings" else rows
 
-    def _row(self, number: int) -> dict[str | int, Any]:
+    def _row(self, row_number: int) -> dict[str | int, Any]:
         """Return a row's values under the keys of their columns, or under the number of the user's own column."""
-        own = {place: count for count, place in enumerate(self.own)}
+        own = {column: count for count, column in enumerate(self.own)}
         row: dict[str | int, Any] = {}
-        for place, value in self.sheet.rows[number].items():
-            key = self.keys.get(place, own.get(place))
+        for column, value in self.sheet.rows[row_number].items():
+            key = self.keys.get(column, own.get(column))
             if key is not None:
-                row[key] = self._value((number, place), key, value)
+                row[key] = self._value(CellAddress(row_number, column), key, value)
         return row
 
-    def _value(self, place: Place, key: str | int, value: RawValue) -> Any:
+    def _value(self, address: CellAddress, key: str | int, value: RawValue) -> Any:
         """Return a cell's value as the new one holds it, and note what it loses."""
-        text = self.formulas.get(place)
+        text = self.formulas.get(address)
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         if text and _ARITHMETIC.fullmatch(text) and (is_number or isinstance(value, Unstored)):
             return Formula(text=f"={text}", result=value if isinstance(value, int | float) else None)
         if isinstance(value, Unstored):
-            self.unstored.append(place)
+            self.unstored.append(address)
             return Formula(text=_NO_RESULT)
         if text is not None and not isinstance(value, ErrorCell):
-            self.values.append(place)
+            self.values.append(address)
         columns = {column.key: column for column in ENTRY_SHEETS[self.schema]}
         if self.sheet.numbers_are_texts and isinstance(key, str) and columns[key].is_number:
-            found = as_number(value, from_text=True)
-            return found if isinstance(found, float) else value
+            number = as_number(value, from_text=True)
+            return number if isinstance(number, float) else value
         kept = writable(value)
         if type(kept) is not type(value) or kept != value:
-            self.texts.append(place)
+            self.texts.append(address)
         return kept
 
-    def _tell(self) -> None:
-        """Say what the cells of the sheet lost."""
+    def _remark_losses(self) -> None:
+        """Remark what the cells of the sheet lost."""
         sheet, first = self.sheet, self.heading.row + 1
         above = [
-            (row, place)
+            CellAddress(row, column)
             for row, cells in sheet.rows.items()
-            for place, value in cells.items()
+            for column, value in cells.items()
             if row < self.heading.row and not _is_ours(value, self.schema)
         ]
-        empty = {place for place in self.formulas if place[0] >= first and place[1] in {*self.keys, *self.own}}
-        empty -= {(row, place) for row, cells in sheet.rows.items() for place in cells}
-        hidden = [(row, 1) for row in sorted(sheet.hidden_rows) if row >= first]
-        merged = [(row, place) for row, place, *_ in sheet.merged]
-        notes = [place for place in self.notes if place[0] != self.heading.row or place[1] in self.own]
-        for places, text in (
+        empty = {cell for cell in self.formulas if cell.row >= first and cell.column in {*self.keys, *self.own}}
+        empty -= {CellAddress(row, column) for row, cells in sheet.rows.items() for column in cells}
+        hidden = [CellAddress(row, 1) for row in sorted(sheet.hidden_rows) if row >= first]
+        merged = [CellAddress(row, column) for row, column, *_ in sheet.merged]
+        notes = [cell for cell in self.notes if cell.row != self.heading.row or cell.column in self.own]
+        for addresses, text in (
             (self.values, "formulas became the values that they showed"),
             (self.unstored, "formulas that never stored a result show #N/A until you enter their values"),
             (sorted(empty), "formulas that showed nothing were left behind"),
@@ -231,28 +232,28 @@ class _Carried:
             (hidden, "hidden rows are shown"),
             (merged, "merged cells are apart"),
         ):
-            if places:
-                self._remark(text, places)
+            if addresses:
+                self._remark(text, addresses)
 
 
 def _keys(heading: Heading) -> dict[int, str]:
-    """Return the key of each place that fills a column of the template; a doubtful header fills the one it meant."""
-    keys = {place: key for key, place in heading.places.items()}
-    for place, key in heading.doubtful.items():
-        if key not in keys.values() and place not in heading.diameters:
-            keys[place] = key
+    """Return the key of each column that fills one of the template; a doubtful header fills the one it meant."""
+    keys = {column: key for key, column in heading.places.items()}
+    for column, key in heading.doubtful.items():
+        if key not in keys.values() and column not in heading.diameters:
+            keys[column] = key
     return keys
 
 
 def _settings_in_order(rows: Sequence[dict[str | int, Any]]) -> list[dict[str | int, Any]]:
     """Return the settings in the template's order, then every other row; a setting that is absent has its default."""
     rest = [row for row in rows if row]
-    found: list[dict[str | int, Any]] = []
+    ordered: list[dict[str | int, Any]] = []
     for column in SETTINGS:
-        mine = next((row for row in rest if plain(str(row.get("setting", ""))) == plain(column.key)), None)
-        found.append({"setting": column.key, "value": column.default} if mine is None else mine)
-        rest = [row for row in rest if row is not mine]
-    return found + rest
+        entered = next((row for row in rest if plain(str(row.get("setting", ""))) == plain(column.key)), None)
+        ordered.append({"setting": column.key, "value": column.default} if entered is None else entered)
+        rest = [row for row in rest if row is not entered]
+    return ordered + rest
 
 
 def _is_ours(value: RawValue, schema: str) -> bool:
@@ -263,14 +264,14 @@ def _is_ours(value: RawValue, schema: str) -> bool:
     return not value.strip() or value in {*TITLES[schema], *groups} or bool(_ABOVE.fullmatch(value))
 
 
-def _addresses(sheet: str, places: Sequence[Place]) -> str:
+def _addresses(sheet: str, addresses: Sequence[CellAddress]) -> str:
     """Return cells as Excel writes them, the first few by name."""
-    named = ", ".join(str(CellAddress(row=row, column=place)) for row, place in places[:_LISTED])
-    more = f" and {len(places) - _LISTED} more" if len(places) > _LISTED else ""
-    return f"{sheet}!{named}{more}" if places else sheet
+    named = ", ".join(map(str, addresses[:_LISTED]))
+    more = f" and {len(addresses) - _LISTED} more" if len(addresses) > _LISTED else ""
+    return f"{sheet}!{named}{more}" if addresses else sheet
 
 
-def _beside(submission: Submission, carried: Sequence[str], beside: Leftovers) -> list[str]:
+def _left_behind(submission: Submission, carried: Sequence[str], leftovers: Leftovers) -> list[str]:
     """Say what stands beside the entry sheets and was left behind."""
     ours = {plain(name) for name in (*carried, *_MADE_ANEW)}
     remarks = [
@@ -278,12 +279,12 @@ def _beside(submission: Submission, carried: Sequence[str], beside: Leftovers) -
         for name, sheet in submission.sheets.items()
         if plain(name) not in ours
     ]
-    things = [f"{count} {name if count == 1 else _plural(name)}" for name, count in beside.things.items()]
-    return remarks + ([f"Left behind: {', '.join(things)}."] if things else [])
+    objects = [f"{count} {name if count == 1 else _plural(name)}" for name, count in leftovers.objects.items()]
+    return remarks + ([f"Left behind: {', '.join(objects)}."] if objects else [])
 
 
 def _plural(name: str) -> str:
-    """Return a thing's name for several of them."""
+    """Return an object's name for several of them."""
     irregular = {
         "text box or shape": "text boxes or shapes",
         "link to another workbook": "links to other workbooks",

@@ -36,26 +36,26 @@ def causes_of(outcome: Outcome) -> list[Cause]:
     """Return the causes of all computed variants that scatter, in submitted order."""
     main = dict(zip(outcome.results["variant"], outcome.results["main_contributor"], strict=True))
     return [
-        Cause(name=one.variant.name, shares=one.spread.shares, main=main[one.variant.name])
-        for one in outcome.computed.values()
-        if one.spread is not None and one.spread.shares
+        Cause(name=computed.variant.name, shares=computed.spread.shares, main=main[computed.variant.name])
+        for computed in outcome.computed.values()
+        if computed.spread is not None and computed.spread.shares
     ]
 
 
 def ranked_dimensions(causes: Sequence[Cause]) -> list[str]:
     """Return the dimensions that matter somewhere, the greatest mean share first."""
-    mattering = {name for one in causes for name, share in one.shares.items() if share >= MATTERS}
+    mattering = {name for cause in causes for name, share in cause.shares.items() if share >= MATTERS}
     return sorted(filter(mattering.__contains__, DIMENSIONS), key=lambda name: -mean_share(causes, name))
 
 
 def mean_share(causes: Sequence[Cause], dimension: str) -> float:
     """Return the mean share of a dimension; a variant that does not have it counts as none."""
-    return math.fsum(one.shares.get(dimension, 0.0) for one in causes) / len(causes)
+    return math.fsum(cause.shares.get(dimension, 0.0) for cause in causes) / len(causes)
 
 
 def left_out(causes: Sequence[Cause]) -> Iterator[str]:
     """Yield which dimensions have a tolerance that matters nowhere."""
-    rest = {name for one in causes for name in one.shares} - set(ranked_dimensions(causes))
+    rest = {name for cause in causes for name in cause.shares} - set(ranked_dimensions(causes))
     names = [dimension_words(name) for name in DIMENSIONS if name in rest]
     if names:
         yield f"Below {100 * MATTERS:g} % everywhere and left out: {listed(names, _LISTED)}."
@@ -73,16 +73,16 @@ def cause_sentences(causes: Sequence[Cause]) -> Iterator[str]:
 
 def _main_words(causes: Sequence[Cause]) -> Iterator[str]:
     """Yield of each main contributor in how many variants it is, the most frequent first."""
-    counts = Counter(one.main for one in causes if one.main)
+    counts = Counter(cause.main for cause in causes if cause.main)
     ranked = sorted(counts, key=lambda name: (-counts[name], list(DIMENSIONS).index(name)))
-    for place, name in enumerate(ranked[: _NAMED + 1]):
-        verb = " is the main contributor" if not place else ""
+    for rank, name in enumerate(ranked[: _NAMED + 1]):
+        verb = " is the main contributor" if not rank else ""
         if counts[name] == len(causes):
             where = f"in all {len(causes)} variants" if len(causes) > 1 else f"of {_first(causes, name)}"
         elif counts[name] == 1:
-            where = f"{'only ' if place else ''}in {_first(causes, name)}"
+            where = f"{'only ' if rank else ''}in {_first(causes, name)}"
         else:
-            where = f"in {counts[name]}" + ("" if place else f" of {len(causes)} variants")
+            where = f"in {counts[name]}" + ("" if rank else f" of {len(causes)} variants")
         yield f"{dimension_words(name)}{verb} {where}"
     rest = sum(counts[name] for name in ranked[_NAMED + 1 :])
     if rest:
@@ -91,12 +91,14 @@ def _main_words(causes: Sequence[Cause]) -> Iterator[str]:
 
 def _first(causes: Sequence[Cause], main: str) -> str:
     """Return the name of the first variant with a main contributor, as a sentence shows it."""
-    return shown(next(one.name for one in causes if one.main == main), longest=_NAME)
+    return shown(next(cause.name for cause in causes if cause.main == main), longest=_NAME)
 
 
 def _hurting(causes: Sequence[Cause]) -> Iterator[str]:
     """Yield which dimensions take much of the variance of every variant, and which of one alone."""
-    hurt = {name: [one for one in causes if one.shares.get(name, 0.0) >= _HURTS] for name in ranked_dimensions(causes)}
+    hurt = {
+        name: [cause for cause in causes if cause.shares.get(name, 0.0) >= _HURTS] for name in ranked_dimensions(causes)
+    }
     everywhere = [dimension_words(name) for name, where in hurt.items() if len(where) == len(causes)]
     only = [
         f"{dimension_words(name)} only in {shown(where[0].name, longest=_NAME)} ({100 * where[0].shares[name]:.0f} %)"

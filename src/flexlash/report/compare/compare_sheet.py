@@ -61,8 +61,8 @@ def write_compare(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
         which = f"The {count} worst of {total:,} computed variants, worst first (Ranking lists {len(drawn)})"
     for row, note in enumerate((f"{which}. {_NOTES[0]}", _NOTES[1]), start=1):
         sheet.write_string(row, 0, note, book.format("quiet"))
-    for place, target, text in _LINKS:
-        sheet.write_url(3, place, f"internal:{target}!A1", book.format("link"), text)
+    for column, target, text in _LINKS:
+        sheet.write_url(3, column, f"internal:{target}!A1", book.format("link"), text)
     worst = shown(drawn[0].row["variant"], longest=_NAME)
     text = f"Boxes of the backlash of {count} variants, worst first, with their limits; the worst is {worst}"
     book.insert(sheet, _TOP, 0, _boxes(book, compared, count), size=(_WIDTH, _HEIGHT), text=text)
@@ -147,8 +147,8 @@ def _numbers(compared: Stored, heading: str, count: int) -> list[float]:
 
 def _whisker(compared: Stored, count: int, direction: str, heading: str) -> dict[str, Any]:
     """Return error bars to one side whose lengths stand in a column."""
-    name, first, place, last, _ = compared.series(heading, count)
-    letter = xl_col_to_name(place)
+    name, first, column, last, _ = compared.series(heading, count)
+    letter = xl_col_to_name(column)
     cells, lengths = f"={name}!${letter}${first + 1}:${letter}${last + 1}", _numbers(compared, heading, count)
     both = {"plus_values": cells, "minus_values": cells, "plus_data": lengths, "minus_data": lengths}
     return {"type": "custom", "direction": direction, "color": PALETTE["ink"], "width": 1.25, **both}

@@ -34,17 +34,17 @@ def share_heading(kind: str) -> str:
 
 def compared_variants(drawn: Sequence[Drawn]) -> Stored:
     """Return the data sheet of the drawn variants."""
-    labels = distinct_labels([one.row["variant"] for one in drawn], _LABEL)
-    return Stored("Compared", [_figures(one, label) for one, label in zip(drawn, labels, strict=True)])
+    labels = distinct_labels([variant.row["variant"] for variant in drawn], _LABEL)
+    return Stored("Compared", [_figures(variant, label) for variant, label in zip(drawn, labels, strict=True)])
 
 
-def _figures(one: Drawn, label: str) -> Row:
+def _figures(variant: Drawn, label: str) -> Row:
     """Return a variant's row: what Ranking shows of it, the parts of its box, its points in the disk share chart."""
-    row, kind = one.row, one.computed.variant.flexspline_type
+    row, kind = variant.row, variant.computed.variant.flexspline_type
     low, median, high = (row[f"{key}_arcmin"] for key in ("p2_5", "p50", "p97_5"))
     limit = row["backlash_limit_arcmin"]
     lower, upper = (
-        percentile_between(score, np.array(CURVE_SCORES), one.curve.outputs) / ARCMIN
+        percentile_between(score, np.array(CURVE_SCORES), variant.curve.outputs) / ARCMIN
         for score in (-_QUARTILE_SCORE, _QUARTILE_SCORE)
     )
     lower, upper = min(max(lower, low), median), max(min(upper, high), median)
@@ -61,7 +61,7 @@ def _figures(one: Drawn, label: str) -> Row:
         "Margin": None if limit is None else limit - high,
         "sd": row["sd_arcmin"],
         "Disk share": row["disk_share"],
-        "l/r": _slenderness(one),
+        "l/r": _slenderness(variant),
         "P2.5 to P25": lower - low,
         "P25 to P50": median - lower,
         "P50 to P75": upper - median,
@@ -72,9 +72,9 @@ def _figures(one: Drawn, label: str) -> Row:
     }
 
 
-def _slenderness(one: Drawn) -> float:
+def _slenderness(variant: Drawn) -> float:
     """Return cylinder length over mean radius."""
-    return one.computed.variant.dimensions["cylinder_length"] / one.computed.nominal.mean_radius
+    return variant.computed.variant.dimensions["cylinder_length"] / variant.computed.nominal.mean_radius
 
 
 def percentile_between(score: float, scores: Array, outputs: Array) -> float:
@@ -85,8 +85,8 @@ def percentile_between(score: float, scores: Array, outputs: Array) -> float:
     """
     after = int(np.searchsorted(scores, score))
     knots, values = scores[after - 2 : after + 2], outputs[after - 2 : after + 2]
-    found = 0.0
-    for place, knot in enumerate(knots):
-        others = np.delete(knots, place)
-        found += float(values[place] * np.prod((score - others) / (knot - others)))
-    return min(max(found, float(values[1])), float(values[2]))
+    percentile = 0.0
+    for index, knot in enumerate(knots):
+        others = np.delete(knots, index)
+        percentile += float(values[index] * np.prod((score - others) / (knot - others)))
+    return min(max(percentile, float(values[1])), float(values[2]))

@@ -49,16 +49,16 @@ def write_contributions(book: Book, outcome: Outcome, drawn: Sequence[Drawn], co
     if not drawn:
         return
     widths = _widths(min(len(drawn), MAPPED))
-    for place, pixels in enumerate(widths):
-        sheet.set_column_pixels(place, place, pixels)
+    for column, pixels in enumerate(widths):
+        sheet.set_column_pixels(column, column, pixels)
     causes = causes_of(outcome)
     row = 1
-    for said in cause_sentences(causes):
-        sheet.write_string(row, 0, f"•  {said}", book.format("text"))
+    for sentence in cause_sentences(causes):
+        sheet.write_string(row, 0, f"•  {sentence}", book.format("text"))
         row += 1
     if causes:
         row = _write_notes(book, sheet, causes, drawn, _write_heat(book, sheet, causes, drawn, row + 1))
-    if any(one.computed.variant.flexspline_type in CONNECTED for one in drawn):
+    if any(variant.computed.variant.flexspline_type in CONNECTED for variant in drawn):
         width = max(_PAGE, sum(widths))
         height = width // 3
         chart = _disk_shares(book, compared, width / _PAGE)
@@ -81,37 +81,39 @@ def _write_heat(book: Book, sheet: Any, causes: Sequence[Cause], drawn: Sequence
     mapped = drawn[:MAPPED]
     right = 1 + len(mapped)
     sheet.write_string(top, 0, "Share of variance", book.format("header"))
-    labels = distinct_labels([one.row["variant"] for one in mapped], _NAME)
-    for place, label in enumerate(labels, start=1):
-        sheet.write_string(top, place, label, book.format("turned"))
+    labels = distinct_labels([variant.row["variant"] for variant in mapped], _NAME)
+    for column, label in enumerate(labels, start=1):
+        sheet.write_string(top, column, label, book.format("turned"))
     every = f"of all {len(causes):,}"
     headings = (f"Mean {every}", f"Greatest {every}", "Greatest in", "Main contributor in")
-    for place, heading in enumerate(headings, start=right):
-        sheet.write_string(top, place, heading, book.format("header"))
+    for column, heading in enumerate(headings, start=right):
+        sheet.write_string(top, column, heading, book.format("header"))
     sheet.set_row(top, max(48, 10 + 5 * max(map(len, labels))))
     dimensions = ranked_dimensions(causes)
     for row, name in enumerate(dimensions, start=top + 1):
         words = dimension_words(name)
         sheet.write_string(row, 0, words[0].upper() + words[1:], book.format("text"))
-        for place, one in enumerate(mapped, start=1):
-            shares = one.computed.spread.shares if one.computed.spread else {}
+        for column, variant in enumerate(mapped, start=1):
+            shares = variant.computed.spread.shares if variant.computed.spread else {}
             if name in shares:
-                sheet.write_number(row, place, shares[name], book.format("small figure", "0%"))
+                sheet.write_number(row, column, shares[name], book.format("small figure", "0%"))
         _write_over_all(book, sheet, (row, right), causes, name)
     last = top + len(dimensions)
-    _colour(sheet, (top + 1, 1, last, right + 1), max(max(one.shares.values()) for one in causes))
+    _colour(sheet, (top + 1, 1, last, right + 1), max(max(cause.shares.values()) for cause in causes))
     return last + 1
 
 
 def _write_over_all(book: Book, sheet: Any, cell: tuple[int, int], causes: Sequence[Cause], dimension: str) -> None:
     """Write a dimension's mean and greatest share over all computed variants, and how often it is the main one."""
-    row, place = cell
-    worst = max(causes, key=lambda one: one.shares.get(dimension, 0.0))
+    row, column = cell
+    worst = max(causes, key=lambda cause: cause.shares.get(dimension, 0.0))
     style = book.format("small figure", "0%")
-    sheet.write_number(row, place, mean_share(causes, dimension), style)
-    sheet.write_number(row, place + 1, worst.shares[dimension], style)
-    sheet.write_string(row, place + 2, shown(worst.name, longest=_SHORT), book.format("indented"))
-    sheet.write_number(row, place + 3, sum(one.main == dimension for one in causes), book.format("small figure", "0"))
+    sheet.write_number(row, column, mean_share(causes, dimension), style)
+    sheet.write_number(row, column + 1, worst.shares[dimension], style)
+    sheet.write_string(row, column + 2, shown(worst.name, longest=_SHORT), book.format("indented"))
+    sheet.write_number(
+        row, column + 3, sum(cause.main == dimension for cause in causes), book.format("small figure", "0")
+    )
 
 
 def _colour(sheet: Any, cells: tuple[int, int, int, int], most: float) -> None:
@@ -155,8 +157,10 @@ def _disk_shares(book: Book, compared: Stored, size: float) -> Any:
     for kind in CONNECTED:
         shape, colour = _MARKERS[kind]
         heading = share_heading(kind)
-        mine = [(float(row["l/r"] or 0), float(row[heading] or 0)) for row in compared.rows if row[heading] is not None]
-        if mine:
+        of_kind = [
+            (float(row["l/r"] or 0), float(row[heading] or 0)) for row in compared.rows if row[heading] is not None
+        ]
+        if of_kind:
             marker = {
                 "type": shape,
                 "size": 8 if len(compared.rows) <= _CROWDED else 5,
@@ -165,11 +169,11 @@ def _disk_shares(book: Book, compared: Stored, size: float) -> Any:
             }
             cells = {"categories": compared.series("l/r"), "values": compared.series(heading)}
             chart.add_series({"name": f"{kind}s", "marker": marker, **cells})
-        points += mine
-    places, shares = axis_over([place for place, _ in points]), axis_over([0.0, *(share for _, share in points)])
+        points += of_kind
+    lengths, shares = axis_over([length for length, _ in points]), axis_over([0.0, *(share for _, share in points)])
     small = {"size": round(9 * size), "bold": False}
     look = {"num_font": small, "name_font": small, "major_gridlines": GRID}
-    chart.set_x_axis({**places.options(), **look, "name": "Cylinder length over mean radius l/r [-]"})
+    chart.set_x_axis({**lengths.options(), **look, "name": "Cylinder length over mean radius l/r [-]"})
     chart.set_y_axis({**shares.options(per_cent=True), **look, "name": "Disk share [%]"})
     chart.set_legend({"position": "bottom", "font": small})
     return chart

@@ -76,14 +76,14 @@ def write_ranking(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
         sheet.write_string(row, 0, note, book.format("quiet"))
     _write_headings(book, sheet)
     if drawn:
-        first = min(range(count), key=lambda place: drawn[place].computed.variant.row)
+        first = min(range(count), key=lambda index: drawn[index].computed.variant.row)
         base = _write_base(book, sheet, compared, first)
-        places = result_rows(outcome)
-        labels = distinct_labels([one.row["variant"] for one in drawn], _NAME)
-        for rank, one in enumerate(drawn):
-            _write_words(book, sheet, rank, one, (labels[rank], places[one.computed.variant.row]))
-            _write_figures(book, sheet, rank, one, compared)
-            _write_differences(book, sheet, rank, (one, compared), base)
+        results = result_rows(outcome)
+        labels = distinct_labels([variant.row["variant"] for variant in drawn], _NAME)
+        for rank, variant in enumerate(drawn):
+            _write_words(book, sheet, rank, variant, (labels[rank], results[variant.computed.variant.row]))
+            _write_figures(book, sheet, rank, variant, compared)
+            _write_differences(book, sheet, rank, (variant, compared), base)
         _colour(book, sheet, FIRST_ROW + count - 1)
     last = FIRST_ROW + max(count, 1) - 1
     sheet.autofilter(HEADER, 0, last, _COLUMNS - 1)
@@ -99,11 +99,11 @@ def _write_headings(book: Book, sheet: Any) -> None:
     changes = [f"{name} [{unit}]" for name in DIFFERENCES for unit in ("arcmin", "%")]
     shape = ["Main contributor", "Its share of variance", "Disk share of wind-up", "l/r"]
     headings = [*(name for name, _ in _WORDS), *units, *shape, *changes]
-    for place, heading in enumerate(headings):
-        sheet.write_string(HEADER, place, heading, style)
+    for column, heading in enumerate(headings):
+        sheet.write_string(HEADER, column, heading, style)
     sheet.set_row(HEADER, 48)
-    for place, (_, width) in enumerate(_WORDS):
-        sheet.set_column(place, place, width)
+    for column, (_, width) in enumerate(_WORDS):
+        sheet.set_column(column, column, width)
     sheet.set_column(len(_WORDS), _COLUMNS - 1, _FIGURE_WIDTH)
     sheet.set_column(_CAUSE, _CAUSE, _CAUSE_WIDTH)
     for first, last, text in (
@@ -129,15 +129,15 @@ def _write_base(book: Book, sheet: Any, compared: Stored, first: int) -> dict[st
         "error_title": "Base variant",
         "error_message": "Pick a variant of the list.",
     })  # fmt: skip
-    place = match_exactly(picked, names)
-    place = put(sheet, BASE_ROW, 2, place, book.format("quiet"))
-    known = place > 0.0
-    told = IF(known, "◄ its rank", "◄ not in the list: pick one")
-    put(sheet, BASE_ROW, 3, told, book.format("quiet"))
+    rank = match_exactly(picked, names)
+    rank = put(sheet, BASE_ROW, 2, rank, book.format("quiet"))
+    is_listed = rank > 0.0
+    remark = IF(is_listed, "◄ its rank", "◄ not in the list: pick one")
+    put(sheet, BASE_ROW, 3, remark, book.format("quiet"))
 
     def write(heading: str, column: int, number: str) -> Live:
-        figure = compared.pick(MAX(place, 1.0), heading)
-        return put(sheet, BASE_ROW, column, IF(known, figure, ""), book.format("base", number))
+        figure = compared.pick(MAX(rank, 1.0), heading)
+        return put(sheet, BASE_ROW, column, IF(is_listed, figure, ""), book.format("base", number))
 
     write("Disk share", _SHAPE, "0%")
     write("l/r", _SHAPE + 1, "0.00")
@@ -145,36 +145,36 @@ def _write_base(book: Book, sheet: Any, compared: Stored, first: int) -> dict[st
     return {heading: write(heading, column_of(heading), number) for heading, number in figures.items()}
 
 
-def _write_words(book: Book, sheet: Any, rank: int, one: Drawn, link: tuple[str, int]) -> None:
+def _write_words(book: Book, sheet: Any, rank: int, variant: Drawn, link: tuple[str, int]) -> None:
     """Write what is said of a variant in words; its label leads to its row of Results."""
-    row, verdict = FIRST_ROW + rank, light(one.row)
+    row, verdict = FIRST_ROW + rank, light(variant.row)
     sheet.write_number(row, 0, rank + 1, book.format("small figure", "0"))
     label, result = link
     write_link(sheet, row, 1, f"Results!A{result + 1}", label, style=book.format("link"))
     sheet.write_string(row, 2, verdict, book.format(COLOURS[verdict]))
-    if one.row["probability_over_limit"] is not None:
-        sheet.write_string(row, 3, share_words(one.row), book.format("indented"))
-    if one.row["main_contributor"]:
-        sheet.write_string(row, _CAUSE, dimension_words(one.row["main_contributor"]), book.format("indented"))
-        sheet.write_number(row, _CAUSE + 1, one.row["main_contributor_share"], book.format("text", "0%"))
+    if variant.row["probability_over_limit"] is not None:
+        sheet.write_string(row, 3, share_words(variant.row), book.format("indented"))
+    if variant.row["main_contributor"]:
+        sheet.write_string(row, _CAUSE, dimension_words(variant.row["main_contributor"]), book.format("indented"))
+        sheet.write_number(row, _CAUSE + 1, variant.row["main_contributor_share"], book.format("text", "0%"))
 
 
-def _decimals(one: Drawn, heading: str) -> str:
+def _decimals(variant: Drawn, heading: str) -> str:
     """Return the number format that shows a figure of a variant down to its standard error, four decimals at most."""
     if not _FIGURES[heading]:
         return _LIMIT
-    return min(decimals_of(one.row[_FIGURES[heading]], _USUAL), _FINEST, key=len)
+    return min(decimals_of(variant.row[_FIGURES[heading]], _USUAL), _FINEST, key=len)
 
 
 def _signed(decimals: str) -> str:
     return f"+{decimals};-{decimals};{decimals}"
 
 
-def _write_figures(book: Book, sheet: Any, rank: int, one: Drawn, compared: Stored) -> None:
+def _write_figures(book: Book, sheet: Any, rank: int, variant: Drawn, compared: Stored) -> None:
     """Write the figures of a variant; its margin is worked out in the cell."""
     row, figures = FIRST_ROW + rank, compared.rows[rank]
     for heading in _FIGURES:
-        decimals = _decimals(one, heading)
+        decimals = _decimals(variant, heading)
         if heading == "Margin" and figures["Limit"] is not None:
             margin = _own(row, "Limit", figures) - _own(row, "P97.5", figures)
             put(sheet, row, column_of(heading), margin, book.format("text", _signed(decimals)))
@@ -191,16 +191,16 @@ def _own(row: int, heading: str, figures: Row) -> Live:
 
 def _write_differences(book: Book, sheet: Any, rank: int, of: tuple[Drawn, Stored], base: dict[str, Live]) -> None:
     """Write how a variant differs from the base, in arcmin and in per cent, as formulas."""
-    one, compared = of
+    variant, compared = of
     row = FIRST_ROW + rank
     for number, heading in enumerate(DIFFERENCES):
-        place = _FIRST_DIFFERENCE + 2 * number
+        column = _FIRST_DIFFERENCE + 2 * number
         is_known = ISNUMBER(base[heading])
         difference = IF(is_known, _own(row, heading, compared.rows[rank]) - base[heading], "")
-        put(sheet, row, place, difference, book.format("text", _signed(_decimals(one, heading))))
-        relative = Live(xl_rowcol_to_cell(row, place), difference.value) / base[heading]
+        put(sheet, row, column, difference, book.format("text", _signed(_decimals(variant, heading))))
+        relative = Live(xl_rowcol_to_cell(row, column), difference.value) / base[heading]
         share = IF(is_known, IF(base[heading] > 0.0, relative, ""), "")
-        put(sheet, row, place + 1, share, book.format("text", _SIGNED_PERCENT))
+        put(sheet, row, column + 1, share, book.format("text", _SIGNED_PERCENT))
 
 
 def _colour(book: Book, sheet: Any, last: int) -> None:

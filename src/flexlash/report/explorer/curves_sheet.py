@@ -70,13 +70,13 @@ def error_heading(score: float) -> str:
 
 def stored_curves(drawn: Sequence[Drawn]) -> Stored:
     """Return the data sheet of the drawn variants, worst first."""
-    labels = distinct_labels([one.row["variant"] for one in drawn], _LABEL)
-    return Stored("Curves", [dict(_entries(one, label)) for one, label in zip(drawn, labels, strict=True)])
+    labels = distinct_labels([variant.row["variant"] for variant in drawn], _LABEL)
+    return Stored("Curves", [dict(_entries(variant, label)) for variant, label in zip(drawn, labels, strict=True)])
 
 
-def _entries(one: Drawn, label: str) -> Iterator[tuple[str, str | float | None]]:
+def _entries(variant: Drawn, label: str) -> Iterator[tuple[str, str | float | None]]:
     """Yield a variant's headings and values in order."""
-    row, curve = one.row, one.curve
+    row, curve = variant.row, variant.curve
     yield "Variant", row["variant"]
     yield "Label", label
     yield "Over limit", None if row["backlash_limit_arcmin"] is None else share_words(row)
@@ -95,9 +95,9 @@ def _entries(one: Drawn, label: str) -> Iterator[tuple[str, str | float | None]]
     yield "Bin width", float(curve.edges[-1] - curve.edges[0]) / HISTOGRAM_BINS / ARCMIN
     heights = _rounded(curve.heights, _HEIGHT_DIGITS)
     yield from ((f"Bin {number}", height) for number, height in enumerate(heights, start=1))
-    yield from _causes(one)
+    yield from _causes(variant)
     for segment, name in SEGMENTS.items():
-        angle = getattr(one.computed.nominal, f"{segment}_windup")
+        angle = getattr(variant.computed.nominal, f"{segment}_windup")
         yield name, 2 * angle / ARCMIN if isinstance(angle, float) else 0.0
 
 
@@ -106,9 +106,9 @@ def _rounded(values: Array, digits: int) -> list[float]:
     return [float(f"{value:.{digits - 1}e}") for value in values.tolist()]
 
 
-def _causes(one: Drawn) -> Iterator[tuple[str, str | float | None]]:
+def _causes(variant: Drawn) -> Iterator[tuple[str, str | float | None]]:
     """Yield the dimensions that move the backlash most, by their share of the variance, and how far each does."""
-    spread = one.computed.spread
+    spread = variant.computed.spread
     ranked: list[tuple[str, float]] = []
     if spread is not None:
         ranked = sorted(spread.shares.items(), key=lambda item: (-item[1], item[0]))[:CAUSES]

@@ -55,7 +55,7 @@ def _write_notes(book: Book, sheet: Any, choice: Choice, working: Working, limit
 
 def _drawn(working: Working) -> tuple[int, int]:
     """Return the places of the first and last percentile that the cumulative curve draws."""
-    inside = [place for place, score in enumerate(CURVE_SCORES) if abs(score) < _DRAWN_SCORE]
+    inside = [index for index, score in enumerate(CURVE_SCORES) if abs(score) < _DRAWN_SCORE]
     return inside[0], min(inside[-1], len(working.backlash) - 1)
 
 
@@ -109,7 +109,7 @@ def _cumulative(book: Book, sheet: Any, working: Working, limit: Live) -> Any:
     for row, share in ((_BAR_ROW, 0.0), (_BAR_ROW + 1, 1.0)):
         put(sheet, row, column, IF(none, middle, IF(inside, limit, middle)), plain)
         put(sheet, row, column + 1, IF(none, 0.0, IF(inside, share, 0.0)), plain)
-    first, last = (CURVE_ROW + place for place in _drawn(working))
+    first, last = (CURVE_ROW + index for index in _drawn(working))
     chart = book.chart("scatter", "Share of units below a backlash", subtype="straight")
     for name, rows, columns, line in (
         ("share below", (first, last), (COLUMN + 2, COLUMN + 1), {"color": PALETTE["blue"], "width": 2.25}),

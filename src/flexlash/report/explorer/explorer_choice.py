@@ -1,4 +1,4 @@
-"""What the reader of the Explorer chooses: variant, angle unit, limit, wanted share; nonsense is told and not used."""
+"""What the reader of the Explorer chooses: variant, angle unit, limit, wanted share; a wrong entry is not used."""
 
 from __future__ import annotations
 
@@ -45,39 +45,39 @@ class Choice:
         _number(sheet, _FIRST_ROW + 2, (0, 1e9), "Any limit", "Blank: the limit of the variant.")
         _number(sheet, _FIRST_ROW + 3, (_RAREST, _COMMONEST), "Wanted share", "From 0.0001 % (1 ppm) to 99.9999 %.")
         words = f'"◄ number "0" of {len(names.values)}";;"◄ not in the list: pick one"'
-        place = put(sheet, _FIRST_ROW, 2, match_exactly(self.name, names), book.format("hint", words))
+        rank = put(sheet, _FIRST_ROW, 2, match_exactly(self.name, names), book.format("hint", words))
         words = '"◄ arcmin or arcsec (1 arcmin = "0")";;"◄ arcmin or arcsec, nothing else"'
         factor = IF(unit.equals("arcsec"), _SECONDS, IF(unit.equals("arcmin"), 1.0, 0.0))
         factor = put(sheet, _FIRST_ROW + 1, 2, factor, book.format("hint", words))
-        self.known = AND(place > 0.0, factor > 0.0)
-        self._place, self._factor = MAX(place, 1.0), MAX(factor, 1.0)
+        self.known = AND(rank > 0.0, factor > 0.0)
+        self._rank, self._factor = MAX(rank, 1.0), MAX(factor, 1.0)
         self.unit = IF(factor > 0.0, unit, live(""))
         self._write_limit(sheet, hint, typed)
         sound = IF(ISNUMBER(wanted), AND(wanted >= _RAREST, wanted <= _COMMONEST), Live("FALSE", value=False))
-        told = IF(sound, "◄ gives the limit for it, below", "◄ a share from 0.0001 % to 99.9999 %")
-        put(sheet, _FIRST_ROW + 3, 2, told, hint)
+        remark = IF(sound, "◄ gives the limit for it, below", "◄ a share from 0.0001 % to 99.9999 %")
+        put(sheet, _FIRST_ROW + 3, 2, remark, hint)
         self.wants = AND(self.known, sound)
         self.wanted = IF(sound, wanted, USUAL_SHARE)
 
     def _write_limit(self, sheet: Any, hint: Any, typed: Live) -> None:
         """Say in which unit the typed limit is read, or that it is none."""
         sound = IF(ISNUMBER(typed), typed > 0.0, Live("FALSE", value=False))
-        told = IF(sound, CONCATENATE("◄ read in ", self.unit), "◄ not a number above 0: not used")
-        put(sheet, _FIRST_ROW + 2, 2, IF(typed.equals(""), "◄ blank: its own", told), hint)
+        remark = IF(sound, CONCATENATE("◄ read in ", self.unit), "◄ not a number above 0: not used")
+        put(sheet, _FIRST_ROW + 2, 2, IF(typed.equals(""), "◄ blank: its own", remark), hint)
         self.other = IF(sound, typed, "")
         self.is_blank = typed.equals("")
 
     def text(self, heading: str) -> Live:
         """Return what Curves holds for the variant; an empty text where it holds nothing."""
-        return self._curves.pick(self._place, heading)
+        return self._curves.pick(self._rank, heading)
 
     def angle(self, heading: str) -> Live:
         """Return an angle of Curves in the chosen unit; an empty text where there is none."""
-        return self._curves.pick(self._place, heading, self._factor)
+        return self._curves.pick(self._rank, heading, self._factor)
 
-    def told(self, what: Live) -> Live:
+    def figure(self, value: Live) -> Live:
         """Return a figure, or that there is none where variant or unit are not of their lists."""
-        return IF(self.known, what, NONE)
+        return IF(self.known, value, NONE)
 
 
 def _list(sheet: Any, row: int, source: str | Sequence[str], title: str, message: str) -> None:

@@ -84,8 +84,8 @@ _FIGURES = {
 def write_explorer(book: Book, curves: Stored, total: int) -> None:
     """Write the Explorer of the stored variants, the worst one picked; `total` counts all computed ones."""
     sheet = book.sheet("Explorer", landscape=False, pages_tall=1, tab="entry")
-    for place, width in enumerate(_WIDTHS):
-        sheet.set_column(place, place, width)
+    for column, width in enumerate(_WIDTHS):
+        sheet.set_column(column, column, width)
     sheet.write_string(0, 0, "Explorer: one variant, any limit", book.format("title"))
     sheet.set_row(0, 28)
     if not curves.rows:
@@ -95,10 +95,10 @@ def write_explorer(book: Book, curves: Stored, total: int) -> None:
     if len(curves.rows) < total:
         note += f" The {len(curves.rows)} worst of {total} variants can be picked; all are in Results."
     sheet.write_string(1, 0, note, book.format("quiet"))
-    for row, column, text in _SECTIONS:
-        for place in range(column, column + 3):
-            sheet.write_blank(row, place, None, book.format("section"))
-        sheet.write_string(row, column, text, book.format("section"))
+    for row, first_column, text in _SECTIONS:
+        for column in range(first_column, first_column + 3):
+            sheet.write_blank(row, column, None, book.format("section"))
+        sheet.write_string(row, first_column, text, book.format("section"))
     choice = Choice(book, sheet, curves)
     working = Working(book, sheet, choice)
     limit = _write_answers(book, sheet, choice, working)
@@ -117,9 +117,9 @@ def _write_answers(book: Book, sheet: Any, choice: Choice, working: Working) -> 
     put(sheet, 8, 1, IF(limit.equals(""), NONE, limit), book.format("figure", "arcmin"))
     read = working.read_share(IF(limit.equals(""), choice.angle("P50"), limit))
     _write_share(book, sheet, choice, (working, read), limit)
-    found, error = working.read_output(live(0.0) - NORM_S_INV(choice.wanted))
+    backlash, error = working.read_output(live(0.0) - NORM_S_INV(choice.wanted))
     decimals = working.cell("its decimals", decimals_to(error, _USUAL))
-    put(sheet, 14, 1, IF(choice.wants, FIXED(found, decimals), NONE), book.format("figure"))
+    put(sheet, 14, 1, IF(choice.wants, FIXED(backlash, decimals), NONE), book.format("figure"))
     put(sheet, 15, 1, IF(choice.wants, FIXED(error * INTERVAL, decimals), NONE), book.format("figure"))
     for row in (8, 14, 15):
         put(sheet, row, 2, choice.unit, book.format("quiet"))
@@ -132,27 +132,27 @@ def _write_share(book: Book, sheet: Any, choice: Choice, reading: tuple[Working,
     quiet, figure = book.format("quiet"), book.format("figure")
     none = limit.equals("")
     rarest = working.cell("rarest share told", choice.text("Rarest share"))
-    told = working.cell("share told", MIN(MAX(read.share, rarest), live(1.0) - rarest))
+    share_told = working.cell("share told", MIN(MAX(read.share, rarest), live(1.0) - rarest))
     few, many = read.share < rarest * _NEARLY, read.share > live(1.0) - rarest * _NEARLY
     bound = IF(few, "at most: rarer than computed", IF(many, "at least: rarer than computed", ""))
     put(sheet, 9, 2, IF(none, "◄ no limit: type one above", IF(working.is_level, "", bound)), quiet)
     ends = []
-    for sign, beyond in ((1.0, IF(few, 0.0, told)), (-1.0, IF(many, 1.0, told))):
+    for sign, beyond in ((1.0, IF(few, 0.0, share_told)), (-1.0, IF(many, 1.0, share_told))):
         end = NORM_S_DIST(live(0.0) - (read.score + read.error * (sign * INTERVAL)))
         kept = (MIN if sign > 0 else MAX)(end, beyond)
-        ends.append(working.cell("end of its interval", IF(working.is_level, told, kept)))
+        ends.append(working.cell("end of its interval", IF(working.is_level, share_told, kept)))
     error = working.cell("its standard error in %", (ends[1] - ends[0]) * (50 / INTERVAL))
-    finest = working.cell("least of it that is told", MIN(told, 1 - told) * (100 * _FINEST))
+    finest = working.cell("least of it that is told", MIN(share_told, 1 - share_told) * (100 * _FINEST))
     decimals = working.cell("decimals of per cent", decimals_to(MAX(error, finest), _USUAL, most=_MOST))
     narrow = working.cell("interval inside the last digit", decimals_to(error, 0.0, most=2 * _MOST) > decimals)
-    for row, share in ((9, told), (10, ends[0]), (11, ends[1])):
+    for row, share in ((9, share_told), (10, ends[0]), (11, ends[1])):
         words = CONCATENATE(FIXED(share * 100, decimals), " %")
         put(sheet, row, 1, IF(none, NONE, IF(narrow, "–", words) if row > 9 else words), figure)  # noqa: PLR2004
     put(sheet, 10, 2, IF(narrow, "narrower than the last digit", "from the spread's standard errors"), quiet)
-    put(sheet, 12, 1, IF(none, NONE, FIXED(told * 1e6, decimals - _PPM_DECIMALS)), figure)
+    put(sheet, 12, 1, IF(none, NONE, FIXED(share_told * 1e6, decimals - _PPM_DECIMALS)), figure)
     put(sheet, 13, 1, IF(none, "–", _verdict(read.share, *ends)), figure)
-    told = IF(none, _RULE, IF(_settled(read.share, *ends), _RULE, "◄ the interval reaches another"))
-    put(sheet, 13, 2, told, quiet)
+    remark = IF(none, _RULE, IF(_settled(read.share, *ends), _RULE, "◄ the interval reaches another"))
+    put(sheet, 13, 2, remark, quiet)
     for word, style in (("green", "ok"), ("amber", "warning"), ("red", "error")):
         rule = {"type": "text", "criteria": "begins with", "value": word, "format": book.format(style)}
         sheet.conditional_format(13, 1, 13, 1, rule)
@@ -179,7 +179,7 @@ def _write_figures(book: Book, sheet: Any, choice: Choice, working: Working, lim
         if heading in FIGURE_ERRORS:
             decimals = decimals_to(choice.angle(FIGURE_ERRORS[heading][0]), _USUAL, most=_USUAL)
             value, shown = FIXED(value, decimals), book.format("figure")
-        put(sheet, row, 5, choice.told(value), shown)
+        put(sheet, row, 5, choice.figure(value), shown)
         put(sheet, row, 6, choice.unit, quiet)
     _write_capability(book, sheet, choice, working, limit)
 
@@ -195,6 +195,6 @@ def _write_capability(book: Book, sheet: Any, choice: Choice, working: Working, 
     of_median, of_tail = (choice.angle(FIGURE_ERRORS[heading][0]) for heading in ("P50", "P99.865"))
     squares = ((capability - 1) * of_median) ** 2 + (capability * of_tail) ** 2
     error = working.cell("its standard error", IF(has, SQRT(squares) / reach, 0.0))
-    told = FIXED(capability, decimals_to(error, _PPK_DECIMALS, most=_PPK_DECIMALS))
-    put(sheet, row, 5, IF(has, told, NONE), book.format("figure"))
+    words = FIXED(capability, decimals_to(error, _PPK_DECIMALS, most=_PPK_DECIMALS))
+    put(sheet, row, 5, IF(has, words, NONE), book.format("figure"))
     sheet.write_string(row, 6, "ISO 22514-2", quiet)

@@ -90,9 +90,11 @@ class Working:
         below = IFERROR(MATCH(score, self._column(0), 1), 0.0)
         left = self.cell("percentile before it", MIN(MAX(below, 1.0), float(_LAST - 1)))
         start = self.cell("first of the four", MIN(MAX(left, 2.0), float(_LAST - 2)) - 1)
-        found = self._cubic(score, self._four(start, 0), self._four(start, 2))
+        backlash = self._cubic(score, self._four(start, 0), self._four(start, 2))
         rise = self._difference(2, left) / self._difference(0, left)
-        return self.cell("backlash there", found), self.cell("its standard error", self._error_at(score, left) * rise)
+        return self.cell("backlash there", backlash), self.cell(
+            "its standard error", self._error_at(score, left) * rise
+        )
 
     def _column(self, offset: int) -> Range:
         """Return a column of the curve: 0 scores, 2 backlash, 3 standard errors of the scores."""
@@ -120,11 +122,11 @@ class Working:
     def _cubic(self, at: Live, nodes: Sequence[Live], values: Sequence[Live]) -> Live:
         """Write the cubic through four points and return the reference to what it is at a place."""
         total: Live | None = None
-        for one, value in zip(nodes, values, strict=True):
+        for node, value in zip(nodes, values, strict=True):
             weight = value
             for other in nodes:
-                if other is not one:
-                    weight = weight * ((at - other) / (one - other))
+                if other is not node:
+                    weight = weight * ((at - other) / (node - other))
             total = weight if total is None else total + weight
         if total is None:
             raise ValueError("a cubic needs points")

@@ -14,14 +14,14 @@ _LONGEST = 1000
 _MOST_DECIMALS = 10
 
 
-def write_raw(book: Book, sheet: Any, place: tuple[int, int], value: RawValue, style: str = "text") -> None:
+def write_raw(book: Book, sheet: Any, cell: tuple[int, int], value: RawValue, style: str = "text") -> None:
     """Write a raw value: a number as a number, a percentage as its cell showed it, anything else as a text."""
     if isinstance(value, Percentage):
-        sheet.write_number(*place, value, book.format(style, _percent(value)))
+        sheet.write_number(*cell, value, book.format(style, _percent(value)))
     elif isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < float("inf"):
-        sheet.write_number(*place, value, book.format(style))
+        sheet.write_number(*cell, value, book.format(style))
     else:
-        sheet.write_string(*place, raw_text(value), book.format(style))
+        sheet.write_string(*cell, raw_text(value), book.format(style))
 
 
 def raw_text(value: RawValue) -> str:

@@ -75,8 +75,8 @@ def number_formats(book: Book, results: pl.DataFrame, column: Column) -> list[An
     if column.key in _WORKED_OUT:
         errors = [_WORKED_OUT[column.key](row) for row in results.iter_rows(named=True)]
         if usual == "share":
-            return [book.format("text", percent_of(one)) for one in errors]
-        return [book.format("text", min(decimals_of(one, usual), _PPK, key=len)) for one in errors]
+            return [book.format("text", percent_of(error)) for error in errors]
+        return [book.format("text", min(decimals_of(error, usual), _PPK, key=len)) for error in errors]
     error = next(
         (
             key
@@ -87,7 +87,9 @@ def number_formats(book: Book, results: pl.DataFrame, column: Column) -> list[An
     )
     if not error:
         return [book.format("text", usual)] * results.height
-    return [book.format("text", decimals_of(one, "arcmin" if unit else "plain")) for one in results[error].to_list()]
+    return [
+        book.format("text", decimals_of(error, "arcmin" if unit else "plain")) for error in results[error].to_list()
+    ]
 
 
 def _ppk_error(row: dict[str, Any]) -> float | None:

@@ -66,7 +66,7 @@ def _bars(shown: Sequence[Drawn]) -> dict[str, Any]:
     def look(colour: str) -> dict[str, Any]:
         return {"fill": {"color": PALETTE[colour]}, "border": {"color": PALETTE[colour]}}
 
-    return {**look("sky"), "points": [look(_COLOURS.get(firm(light(one.row)), "sky")) for one in shown]}
+    return {**look("sky"), "points": [look(_COLOURS.get(firm(light(variant.row)), "sky")) for variant in shown]}
 
 
 def _marker(shape: str, colour: str, size: int) -> dict[str, Any]:
@@ -77,7 +77,7 @@ def _marker(shape: str, colour: str, size: int) -> dict[str, Any]:
 
 def _axis(shown: Sequence[Drawn]) -> dict[str, Any]:
     """Return start, step and digits of an axis that begins at a round number below everything that is shown."""
-    rows = [one.row for one in shown]
+    rows = [variant.row for variant in shown]
     limits = [row["backlash_limit_arcmin"] for row in rows if row["backlash_limit_arcmin"] is not None]
     low = min([*limits, *(row["p2_5_arcmin"] for row in rows)])
     high = max([*limits, *(row["p97_5_arcmin"] for row in rows)])

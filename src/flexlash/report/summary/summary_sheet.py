@@ -78,8 +78,8 @@ class _Page:
         self.book = book
         self.outcome = outcome
         self.sheet = book.sheet("Summary", landscape=False, pages_tall=1)
-        for place, width in enumerate(_WIDTHS):
-            self.sheet.set_column(place, place, width)
+        for column, width in enumerate(_WIDTHS):
+            self.sheet.set_column(column, column, width)
         self.row = 0
         self.height = 0.0
 
@@ -110,14 +110,17 @@ class _Page:
         """Write how many were computed, have which verdict by which rule, and how much was found."""
         counts, verdicts = self.outcome.counts, verdict_counts(self.outcome)
         judged = sum(verdicts.values()) - verdicts[NO_VERDICT]
-        found = "error" if counts["errors"] else "warning"
+        level = "error" if counts["errors"] else "warning"
         without = f", {verdicts[NO_VERDICT]} without a limit" if verdicts[NO_VERDICT] else ""
         others = f"and {counted(counts['warnings'], 'warning')}; " if counts["errors"] and counts["warnings"] else ""
         figures = [
             (f"{counts['computed']} of {counts['rows']}", f"variants computed{without}", ""),
-            *(_verdict_figure(one, verdicts) if judged else (f"{NO_VERDICT} {one}", RULES[one], "") for one in RULES),
+            *(
+                _verdict_figure(verdict, verdicts) if judged else (f"{NO_VERDICT} {verdict}", RULES[verdict], "")
+                for verdict in RULES
+            ),
             (
-                counted(counts[f"{found}s"], found),
+                counted(counts[f"{level}s"], level),
                 f"{others}see Findings" if counts["errors"] or counts["warnings"] else "and no errors",
                 "",
             ),
@@ -145,13 +148,14 @@ class _Page:
     def table(self, drawn: Sequence[Drawn]) -> None:
         """Write the worst variants, each leading to its row of Results."""
         self._end_row(8)
-        for place, (heading, _) in enumerate(_COLUMNS):
-            self.sheet.write_string(self.row, place, heading, self.book.format("header"))
+        for column, (heading, _) in enumerate(_COLUMNS):
+            self.sheet.write_string(self.row, column, heading, self.book.format("header"))
         self._end_row(3 * LINE_HEIGHT + 2)
-        targets, labels = result_rows(self.outcome), labels_of(self.outcome, [one.row["variant"] for one in drawn])
-        for one in drawn[:_LISTED]:
-            name = _fitted(labels[one.row["variant"]], merged_width(_WIDTHS[:1]))
-            self._variant(one.row, name, targets[one.computed.variant.row])
+        targets = result_rows(self.outcome)
+        labels = labels_of(self.outcome, [variant.row["variant"] for variant in drawn])
+        for variant in drawn[:_LISTED]:
+            name = _fitted(labels[variant.row["variant"]], merged_width(_WIDTHS[:1]))
+            self._variant(variant.row, name, targets[variant.computed.variant.row])
         more = f"The {_LISTED} worst of {len(self.outcome.computed)} are listed; all are in Results. "
         note = "Worst first: by share over the limit. The verdict judges the backlash alone."
         if len(drawn) > _LISTED:
@@ -175,10 +179,10 @@ class _Page:
         link = self.book.format("link")
         write_link(self.sheet, self.row, 0, f"Results!A{target + 1}", name, style=link)
         self.sheet.write_string(self.row, 1, verdict, self.book.format(COLOURS[verdict]))
-        for place, key in enumerate(("backlash", "p50", "p97_5", "backlash_limit"), start=2):
+        for column, key in enumerate(("backlash", "p50", "p97_5", "backlash_limit"), start=2):
             value, error = row[f"{key}_arcmin"], row.get(f"{key}_standard_error_arcmin")
             if value is not None:
-                self.sheet.write_number(self.row, place, value, self.book.format("text", _glance(value, error)))
+                self.sheet.write_number(self.row, column, value, self.book.format("text", _glance(value, error)))
         lines = 1
         if row["backlash_limit_arcmin"] is not None:
             style = self.book.format("text", distance_format(row, "p97_5"))

@@ -33,9 +33,9 @@ def distance_words(row: dict[str, Any], key: str) -> str:
     if off == 0:
         return "right at"
     least = _decade(_step(row, key))
-    told = rounded(abs(off), least)
+    words = rounded(abs(off), least)
     side = "over" if off > 0 else "under"
-    return f"{told}′ {side}" if float(told) else f"less than {rounded(least, least)}′ {side}"
+    return f"{words}′ {side}" if float(words) else f"less than {rounded(least, least)}′ {side}"
 
 
 def distance_format(row: dict[str, Any], key: str) -> str:

@@ -28,11 +28,11 @@ def failing(told: Told) -> Iterator[str]:
     rows = {verdict: [row for row in told.judged if firm(light(row)) == verdict] for verdict in ("red", "amber")}
     green = [row for row in told.judged if firm(light(row)) == "green"]
     with_limit = counted(len(told.judged), "variant")
-    for verdict, found in rows.items():
-        if found:
-            named = listed([_excess(told, row, first=place == 0) for place, row in enumerate(found)], NAMED)
-            count = f"{len(found)} of {with_limit} with a limit {are(len(found))}"
-            yield f"{count} {verdict}{_doubt(found)}: {named}."
+    for verdict, with_verdict in rows.items():
+        if with_verdict:
+            named = listed([_excess(told, row, first=index == 0) for index, row in enumerate(with_verdict)], NAMED)
+            count = f"{len(with_verdict)} of {with_limit} with a limit {are(len(with_verdict))}"
+            yield f"{count} {verdict}{_doubt(with_verdict)}: {named}."
     if not told.failing:
         which = "all" if len(green) > 1 else "the"
         yield f"None: {which} {with_limit} with a limit {are(len(green))} green{_doubt(green)}."

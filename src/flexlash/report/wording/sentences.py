@@ -50,8 +50,8 @@ def sentences(outcome: Outcome, recommendations: Sequence[Recommendation]) -> It
         "Of the calculation": _calculation(outcome),
         FINDINGS: _findings(outcome),
     }
-    for topic, found in topics.items():
-        text = " ".join(found)
+    for topic, answer in topics.items():
+        text = " ".join(answer)
         if text:
             yield topic, text
 
@@ -65,7 +65,7 @@ def _computed(told: Told) -> Iterator[str]:
     lost = outcome.results.filter(outcome.results["status"] == "error")["variant"].to_list()
     if lost:
         yield f"Not computed: {listed([told.named(name) if name else '(no name)' for name in lost], NAMED)}."
-        first = next((found for found in outcome.findings if found.level == "error"), None)
+        first = next((finding for finding in outcome.findings if finding.level == "error"), None)
         if first:
             yield f"The first fault: {first.message}"
 
@@ -96,10 +96,10 @@ def _causes(told: Told) -> Iterator[str]:
 def _parts(row: Row, shares: dict[str, float]) -> str:
     """Return shares of a variance in words; a sum beyond 100 % is explained."""
     about = "about " if rough(row) else ""
-    told = {cause: f"{100 * share:.0f}" for cause, share in shares.items()}
-    words = listed([f"{dimension_words(cause)} {about}{share} %" for cause, share in told.items()], _CAUSES)
+    percents = {cause: f"{100 * share:.0f}" for cause, share in shares.items()}
+    words = listed([f"{dimension_words(cause)} {about}{share} %" for cause, share in percents.items()], _CAUSES)
     note = "shares of its variance"
-    if sum(map(float, told.values())) > _WHOLE:
+    if sum(map(float, percents.values())) > _WHOLE:
         points = points_range([row["spread_points"]], "lines" if row["spread_method"] == "line" else "points")
         note += f", estimated from {points}: their errors make the sum more than 100 %" if about else ", rounded"
     return f"{words} ({note})"
@@ -152,7 +152,7 @@ def _strength(told: Told) -> Iterator[str]:
             f"{spelled_out(times, _DIGITS)} times the torque, corners not counted."
         )
     for code in ("W402", "W411", "W412", "W415", "W417"):
-        names = dict.fromkeys(found.variant for found in told.outcome.findings if found.code == code)
+        names = dict.fromkeys(finding.variant for finding in told.outcome.findings if finding.code == code)
         if names:
             yield f"{CATALOGUE[code].title.capitalize()}: {told.names(list(names))} ({code})."
 
@@ -162,8 +162,8 @@ def _calculation(outcome: Outcome) -> Iterator[str]:
     yield from _elasticity(outcome)
     yield from spread_notes(outcome)
     exact = sum(
-        "shear_modulus" in one.variant.dimensions and "shear_modulus" not in one.limits
-        for one in outcome.computed.values()
+        "shear_modulus" in variant.variant.dimensions and "shear_modulus" not in variant.limits
+        for variant in outcome.computed.values()
     )
     if exact:
         yield f"The shear modulus of {counted(exact, 'variant')} is given and has no tolerance: it does not scatter."
@@ -177,7 +177,7 @@ def _elasticity(outcome: Outcome) -> Iterator[str]:
     if checked.height:
         differences = checked["elasticity_difference_percent"].to_list()
         error = max(checked["elasticity_error_percent"].to_list())
-        least, most = (f"{one:+.2f}" for one in (min(differences), max(differences)))
+        least, most = (f"{difference:+.2f}" for difference in (min(differences), max(differences)))
         span = most if least == most else f"{least} to {most}"
         yield (
             f"Against two-dimensional elasticity the nominal backlash is {span} % off ({checked.height} checked, "
@@ -192,7 +192,7 @@ def _findings(outcome: Outcome) -> Iterator[str]:
         yield "No error and no warning."
         return
     for level in ("error", "warning"):
-        titles = Counter(CATALOGUE[found.code].title for found in outcome.findings if found.level == level)
+        titles = Counter(CATALOGUE[finding.code].title for finding in outcome.findings if finding.level == level)
         if titles:
             parts = [f"{title} ({count})" for title, count in titles.most_common()]
             yield f"{counted(titles.total(), level)}: {listed(parts, NAMED)}."
