@@ -13,10 +13,10 @@ import python_calamine
 import xlsxwriter
 from here import WHERE, answer_here
 from libreoffice import convert, needs_libreoffice
+from read_files import read_submission
 
 from flexlash.pipeline import check
 from flexlash.reading.raw import ErrorCell, Unstored
-from flexlash.reading.read import read_submission
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.cell_addresses import column_letters
 

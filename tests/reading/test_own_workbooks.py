@@ -10,11 +10,11 @@ import pytest
 from marking_samples import fault
 from own_workbooks import READABLE, REFUSED
 from python_calamine import CalamineWorkbook
+from read_files import read_submission
 
 from flexlash.feedback.annotation import marked_copy
 from flexlash.pipeline import check
 from flexlash.reading.raw import Unstored
-from flexlash.reading.read import read_submission
 from flexlash.schema.cell_addresses import column_letters
 
 CORPUS = Path(os.environ.get("FLEXLASH_CORPUS", "no such folder"))

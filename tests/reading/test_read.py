@@ -10,9 +10,10 @@ import openpyxl
 import polars as pl
 import pytest
 import xlsxwriter
+from read_files import read_submission
 
 from flexlash.reading.gate import Refusal
-from flexlash.reading.read import ErrorCell, Unstored, read_submission
+from flexlash.reading.raw import ErrorCell, Unstored
 from flexlash.schema.cell_addresses import column_letters
 
 ERRORS = ["#REF!", "#DIV/0!", "#VALUE!", "#NAME?", "#N/A", "#NUM!", "#NULL!", "#SPILL!", "#CALC!"]
@@ -277,8 +278,8 @@ def test_a_delimited_text_is_the_variants_and_knows_how_it_was_written(tmp_path)
     path.write_bytes("variant;a\nMüller;1,6\n".encode("cp1252"))
     submission = read_submission(path)
     assert (submission.kind, list(submission.sheets)) == ("csv", ["Variants"])
-    assert (submission.delimiter, submission.encoding, submission.decimal_comma) == (";", "Windows-1252", True)
-    assert submission.dialect.file == "submission.csv"
+    assert (submission.delimiter, submission.encoding) == (";", "Windows-1252")
+    assert (submission.dialect.file, submission.dialect.comma_number) == ("submission.csv", (2, 2))
 
 
 def test_damaged_parquet(tmp_path):

@@ -18,8 +18,8 @@ from written import write_outcome
 from flexlash.feedback.template.template_workbook import TEMPLATE_VERSION
 from flexlash.pipeline import run
 from flexlash.reading.carried import carried_submission
-from flexlash.reading.raw import ErrorCell, RawSheet, Unstored
-from flexlash.reading.read import ReadReport, Source, Submission, report_of
+from flexlash.reading.raw import ErrorCell, RawSheet, Submission, Unstored
+from flexlash.reading.read import ReadReport, Source, report_of
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.xlsx import read_workbook
 from flexlash.report.carried_sheet import carried_text

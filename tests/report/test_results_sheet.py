@@ -10,8 +10,11 @@ from filled import SOUND, filled
 
 from flexlash.pipeline import run
 from flexlash.report.layout.links import finding_list, finding_rows
-from flexlash.report.results_sheet import AS_SUBMITTED, FIRST_ROW, column_place
+from flexlash.report.results_sheet import AS_SUBMITTED, FIRST_ROW
 from flexlash.schema.result_columns import RESULTS
+
+COLUMNS = {column.key: number for number, column in enumerate(RESULTS, start=1)}
+"""The column of the sheet, from 1, by its key."""
 
 
 @pytest.fixture(scope="module")
@@ -71,8 +74,7 @@ def test_each_variant_leads_to_its_row_of_the_submission_and_back(report):
 def test_findings_of_a_row_lead_to_the_first_of_them(report):
     """The cell of a row's findings leads to the first row of Findings that is about it; no findings, no link."""
     outcome, book = report
-    place = column_place("findings") + 1
-    cells = [book["Results"].cell(row, place) for row in range(FIRST_ROW + 1, FIRST_ROW + 4)]
+    cells = [book["Results"].cell(row, COLUMNS["findings"]) for row in range(FIRST_ROW + 1, FIRST_ROW + 4)]
     rows = finding_rows(outcome)
     assert cells[0].value is None
     assert cells[0].hyperlink is None
@@ -110,14 +112,14 @@ def test_details_can_be_folded_away(report):
         assert not dimension.hidden
         assert not dimension.collapsed
         levels |= dict.fromkeys(range(dimension.min, dimension.max + 1), dimension.outlineLevel)
-    assert {key: levels[column_place(key) + 1] == 1 for key in FOLDED} == FOLDED
+    assert {key: levels[COLUMNS[key]] == 1 for key in FOLDED} == FOLDED
 
 
 def test_errors_are_rounded_and_values_are_not(report):
     """Standard errors hold four digits, estimated shares four decimals, every other number all of its digits."""
     outcome, book = report
     row = outcome.results.row(0, named=True)
-    cells = {key: book["Results"].cell(FIRST_ROW + 1, column_place(key) + 1).value for key in row}
+    cells = {key: book["Results"].cell(FIRST_ROW + 1, COLUMNS[key]).value for key in row}
     assert cells["mean_standard_error_arcmin"] == float(f"{row['mean_standard_error_arcmin']:.4g}")
     assert cells["main_contributor_share"] == round(row["main_contributor_share"], 4)
     assert cells["mean_standard_error_arcmin"] != row["mean_standard_error_arcmin"]
@@ -162,7 +164,7 @@ def test_long_notes_are_wrapped(table, sound, tmp_path):
     rows = [{**sound, "notes": "word " * 60}, {**sound, "variant": "b", "notes": "short"}]
     run(table(rows), tmp_path / "report.xlsx", samples=256)
     sheet = openpyxl.load_workbook(tmp_path / "report.xlsx")["Results"]
-    cell = sheet.cell(FIRST_ROW + 1, column_place("notes") + 1)
+    cell = sheet.cell(FIRST_ROW + 1, COLUMNS["notes"])
     assert cell.alignment.wrap_text
     assert sheet.column_dimensions[cell.column_letter].width == pytest.approx(90, abs=1)
     assert sheet.row_dimensions[FIRST_ROW + 1].height >= 4 * 15

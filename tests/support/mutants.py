@@ -25,7 +25,8 @@ from edited_workbooks import small_template
 from python_calamine import CalamineWorkbook, SheetTypeEnum
 from small_workbook import archive_of
 
-from flexlash.reading.read import Source, Submission, submission_of
+from flexlash.reading.raw import Submission
+from flexlash.reading.read import Source, submission_of
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.reading.wire import to_wire

@@ -19,7 +19,7 @@ from finding_examples import examples
 
 from flexlash.feedback.template.template_workbook import Filling, study, template_bytes
 from flexlash.pipeline import run
-from flexlash.reading.read import ErrorCell, Unstored
+from flexlash.reading.raw import ErrorCell, Unstored
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema import tables
 from flexlash.schema.columns import SETTINGS, VARIANTS

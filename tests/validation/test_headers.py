@@ -2,7 +2,7 @@
 
 import pytest
 
-from flexlash.reading.read import RawSheet
+from flexlash.reading.raw import RawSheet
 from flexlash.schema.columns import ENTRY_SHEETS
 from flexlash.validation.headers import closest, find_headings, plain
 from flexlash.validation.ledger import Ledger

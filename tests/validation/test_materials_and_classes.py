@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from flexlash.reading.read import ErrorCell, RawSheet, Unstored
+from flexlash.reading.raw import ErrorCell, RawSheet, Unstored
 from flexlash.schema.variant import Material, Settings, ToleranceRow
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.materials_and_classes import (

@@ -3,7 +3,7 @@
 import pytest
 
 from flexlash.pipeline import check
-from flexlash.reading.read import RawSheet
+from flexlash.reading.raw import RawSheet
 from flexlash.schema.header_names import name_and_unit
 from flexlash.validation.headers import find_headings
 from flexlash.validation.ledger import Ledger

@@ -2,7 +2,7 @@
 
 import pytest
 
-from flexlash.reading.read import RawSheet
+from flexlash.reading.raw import RawSheet
 from flexlash.schema.columns import columns_of
 from flexlash.schema.part_rules import PART_RULES
 from flexlash.validation.ledger import Ledger

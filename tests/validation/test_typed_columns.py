@@ -6,7 +6,7 @@ import polars as pl
 import pytest
 
 from flexlash.reading.delimited import read_table
-from flexlash.reading.read import ErrorCell, RawSheet, Unstored
+from flexlash.reading.raw import ErrorCell, RawSheet, Unstored
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.materials_and_classes import tolerance_classes_of
 from flexlash.validation.row_checks import check_cells

@@ -12,7 +12,7 @@ import regenerate
 from flexlash.analysis.assessment import assess
 from flexlash.pipeline import check
 from flexlash.reading.gate import Refusal
-from flexlash.reading.read import ErrorCell, RawSheet, Submission, Unstored
+from flexlash.reading.raw import ErrorCell, RawSheet, Submission, Unstored
 from flexlash.schema.columns import VARIANTS, columns_of
 from flexlash.schema.variant import Settings
 from flexlash.validation.consolidation import consolidated

@@ -133,8 +133,3 @@ class Submission:
     def encoding(self) -> str:
         """The encoding of a delimited text; an empty text for others."""
         return self.dialect.encoding if self.dialect else ""
-
-    @property
-    def decimal_comma(self) -> bool:
-        """Whether numbers of a delimited text were read with a decimal comma."""
-        return bool(self.dialect and self.dialect.comma_number)

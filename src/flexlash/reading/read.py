@@ -8,23 +8,21 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from flexlash.reading.carried import read_report
 from flexlash.reading.delimited import read_table
 from flexlash.reading.gate import kind_of, read_bytes
 from flexlash.reading.libraries import ChangedLibrary
-from flexlash.reading.limited_process import ask
 from flexlash.reading.parquet import read_parquet
 from flexlash.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
-from flexlash.reading.xlsx import PROPERTY, Cells, read_workbook
+from flexlash.reading.xlsx import Cells, read_workbook
 from flexlash.schema.findings import readable
 
 __all__ = [
-    "PROPERTY",
     "ErrorCell",
     "RawSheet",
     "RawValue",
@@ -34,8 +32,6 @@ __all__ = [
     "Unstored",
     "limits_of_reports",
     "of_table",
-    "read_submission",
-    "read_table",
     "report_of",
     "submission_of",
     "table_of",
@@ -135,13 +131,3 @@ def _refusing() -> Iterator[None]:
         raise
     except BaseException as fault:
         raise Refusal("E118") from fault
-
-
-def read_submission(path: Path, limits: ReadingLimits | None = None) -> Submission:
-    """Return the cells of a workbook, text table or Parquet file, with its bytes.
-
-    Raises OSError when the file cannot be opened and Refusal when it is no readable submission.
-    """
-    limits = limits or ReadingLimits()
-    source = Source.at(path, limits)
-    return replace(ask(submission_of, limits, source, limits), data=source.data)

@@ -13,7 +13,7 @@ from flexlash.report.layout.result_formats import ESTIMATED_SHARES, number_forma
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
 from flexlash.schema.columns import Column
-from flexlash.schema.result_columns import RESULTS, result_columns
+from flexlash.schema.result_columns import result_columns
 
 if TYPE_CHECKING:
     import polars as pl
@@ -23,7 +23,6 @@ __all__ = [
     "ERROR_DIGITS",
     "FIRST_ROW",
     "SHARE_DECIMALS",
-    "column_place",
     "stored_values",
     "write_results",
 ]
@@ -37,7 +36,6 @@ ERROR_DIGITS = 4
 SHARE_DECIMALS = 4
 """Decimals of an estimated share that the workbook holds, as many as it shows; it is good to the third."""
 
-_PLACES = {column.key: place for place, column in enumerate(RESULTS)}
 _DETAILS = ("_low", "_high", "_shear_radius_mm", "_range", "_points")
 """Ends of keys whose columns can be folded away, beside standard errors, radians, seconds and plain draws."""
 
@@ -64,11 +62,6 @@ _NEW_PAGE = (
 _KEY_HEIGHT = 36
 _REMARKS = {"main_contributor": "Named by its key in the template's sheet Tolerances; About lists the keys in words."}
 """What the comments of some columns say besides."""
-
-
-def column_place(key: str) -> int:
-    """Return the place of a Results column, from 0."""
-    return _PLACES[key]
 
 
 def _is_detail(column: Column) -> bool:

@@ -8,7 +8,7 @@ from typing import Any, TypeGuard
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.feedback.template.template_workbook import TITLES
-from flexlash.reading.read import RawSheet, Submission, Unstored
+from flexlash.reading.raw import RawSheet, Submission, Unstored
 from flexlash.report.layout.links import finding_list, result_rows, write_link
 from flexlash.report.layout.paper import print_readably
 from flexlash.report.layout.raw_cells import raw_text, write_raw
