@@ -25,11 +25,11 @@ from edited_workbooks import small_template
 from python_calamine import CalamineWorkbook, SheetTypeEnum
 from small_workbook import archive_of
 
+from flexlash.reading.cells_json import cells_to_json
 from flexlash.reading.raw import Submission
 from flexlash.reading.read import Source, submission_of
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
-from flexlash.reading.wire import to_wire
 from flexlash.reading.xlsx import Cells
 
 __all__ = ["PARTS_FROM", "main", "mutant", "originals", "outcome_of"]
@@ -310,7 +310,9 @@ def outcome_of(data: bytes) -> tuple[str, dict[str, object]]:
         if refusal.code == "E118":
             traceback.print_exc()
         return refusal.code, {}
-    return ("csv", {}) if submission.kind == "csv" else ("", json.loads(json.dumps(to_wire(_cells_of(submission)))))
+    return (
+        ("csv", {}) if submission.kind == "csv" else ("", json.loads(json.dumps(cells_to_json(_cells_of(submission)))))
+    )
 
 
 def _cells_of(submission: Submission) -> Cells:

@@ -8,10 +8,10 @@ import re
 from collections.abc import Iterable
 from typing import Any, get_args
 
+from flexlash.reading.cells_json import cells_from_json
 from flexlash.reading.raw import CsvDialect, ErrorCell, Percentage, RawSheet, RawValue, Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
-from flexlash.reading.wire import from_wire
 from flexlash.reading.worksheet import MAXIMUM_COLUMN, MAXIMUM_ROW
 from flexlash.reading.xlsx import Cells, read_workbook
 from flexlash.schema.columns import SETTINGS
@@ -70,7 +70,7 @@ def carried_submission(carried: Any, limits: ReadingLimits) -> Submission:
             raise Refusal(
                 "E122", found=f"flexlash {shown(carried['version'])} wrote them, which is later than this one"
             )
-        cells, head = from_wire(carried["cells"]), carried["submission"]
+        cells, head = cells_from_json(carried["cells"]), carried["submission"]
         _check_head(head, cells)
         _check_sheets(cells.sheets, limits)
         return Submission(

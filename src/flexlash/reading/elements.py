@@ -1,4 +1,4 @@
-"""Walking through the XML of a part, element by element, within limits."""
+"""The XML of a part → its elements one by one, or those of one name, within limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the parts of a workbook belong together: sheets, the part that holds each, the date of change."""
+"""The parts of a workbook → how they belong together: its sheets, the part that holds each, its date of change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a Parquet file says of itself: how much it holds, judged before it is read, and whether its pages are whole."""
+"""A Parquet file's bytes → whether they may be read: what they say they hold, and whether all pages are whole."""
 
 from __future__ import annotations
 

@@ -12,8 +12,8 @@ from dataclasses import replace
 from flexlash import __version__
 from flexlash.analysis.outcome import Outcome
 from flexlash.reading.carried import FORM, SHEET, SWITCHES
+from flexlash.reading.cells_json import cells_to_json
 from flexlash.reading.raw import RawSheet, RawValue, Submission
-from flexlash.reading.wire import to_wire
 from flexlash.reading.xlsx import Cells
 from flexlash.report.layout.styles import Book
 from flexlash.validation.entry_sheets import sheet_names
@@ -48,7 +48,7 @@ def carried_text(outcome: Outcome) -> str:
         "submission": {"name": submission.name, "sha256": submission.sha256, "kind": submission.kind},
         "options": {name: getattr(settings, name) for name in ("seed", "method", "samples")}
         | {name: bool(getattr(outcome.options, name)) for name in SWITCHES},
-        "cells": to_wire(
+        "cells": cells_to_json(
             Cells(
                 sheets=_sheets(submission, {finding.sheet for finding in outcome.findings}),
                 modified=submission.modified,

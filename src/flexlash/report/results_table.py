@@ -1,4 +1,4 @@
-"""Results as a table alone: its columns, then the engineer's own under their own headers; and the CSV text of it."""
+"""An outcome → Results as a table: its columns, then the engineer's own under their own headers; and its CSV text."""
 
 from __future__ import annotations
 

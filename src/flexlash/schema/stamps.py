@@ -44,10 +44,10 @@ def stamped(data: bytes, role: str) -> bytes:
     empty = placeholder(role).encode()
     if data.startswith(_ARCHIVE) and data.endswith(b"\0\0"):
         data = data[:-2] + len(empty).to_bytes(2, "little") + empty
-    place = data.rfind(empty)
-    if place < 0:
+    start = data.rfind(empty)
+    if start < 0:
         return data
-    end = place + len(empty)
+    end = start + len(empty)
     return data[: end - _DIGITS] + hashlib.sha256(data).hexdigest().encode() + data[end:]
 
 
@@ -72,10 +72,10 @@ def _stamp_of(file: BinaryIO) -> str:
     stamps = list(_STAMP.finditer(file.read()))
     if not stamps:
         return ""
-    found = stamps[-1]
+    stamp = stamps[-1]
     file.seek(0)
     digest = hashlib.sha256()
-    left = start + found.start("sum")
+    left = start + stamp.start("sum")
     while left > 0 and (piece := file.read(min(left, _TAIL))):
         digest.update(piece)
         left -= len(piece)
@@ -83,4 +83,4 @@ def _stamp_of(file: BinaryIO) -> str:
     digest.update(b"0" * _DIGITS)
     while piece := file.read(_TAIL):
         digest.update(piece)
-    return found["role"].decode() if digest.hexdigest().encode() == found["sum"] else ""
+    return stamp["role"].decode() if digest.hexdigest().encode() == stamp["sum"] else ""

@@ -1,4 +1,4 @@
-"""What causes the spread of many variants: which tolerance hurts everywhere, which only here, in words."""
+"""An outcome → what causes the spread, in words: which tolerance matters in every variant, which in one alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The data behind Compare and Ranking: one row per drawn variant, with the parts that boxes are stacked from."""
+"""Drawn variants → the data sheet behind Compare and Ranking: one row each, with the parts that boxes consist of."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Axes that begin and end at round numbers near their data."""
+"""Data → an axis that begins and ends at round numbers near them."""
 
 from __future__ import annotations
 

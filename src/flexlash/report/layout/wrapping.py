@@ -1,4 +1,4 @@
-"""How many lines a text takes in cells of a given width, since no program sets the height of merged cells by itself."""
+"""A text and a cell's width → the lines it takes, since no program sets the height of merged cells by itself."""
 
 from __future__ import annotations
 

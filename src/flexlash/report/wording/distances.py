@@ -1,4 +1,4 @@
-"""How far a percentile is from its limit [arcmin], told alike in sentence and table."""
+"""A Results row → how far a percentile is from its limit [arcmin], in words and as a number format, digits alike."""
 
 from __future__ import annotations
 

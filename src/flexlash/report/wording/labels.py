@@ -1,4 +1,4 @@
-"""Short names of variants that stay distinct where the names do."""
+"""Names of variants → short labels, distinct where the names are."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the Summary's sentences are told of: an outcome, its rows worst first, and how its variants are named."""
+"""An outcome → what the Summary's sentences draw on: its rows worst first, those that fail, short names of variants."""
 
 from __future__ import annotations
 

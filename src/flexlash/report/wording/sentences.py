@@ -10,8 +10,8 @@ from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.recommendations import Recommendation
 from flexlash.analysis.run_summary import counted, dimension_words, listed, points_range, spread_notes
 from flexlash.report.wording.advice import stiffening, tightening
-from flexlash.report.wording.judged import failing, sureness
 from flexlash.report.wording.quoted import NAMED, Row, Told, rough, told_of
+from flexlash.report.wording.verdict_sentences import failing, sureness
 from flexlash.schema.findings import CATALOGUE, spelled_out
 from flexlash.schema.number_words import angle_words
 

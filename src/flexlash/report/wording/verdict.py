@@ -1,4 +1,4 @@
-"""The verdict on a variant, its rule, whether it is settled, and how many variants have which."""
+"""The share over the limit → the verdict (green, amber, red), whether it is settled, how many variants have each."""
 
 from __future__ import annotations
 
@@ -60,8 +60,8 @@ def verdict_counts(outcome: Outcome) -> Counter[str]:
 
 
 def _verdict(share: float | None, low: float | None, high: float | None) -> str:
-    found = _LIGHTS[limit_verdict(share)]
-    return f"{found}{UNSETTLED}" if low is not None and high is not None and _straddled(low, high) else found
+    verdict = _LIGHTS[limit_verdict(share)]
+    return f"{verdict}{UNSETTLED}" if low is not None and high is not None and _straddled(low, high) else verdict
 
 
 def _straddled(low: float, high: float) -> list[float]:

@@ -22,7 +22,7 @@ from flexlash.reading.raw import (
 )
 from flexlash.reading.xlsx import Cells
 
-__all__ = ["from_wire", "to_wire"]
+__all__ = ["cells_from_json", "cells_to_json"]
 
 _KINDS: dict[str, tuple[type, Callable[[Any], str], Callable[[str], RawValue]]] = {
     "moment": (datetime.datetime, datetime.datetime.isoformat, datetime.datetime.fromisoformat),
@@ -46,7 +46,7 @@ _OWN = frozenset({str, int, float, bool})
 """Kinds of value that JSON has itself."""
 
 
-def to_wire(cells: Cells) -> dict[str, Any]:
+def cells_to_json(cells: Cells) -> dict[str, Any]:
     """Return cells as what JSON can hold."""
     return {
         "sheets": [
@@ -80,8 +80,8 @@ def _written(value: RawValue) -> Any:
     return str(value)
 
 
-def from_wire(wire: dict[str, Any]) -> Cells:
-    """Return the cells that `to_wire` has written."""
+def cells_from_json(written: dict[str, Any]) -> Cells:
+    """Return the cells that `cells_to_json` has written."""
     return Cells(
         sheets=[
             RawSheet(
@@ -93,11 +93,11 @@ def from_wire(wire: dict[str, Any]) -> Cells:
                 numbers_are_texts=sheet["numbers_are_texts"],
                 dialect=_dialect(sheet["manner"]),
             )
-            for sheet in wire["sheets"]
+            for sheet in written["sheets"]
         ],
-        modified=datetime.datetime.fromisoformat(wire["modified"]) if wire["modified"] else None,
-        role=wire["role"],
-        template_version=wire["template_version"],
+        modified=datetime.datetime.fromisoformat(written["modified"]) if written["modified"] else None,
+        role=written["role"],
+        template_version=written["template_version"],
     )
 
 

@@ -1,4 +1,4 @@
-"""Which variants fail, by how much, and how sure that is, in words."""
+"""Results rows → sentences: which variants fail, by how much, and how sure that is."""
 
 from __future__ import annotations
 

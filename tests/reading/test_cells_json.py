@@ -9,6 +9,7 @@ from grids import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
+from flexlash.reading.cells_json import cells_from_json, cells_to_json
 from flexlash.reading.raw import (
     CommaNumber,
     CsvDialect,
@@ -18,7 +19,6 @@ from flexlash.reading.raw import (
     RawSheet,
     Unstored,
 )
-from flexlash.reading.wire import from_wire, to_wire
 from flexlash.reading.xlsx import Cells
 
 VALUES = [
@@ -53,7 +53,7 @@ VALUES = [
 def _through(value):
     """Return a value after its way as JSON."""
     cells = Cells(sheets=[RawSheet(name="S", rows={7: {3: value}})])
-    return from_wire(json.loads(json.dumps(to_wire(cells)))).sheets[0].rows[7][3]
+    return cells_from_json(json.loads(json.dumps(cells_to_json(cells)))).sheets[0].rows[7][3]
 
 
 @for_each("value", VALUES)
@@ -106,4 +106,4 @@ def test_everything_about_a_file_comes_through():
         role="report",
         template_version="7",
     )
-    assert from_wire(json.loads(json.dumps(to_wire(cells)))) == cells
+    assert cells_from_json(json.loads(json.dumps(cells_to_json(cells)))) == cells
