@@ -1,4 +1,4 @@
-"""Which changes of Results the calculation itself makes: those within its errors, where only its points are others."""
+"""Changed Results → whether they lie within the error of the calculation, where only its points are others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A difference in words: what many variants share first, then each variant, the most important line last."""
+"""A difference → its lines of text: what many variants share first, then each variant, the most important line last."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One of two files that are compared: what was entered, in the template's units, what it uses, what came out."""
+"""A file → one side of a comparison: what was entered, in the template's units, what it uses, what came out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a workbook holds beside its cells' values: formulas, notes, charts and the like, which no table carries over."""
+"""A workbook's bytes → what it holds beside the values of cells: formulas, notes, charts, which no table carries."""
 
 from __future__ import annotations
 
