@@ -277,9 +277,9 @@ def accuracy(openturns, seeds):
         peers = {"numpy": lambda runs, case=case: numpy_runs(case, runs)}
         if openturns:
             peers["OpenTURNS"] = lambda runs, case=case: openturns_runs(openturns, case, runs)
-        theirs, told_of = plain(peers, finer)
+        theirs, summary_facts = plain(peers, finer)
         rows |= theirs
-        notes += [f"{case}, {told}" for told in told_of]
+        notes += [f"{case}, {told}" for told in summary_facts]
         faster = min(rows[label][-1] for label in peers)
         table += [
             f"{case:9}{label:27}{n:12,}{error:10.1e}{busy:10.2f}{seconds:11.4g}{faster / seconds:20,.3g}"

@@ -51,8 +51,7 @@ def write_elasticity(book: Book, outcome: Outcome) -> None:
     for row, note in enumerate(NOTES, start=1):
         sheet.merge_range(row, 0, row, len(_COLUMNS), note, book.format("wrap"))
         sheet.set_row(row, 32)
-    for column, heading in enumerate(("Variant", *(heading for _, heading, _ in _COLUMNS))):
-        sheet.write_string(_HEADER, column, heading, book.format("header"))
+    sheet.write_row(_HEADER, 0, ("Variant", *(heading for _, heading, _ in _COLUMNS)), book.format("header"))
     sheet.set_row(_HEADER, 48)
     row = _HEADER
     for record in outcome.results.iter_rows(named=True):
@@ -85,7 +84,7 @@ def write_stress(book: Book, data: ReportData) -> None:
         "greatest stress by formula."
     )
     sheet.write_string(1, 0, text, book.format("quiet"))
-    by_name = {one.row["variant"]: one for one in data.drawn}
+    by_name = {variant.row["variant"]: variant for variant in data.drawn}
     for number, (name, check) in enumerate(data.pictured.items()):
         row, column = (number // _PER_ROW) * _PICTURE_ROWS + 4, (number % _PER_ROW) * _PICTURE_COLUMNS
         greatest = _OVER * _greatest_shear(by_name[name])
@@ -99,7 +98,7 @@ def write_stress(book: Book, data: ReportData) -> None:
     sheet.print_area(0, 0, pages * _PICTURE_ROWS + 2, _PER_ROW * _PICTURE_COLUMNS - 1)
 
 
-def _greatest_shear(one: Drawn) -> float:
+def _greatest_shear(variant: Drawn) -> float:
     """Return the greatest shear stress by formula [Pa]."""
-    nominal = one.computed.nominal
+    nominal = variant.computed.nominal
     return max(stress for stress in (nominal.wall_shear, nominal.rim_shear, nominal.hub_shear) if stress is not None)

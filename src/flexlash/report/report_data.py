@@ -59,18 +59,21 @@ def report_data(outcome: Outcome) -> ReportData:
 def drawn_variants(outcome: Outcome) -> list[Drawn]:
     """Return the variants that the report shows, worst first, with their whole distributions."""
     rows = worst_first(outcome)[:DRAWN]
-    by_name = {one.variant.name: one for one in outcome.computed.values()}
+    by_name = {variant.variant.name: variant for variant in outcome.computed.values()}
     computed = [by_name[row["variant"]] for row in rows]
     curves = drawn_curves(computed, outcome.settings, outcome.options)
-    return [Drawn(row=row, computed=one, curve=curve) for row, one, curve in zip(rows, computed, curves, strict=True)]
+    return [
+        Drawn(row=row, computed=variant, curve=curve)
+        for row, variant, curve in zip(rows, computed, curves, strict=True)
+    ]
 
 
 def _pictured(outcome: Outcome) -> dict[str, ElasticityCheck]:
     """Solve the worst few of the checked variants once more, for their stress fields."""
-    if not any(one.elasticity for one in outcome.computed.values()):
+    if not any(variant.elasticity for variant in outcome.computed.values()):
         return {}
     from flexlash.analysis.verification import pictured
 
-    by_name = {one.variant.name: one for one in outcome.computed.values()}
+    by_name = {variant.variant.name: variant for variant in outcome.computed.values()}
     worst = [by_name[row["variant"]] for row in worst_first(outcome)]
-    return pictured([one for one in worst if one.elasticity is not None][:PICTURED])
+    return pictured([variant for variant in worst if variant.elasticity is not None][:PICTURED])

@@ -57,8 +57,7 @@ def write_sections(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
     sheet.set_column(1, len(headings), 13)
     few = len(drawn) <= _FEW
     header = _CHART_TOP + _CHART_ROWS[few] + 1
-    for column, heading in enumerate(("Variant", *headings)):
-        sheet.write_string(header, column, heading, book.format("header"))
+    sheet.write_row(header, 0, ("Variant", *headings), book.format("header"))
     sheet.set_row(header, 48)
     labels = distinct_labels([variant.row["variant"] for variant in drawn], _NAME)
     for row, (variant, label) in enumerate(zip(drawn, labels, strict=True), start=header + 1):

@@ -63,8 +63,7 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn, width: int) -> None:
     text = f"Worst variant, {name}: backlash [arcmin] with one dimension at its limits, by its share of variance."
     sheet.write_string(1, 0, text, book.format("quiet"))
     headings = ("Dimension", "At lower limit", "At upper limit", "Share of variance", "Share with interactions")
-    for column, heading in enumerate(headings):
-        sheet.write_string(3, column, heading, book.format("header"))
+    sheet.write_row(3, 0, headings, book.format("header"))
     sheet.set_row(3, 32)
     share = book.format("text", percent_of(SHARE_OF_VARIANCE_ERROR))
     swings = sorted(spread.swings.items(), key=lambda item: -spread.shares[item[0]])

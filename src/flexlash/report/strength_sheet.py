@@ -63,8 +63,7 @@ def write_strength(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
     sheet.set_column(0, 0, _NAME_WIDTH)
     sheet.set_column(1, len(_COLUMNS), _WIDTH)
     print_readably(sheet, [_NAME_WIDTH, *[_WIDTH] * len(_COLUMNS)], least=SMALL)
-    for column, heading in enumerate(("Variant", *(heading for _, heading, _ in _COLUMNS))):
-        sheet.write_string(_HEADER, column, heading, book.format("header"))
+    sheet.write_row(_HEADER, 0, ("Variant", *(heading for _, heading, _ in _COLUMNS)), book.format("header"))
     sheet.set_row(_HEADER, 48)
     labels = distinct_labels([variant.row["variant"] for variant in drawn], _NAME)
     for row, (variant, label) in enumerate(zip(drawn, labels, strict=True), start=_HEADER + 1):

@@ -86,8 +86,7 @@ def _write_heat(book: Book, sheet: Any, causes: Sequence[Cause], drawn: Sequence
         sheet.write_string(top, column, label, book.format("turned"))
     every = f"of all {len(causes):,}"
     headings = (f"Mean {every}", f"Greatest {every}", "Greatest in", "Main contributor in")
-    for column, heading in enumerate(headings, start=right):
-        sheet.write_string(top, column, heading, book.format("header"))
+    sheet.write_row(top, right, headings, book.format("header"))
     sheet.set_row(top, max(48, 10 + 5 * max(map(len, labels))))
     dimensions = ranked_dimensions(causes)
     for row, name in enumerate(dimensions, start=top + 1):

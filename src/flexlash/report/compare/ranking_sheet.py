@@ -99,8 +99,7 @@ def _write_headings(book: Book, sheet: Any) -> None:
     changes = [f"{name} [{unit}]" for name in DIFFERENCES for unit in ("arcmin", "%")]
     shape = ["Main contributor", "Its share of variance", "Disk share of wind-up", "l/r"]
     headings = [*(name for name, _ in _WORDS), *units, *shape, *changes]
-    for column, heading in enumerate(headings):
-        sheet.write_string(HEADER, column, heading, style)
+    sheet.write_row(HEADER, 0, headings, style)
     sheet.set_row(HEADER, 48)
     for column, (_, width) in enumerate(_WORDS):
         sheet.set_column(column, column, width)

@@ -16,8 +16,8 @@ from flexlash.report.layout.wrapping import LINE_HEIGHT, fitted, lines_of, merge
 from flexlash.report.report_data import Drawn, ReportData
 from flexlash.report.summary.summary_chart import chart_words, variants_chart
 from flexlash.report.wording.distances import distance, distance_format
-from flexlash.report.wording.quoted import labels_of, rough
 from flexlash.report.wording.sentences import FINDINGS, sentences
+from flexlash.report.wording.summary_facts import labels_of, rough
 from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, RULES, UNSETTLED, light, verdict_counts
 from flexlash.schema.findings import shown
 from flexlash.schema.number_words import glance, share_words

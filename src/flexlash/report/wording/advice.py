@@ -8,7 +8,7 @@ from typing import Any
 
 from flexlash.analysis.recommendations import Halving, Recommendation
 from flexlash.analysis.run_summary import counted, dimension_words
-from flexlash.report.wording.quoted import Row, Told
+from flexlash.report.wording.summary_facts import Row, SummaryFacts
 from flexlash.report.wording.verdict import BOUNDS, straddled
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import spelled_out
@@ -29,53 +29,53 @@ _LEAST_SLOPE = 0.1
 """Per cent of backlash for one per cent of a dimension below which that dimension is no lever."""
 
 
-def tightening(told: Told) -> Iterator[str]:
+def tightening(facts: SummaryFacts) -> Iterator[str]:
     """Yield which tolerance to halve and what that brings, or why no tolerance helps, or that none needs to."""
-    if not told.failing:
-        if told.judged:
-            yield from _nothing(told)
+    if not facts.failing:
+        if facts.judged:
+            yield from _nothing(facts)
         return
-    hopeless = [row for row in told.failing if row["p50_arcmin"] > row["backlash_limit_arcmin"]]
+    hopeless = [row for row in facts.failing if row["p50_arcmin"] > row["backlash_limit_arcmin"]]
     if hopeless:
-        names = told.names([row["variant"] for row in hopeless])
+        names = facts.names([row["variant"] for row in hopeless])
         whose = "its backlash is" if len(hopeless) == 1 else "their backlash is"
         yield f"Tighter tolerances cannot help {names}: {whose} over the limit for half of the units or more."
-    for recommendation in told.recommendations:
+    for recommendation in facts.recommendations:
         if recommendation.halvings:
-            yield _halvings(told, recommendation)
+            yield _halvings(facts, recommendation)
 
 
-def stiffening(told: Told) -> Iterator[str]:
+def stiffening(facts: SummaryFacts) -> Iterator[str]:
     """Yield how the worst red variants become stiffer, and by which wall they would keep their limit."""
-    recommendations = told.recommendations
+    recommendations = facts.recommendations
     for recommendation in recommendations:
         if recommendation.thickening is not None or not recommendation.halvings:
-            yield from _levers(told, recommendation)
+            yield from _levers(facts, recommendation)
             yield from _thickening(recommendation)
     if any(recommendation.thickening and recommendation.thickening.wanted for recommendation in recommendations):
         yield "How the wave generator bends a thicker wall is not judged here."
 
 
-def _nothing(told: Told) -> Iterator[str]:
+def _nothing(facts: SummaryFacts) -> Iterator[str]:
     """Yield that nothing is to be changed, as far as that is settled."""
-    unsettled = sum(bool(straddled(row)) for row in told.judged)
+    unsettled = sum(bool(straddled(row)) for row in facts.judged)
     if unsettled:
         yield f"Nothing so far: no variant is found to fail, but {counted(unsettled, 'verdict')} may change."
     else:
         yield "Nothing: no variant with a limit needs a tighter tolerance or a stiffer part."
 
 
-def _row(told: Told, recommendation: Recommendation) -> Row:
+def _row(facts: SummaryFacts, recommendation: Recommendation) -> Row:
     """Return the Results row that a recommendation is for."""
-    return next(row for row in told.failing if row["variant"] == recommendation.variant)
+    return next(row for row in facts.failing if row["variant"] == recommendation.variant)
 
 
-def _halvings(told: Told, recommendation: Recommendation) -> str:
+def _halvings(facts: SummaryFacts, recommendation: Recommendation) -> str:
     """Return what half the tolerance of one dimension, or of all, would leave over the limit."""
-    name, row = told.named(recommendation.variant), _row(told, recommendation)
+    name, row = facts.named(recommendation.variant), _row(facts, recommendation)
     now, every = row["probability_over_limit"], recommendation.halvings[-1]
     least = _WORTH * (now - BOUNDS["green"])
-    worth = [one for one in recommendation.halvings if now - one.over["probability_over_limit"] >= least]
+    worth = [halving for halving in recommendation.halvings if now - halving.over["probability_over_limit"] >= least]
     if not worth:
         what = "all of them" if len(every.limits) > 1 else "that of the only one that scatters"
         return (
@@ -110,16 +110,16 @@ def _halved(halving: Halving) -> str:
     return f"{dimension_words(name)} (to {limits.middle / size:.6g} ± {half}{unit})"
 
 
-def _levers(told: Told, recommendation: Recommendation) -> Iterator[str]:
+def _levers(facts: SummaryFacts, recommendation: Recommendation) -> Iterator[str]:
     """Yield what makes a variant stiffer, most first."""
-    name, row = told.named(recommendation.variant), _row(told, recommendation)
+    name, row = facts.named(recommendation.variant), _row(facts, recommendation)
     median = angle_words(row["p50_arcmin"], row["p50_standard_error_arcmin"])
     levers = [lever for lever in recommendation.levers if abs(lever.slope) >= _LEAST_SLOPE][:_LEVERS]
     if levers:
         parts = [
             f"1 % {'less' if lever.slope > 0 else 'more'} {dimension_words(lever.dimension)} "
-            f"{'lowers the backlash by' if place == 0 else 'by'} {spelled_out(abs(lever.slope), 2)} %"
-            for place, lever in enumerate(levers)
+            f"{'lowers the backlash by' if index == 0 else 'by'} {spelled_out(abs(lever.slope), 2)} %"
+            for index, lever in enumerate(levers)
         ]
         limit = f"{row['backlash_limit_arcmin']:g}′"
         yield f"To stiffen {name} (median {median}, limit {limit}): {', '.join(parts)}."
@@ -127,14 +127,15 @@ def _levers(told: Told, recommendation: Recommendation) -> Iterator[str]:
 
 def _thickening(recommendation: Recommendation) -> Iterator[str]:
     """Yield which wall would bring P97.5 to the limit."""
-    found = recommendation.thickening
-    if found is None:
+    thickening = recommendation.thickening
+    if thickening is None:
         return
-    present = f"{1000 * found.present:.6g} mm"
-    if found.wanted is None:
-        yield f"A thicker wall alone is not enough for it, even {1000 * found.thickest:.4g} mm instead of {present}."
+    present = f"{1000 * thickening.present:.6g} mm"
+    if thickening.wanted is None:
+        thickest = f"{1000 * thickening.thickest:.4g} mm"
+        yield f"A thicker wall alone is not enough for it, even {thickest} instead of {present}."
     else:
-        wanted = f"{_rounded_up(1000 * found.wanted):.6g} mm"
+        wanted = f"{_rounded_up(1000 * thickening.wanted):.6g} mm"
         yield f"A wall of about {wanted} instead of {present} would keep 97.5 % of its units within the limit."
 
 

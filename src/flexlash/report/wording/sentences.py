@@ -10,7 +10,7 @@ from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.recommendations import Recommendation
 from flexlash.analysis.run_summary import counted, dimension_words, listed, points_range, spread_notes
 from flexlash.report.wording.advice import stiffening, tightening
-from flexlash.report.wording.quoted import NAMED, Row, Told, rough, told_of
+from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, rough, summary_facts
 from flexlash.report.wording.verdict_sentences import failing, sureness
 from flexlash.schema.findings import CATALOGUE, spelled_out
 from flexlash.schema.number_words import angle_words
@@ -37,16 +37,16 @@ def sentences(outcome: Outcome, recommendations: Sequence[Recommendation]) -> It
 
     `recommendations` are what would help the worst failing variants.
     """
-    told = told_of(outcome, recommendations)
+    facts = summary_facts(outcome, recommendations)
     topics = {
-        "Computed": _computed(told),
-        "Which fail": failing(told),
-        "How sure": sureness(told),
-        "Why": _causes(told),
-        "What to tighten": tightening(told),
-        "What to stiffen": stiffening(told),
-        "Cylinder-only formula": _classical(told),
-        "Strength": _strength(told),
+        "Computed": _computed(facts),
+        "Which fail": failing(facts),
+        "How sure": sureness(facts),
+        "Why": _causes(facts),
+        "What to tighten": tightening(facts),
+        "What to stiffen": stiffening(facts),
+        "Cylinder-only formula": _classical(facts),
+        "Strength": _strength(facts),
         "Of the calculation": _calculation(outcome),
         FINDINGS: _findings(outcome),
     }
@@ -56,27 +56,27 @@ def sentences(outcome: Outcome, recommendations: Sequence[Recommendation]) -> It
             yield topic, text
 
 
-def _computed(told: Told) -> Iterator[str]:
+def _computed(facts: SummaryFacts) -> Iterator[str]:
     """Yield how many variants were computed, and the first of those that were not, with its reason."""
-    outcome = told.outcome
+    outcome = facts.outcome
     counts = outcome.counts
     rows, computed = counts["rows"], counts["computed"]
     yield f"{computed} of {counted(rows, 'variant')} {'was' if computed == 1 else 'were'} computed."
     lost = outcome.results.filter(outcome.results["status"] == "error")["variant"].to_list()
     if lost:
-        yield f"Not computed: {listed([told.named(name) if name else '(no name)' for name in lost], NAMED)}."
+        yield f"Not computed: {listed([facts.named(name) if name else '(no name)' for name in lost], NAMED)}."
         first = next((finding for finding in outcome.findings if finding.level == "error"), None)
         if first:
             yield f"The first fault: {first.message}"
 
 
-def _causes(told: Told) -> Iterator[str]:
+def _causes(facts: SummaryFacts) -> Iterator[str]:
     """Yield what the spread of the worst variant comes from, and what dominates all of them."""
-    if not told.rows:
+    if not facts.rows:
         return
-    worst = told.rows[0]
-    name = told.named(worst["variant"])
-    spread = told.computed[worst["variant"]].spread
+    worst = facts.rows[0]
+    name = facts.named(worst["variant"])
+    spread = facts.computed[worst["variant"]].spread
     shares = spread.shares if spread else {}
     if not shares:
         yield f"Nothing scatters in {name}: no tolerance applies to its dimensions, so all units are alike."
@@ -84,7 +84,7 @@ def _causes(told: Told) -> Iterator[str]:
     named = ranked[:1] + [cause for cause in ranked[1:_CAUSES] if shares[cause] >= _LEAST_CAUSE]
     if named:
         yield f"The spread of {name} comes from {_parts(worst, {cause: shares[cause] for cause in named})}."
-    main = Counter(cause for cause in told.outcome.results["main_contributor"].to_list() if cause is not None)
+    main = Counter(cause for cause in facts.outcome.results["main_contributor"].to_list() if cause is not None)
     if main.total() > 1:
         order = sorted(main, key=lambda cause: (-main[cause], cause))
         parts = [f"{dimension_words(cause)} in {main[cause]}" for cause in order]
@@ -105,19 +105,21 @@ def _parts(row: Row, shares: dict[str, float]) -> str:
     return f"{words} ({note})"
 
 
-def _classical(told: Told) -> Iterator[str]:
+def _classical(facts: SummaryFacts) -> Iterator[str]:
     """Yield what the classical formula would have said of the worst cup or hat, and its range over all of them."""
-    worst = next((row for row in told.rows if _has_disk(told.computed[row["variant"]])), None)
+    worst = next((row for row in facts.rows if _has_disk(facts.computed[row["variant"]])), None)
     if worst is None:
         return
     classical, own = worst["cylinder_only_backlash_arcmin"], worst["backlash_arcmin"]
     said, meant = angle_words(classical), angle_words(own)
     yield (
-        f"The classical formula, without the disk, would have said {said} for {told.named(worst['variant'])} "
+        f"The classical formula, without the disk, would have said {said} for {facts.named(worst['variant'])} "
         f"instead of {meant}: {_off(classical / own)}."
     )
     ratios = [
-        one.nominal.cylinder_only_backlash / one.nominal.backlash for one in told.computed.values() if _has_disk(one)
+        computed.nominal.cylinder_only_backlash / computed.nominal.backlash
+        for computed in facts.computed.values()
+        if _has_disk(computed)
     ]
     if len(ratios) > 1:
         least, most = _off(max(ratios)), _off(min(ratios))
@@ -126,8 +128,8 @@ def _classical(told: Told) -> Iterator[str]:
         yield f"Over all {len(ratios)} cups and hats: {least if least == most else f'{least} to {most}'}."
 
 
-def _has_disk(one: Computed) -> bool:
-    return one.variant.flexspline_type != "cylinder"
+def _has_disk(computed: Computed) -> bool:
+    return computed.variant.flexspline_type != "cylinder"
 
 
 def _off(ratio: float) -> str:
@@ -135,26 +137,26 @@ def _off(ratio: float) -> str:
     return f"{100 * abs(ratio - 1):.0f} % too {'low' if ratio <= 1 else 'high'}"
 
 
-def _strength(told: Told) -> Iterator[str]:
+def _strength(facts: SummaryFacts) -> Iterator[str]:
     """Yield how far the variant nearest to yield is from it, and what else the verdict does not show."""
     reserves: dict[tuple[float, str], list[str]] = {}
-    for row in told.rows:
+    for row in facts.rows:
         if row["elastic_limit_torque_Nm"] is not None:
-            one = told.computed[row["variant"]]
-            times = float(spelled_out(row["elastic_limit_torque_Nm"] / one.variant.dimensions["torque"], _DIGITS))
-            reserves.setdefault((times, one.nominal.governing_section), []).append(row["variant"])
+            computed = facts.computed[row["variant"]]
+            times = float(spelled_out(row["elastic_limit_torque_Nm"] / computed.variant.dimensions["torque"], _DIGITS))
+            reserves.setdefault((times, computed.nominal.governing_section), []).append(row["variant"])
     if reserves:
         times, section = least = min(reserves)
         alike = len(reserves[least])
         which = f", one of {alike} alike, is" if alike > 1 else " is"
         yield (
-            f"Nearest to yield{which} {told.named(reserves[least][0])}: its {section} yields at "
+            f"Nearest to yield{which} {facts.named(reserves[least][0])}: its {section} yields at "
             f"{spelled_out(times, _DIGITS)} times the torque, corners not counted."
         )
     for code in ("W402", "W411", "W412", "W415", "W417"):
-        names = dict.fromkeys(finding.variant for finding in told.outcome.findings if finding.code == code)
+        names = dict.fromkeys(finding.variant for finding in facts.outcome.findings if finding.code == code)
         if names:
-            yield f"{CATALOGUE[code].title.capitalize()}: {told.names(list(names))} ({code})."
+            yield f"{CATALOGUE[code].title.capitalize()}: {facts.names(list(names))} ({code})."
 
 
 def _calculation(outcome: Outcome) -> Iterator[str]:

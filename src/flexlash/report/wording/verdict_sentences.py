@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from flexlash.analysis.run_summary import are, counted, listed, points_range
 from flexlash.report.wording.distances import distance_words
-from flexlash.report.wording.quoted import NAMED, Row, Told
+from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts
 from flexlash.report.wording.verdict import firm, light, straddled
 from flexlash.schema.number_words import angle_words, share_words
 
@@ -15,52 +15,52 @@ __all__ = ["failing", "sureness"]
 _PERCENTILES = {"p97_5": "97.5 %", "p99_865": "99.865 %"}
 
 
-def failing(told: Told) -> Iterator[str]:
+def failing(facts: SummaryFacts) -> Iterator[str]:
     """Yield which variants fail, by how much; where none does, which is nearest to its limit."""
-    if not told.rows:
+    if not facts.rows:
         return
-    if not told.judged:
-        worst = told.rows[0]
-        greatest = ", the greatest backlash of all" if len(told.rows) > 1 else ""
+    if not facts.judged:
+        worst = facts.rows[0]
+        greatest = ", the greatest backlash of all" if len(facts.rows) > 1 else ""
         yield "No limit was given, so nothing is judged."
-        yield f"97.5 % of the units of {told.named(worst['variant'])} stay below {_tail(worst, 'p97_5')}{greatest}."
+        yield f"97.5 % of the units of {facts.named(worst['variant'])} stay below {_tail(worst, 'p97_5')}{greatest}."
         return
-    rows = {verdict: [row for row in told.judged if firm(light(row)) == verdict] for verdict in ("red", "amber")}
-    green = [row for row in told.judged if firm(light(row)) == "green"]
-    with_limit = counted(len(told.judged), "variant")
+    rows = {verdict: [row for row in facts.judged if firm(light(row)) == verdict] for verdict in ("red", "amber")}
+    green = [row for row in facts.judged if firm(light(row)) == "green"]
+    with_limit = counted(len(facts.judged), "variant")
     for verdict, with_verdict in rows.items():
         if with_verdict:
-            named = listed([_excess(told, row, first=index == 0) for index, row in enumerate(with_verdict)], NAMED)
+            named = listed([_excess(facts, row, first=index == 0) for index, row in enumerate(with_verdict)], NAMED)
             count = f"{len(with_verdict)} of {with_limit} with a limit {are(len(with_verdict))}"
             yield f"{count} {verdict}{_doubt(with_verdict)}: {named}."
-    if not told.failing:
+    if not facts.failing:
         which = "all" if len(green) > 1 else "the"
         yield f"None: {which} {with_limit} with a limit {are(len(green))} green{_doubt(green)}."
         nearest = max(green, key=lambda row: row["p99_865_arcmin"] / row["backlash_limit_arcmin"])
-        yield f"Nearest to its limit is {_excess(told, nearest, first=True)}."
+        yield f"Nearest to its limit is {_excess(facts, nearest, first=True)}."
     elif green:
         yield f"{len(green)} {are(len(green))} green{_doubt(green)}."
-    without = len(told.rows) - len(told.judged)
+    without = len(facts.rows) - len(facts.judged)
     if without:
         yield f"{without} {'has' if without == 1 else 'have'} no limit."
 
 
-def sureness(told: Told) -> Iterator[str]:
+def sureness(facts: SummaryFacts) -> Iterator[str]:
     """Yield the share over the limit of the worst variants with its interval, and the bounds of the worst one."""
-    if not told.rows:
+    if not facts.rows:
         return
-    named = (told.failing or told.judged[:1])[:NAMED]
-    shares = [(told.named(row["variant"]), share_words(row)) for row in named]
+    named = (facts.failing or facts.judged[:1])[:NAMED]
+    shares = [(facts.named(row["variant"]), share_words(row)) for row in named]
     if shares:
         yield f"Units over the limit: {listed([f'{name} {words}' for name, words in shares], NAMED)}."
         if any("(" in words for _, words in shares):
             yield "In brackets the 95 % interval of the calculation, for the tolerances as entered."
-    yield from _unsettled(told)
-    worst = told.rows[0]
+    yield from _unsettled(facts)
+    worst = facts.rows[0]
     low, high = worst["worst_case_low_arcmin"], worst["worst_case_high_arcmin"]
     if low < high:
         low, high = angle_words(low), angle_words(high)
-        name = told.named(worst["variant"])
+        name = facts.named(worst["variant"])
         yield f"With every dimension at a limit the backlash of {name} lies between {low} and {high}."
 
 
@@ -73,9 +73,9 @@ def _doubt(rows: Sequence[Row]) -> str:
     return every if count == len(rows) else f", {count} of them not settled"
 
 
-def _unsettled(told: Told) -> Iterator[str]:
+def _unsettled(facts: SummaryFacts) -> Iterator[str]:
     """Yield how many verdicts are not settled, why, and what would settle them."""
-    rows = [row for row in told.judged if straddled(row)]
+    rows = [row for row in facts.judged if straddled(row)]
     if not rows:
         return
     shares = sorted({share for row in rows for share in straddled(row)})
@@ -88,7 +88,7 @@ def _unsettled(told: Told) -> Iterator[str]:
     )
     yield (
         "Run with more samples."
-        if told.outcome.settings.method == "line"
+        if facts.outcome.settings.method == "line"
         else ("Run with more samples or with the method line.")
     )
 
@@ -98,10 +98,10 @@ def _tail(row: Row, key: str) -> str:
     return angle_words(row[f"{key}_arcmin"], row[f"{key}_standard_error_arcmin"])
 
 
-def _excess(told: Told, row: Row, *, first: bool) -> str:
+def _excess(facts: SummaryFacts, row: Row, *, first: bool) -> str:
     """Return a variant with the percentile that its verdict hangs on and its distance from the limit."""
     key = "p97_5" if firm(light(row)) == "red" else "p99_865"
-    name, limit = told.named(row["variant"]), f"{row['backlash_limit_arcmin']:g}′"
+    name, limit = facts.named(row["variant"]), f"{row['backlash_limit_arcmin']:g}′"
     tail, off = _tail(row, key), distance_words(row, key)
     if first:
         return f"{name} ({_PERCENTILES[key]} of its units stay below {tail}, {off} its limit of {limit})"

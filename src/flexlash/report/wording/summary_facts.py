@@ -17,7 +17,7 @@ from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.verdict import firm, light
 from flexlash.schema.findings import shown
 
-__all__ = ["NAMED", "Row", "Told", "labels_of", "rough", "told_of"]
+__all__ = ["NAMED", "Row", "SummaryFacts", "labels_of", "rough", "summary_facts"]
 
 NAMED = 3
 """Most variants that a sentence names."""
@@ -32,8 +32,8 @@ Row: TypeAlias = dict[str, Any]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Told:
-    """An outcome with what several sentences ask of it; `labels` are the short names by name."""
+class SummaryFacts:
+    """An outcome with what several sentences draw on; `rows` are worst first, `labels` are short names by name."""
 
     outcome: Outcome
     recommendations: Sequence[Recommendation]
@@ -43,7 +43,7 @@ class Told:
     @cached_property
     def computed(self) -> dict[str, Computed]:
         """The computed variants by name."""
-        return {one.variant.name: one for one in self.outcome.computed.values()}
+        return {computed.variant.name: computed for computed in self.outcome.computed.values()}
 
     @cached_property
     def failing(self) -> list[Row]:
@@ -64,11 +64,11 @@ class Told:
         return listed([self.named(name) for name in names], NAMED)
 
 
-def told_of(outcome: Outcome, recommendations: Sequence[Recommendation]) -> Told:
-    """Return what the sentences on an outcome ask of it."""
+def summary_facts(outcome: Outcome, recommendations: Sequence[Recommendation]) -> SummaryFacts:
+    """Return what the sentences on an outcome draw on."""
     rows = worst_first(outcome)
     labels = labels_of(outcome, [row["variant"] for row in rows[:DRAWN]])
-    return Told(outcome=outcome, recommendations=recommendations, rows=rows, labels=labels)
+    return SummaryFacts(outcome=outcome, recommendations=recommendations, rows=rows, labels=labels)
 
 
 def labels_of(outcome: Outcome, worst: Sequence[str]) -> dict[str, str]:
