@@ -11,7 +11,7 @@ from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_result import outcome_of
 from flexlash.mechanics.elasticity import require_libraries
 from flexlash.outputs.delivery import delivery
-from flexlash.outputs.naming import MENDED, REPORTS
+from flexlash.outputs.naming import FIXED, REPORTS
 from flexlash.outputs.plan import Output
 from flexlash.reading.read import ReadReport, Source
 
@@ -45,7 +45,7 @@ def mend(
     from flexlash.feedback.returned_files import mended
 
     chosen = Options.of("mend()", options)
-    outputs = delivery(submission, chosen, output, MENDED)
+    outputs = delivery(submission, chosen, output, FIXED)
     source = opened(submission, chosen)
     outputs.require()
     found = mended(source, chosen)

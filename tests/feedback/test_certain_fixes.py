@@ -7,7 +7,7 @@ import pytest
 from flexlash.feedback.fixing.certain_fixes import repair_of
 from flexlash.pipeline import check
 
-MENDED = [
+FIXED = [
     ({"wall_thickness_mm": "1,6"}, "E202", 1.6),
     ({"wall_thickness_mm": "0.0016 m"}, "E202", 1.6),
     ({"torque_Nm": "0,8 kNm"}, "E202", 800.0),
@@ -34,7 +34,7 @@ def _only(outcome, code):
     return found
 
 
-@pytest.mark.parametrize(("change", "code", "repair"), MENDED, ids=repr)
+@pytest.mark.parametrize(("change", "code", "repair"), FIXED, ids=repr)
 def test_a_repair_is_right(table, sound, change, code, repair):
     """The value of a repair, written into the cell, takes its finding away and the row is computed."""
     found = _only(check(table([sound | change])), code)

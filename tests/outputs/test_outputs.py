@@ -24,7 +24,7 @@ from flexlash.cli import cli
 from flexlash.cli.recreation import recreate
 from flexlash.outputs import plan as plan_module
 from flexlash.outputs import writing
-from flexlash.outputs.naming import marked_outputs, mended_outputs, recreated_outputs, report_outputs, template_output
+from flexlash.outputs.naming import fixed_outputs, marked_outputs, recreated_outputs, report_outputs, template_output
 from flexlash.outputs.plan import Plan
 from flexlash.pipeline import check, mend, run
 from flexlash.schema.stamps import placeholder, stamp_at, stamped
@@ -112,7 +112,7 @@ def test_where_outputs_go(what, tmp_path):
         path.parent.mkdir(exist_ok=True)
         path.write_bytes(FOREIGN)
     out = tmp_path / output if output else None
-    for plans, wanted in zip((report_outputs, mended_outputs, marked_outputs), expected, strict=True):
+    for plans, wanted in zip((report_outputs, fixed_outputs, marked_outputs), expected, strict=True):
         plan = Plan(inputs=paths, submissions=paths)
         assert _names(plans(plan, paths, out), tmp_path) == wanted
 
@@ -133,7 +133,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("what", WRONG)
-@pytest.mark.parametrize("plans", [report_outputs, mended_outputs])
+@pytest.mark.parametrize("plans", [report_outputs, fixed_outputs])
 def test_outputs_that_cannot_be_meant(plans, what, tmp_path):
     """An output that would overwrite a submission, or that no form or folder fits, is refused with a reason."""
     names, output, words = WRONG[what]
@@ -148,7 +148,7 @@ def test_a_report_may_be_parquet_and_a_mended_file_not(tmp_path):
     paths = [tmp_path / "a.xlsx"]
     assert report_outputs(Plan(inputs=paths), paths, tmp_path / "x.parquet")[0].path == tmp_path / "x.parquet"
     with pytest.raises(ValueError, match="parquet"):
-        mended_outputs(Plan(inputs=paths), paths, tmp_path / "x.parquet")
+        fixed_outputs(Plan(inputs=paths), paths, tmp_path / "x.parquet")
 
 
 @pytest.mark.parametrize("name", ["reports", "study-2.1", "v1.0b", "Wall 1.6", "a.b c", "of the month.february"])

@@ -11,7 +11,7 @@ import click
 
 from flexlash.cli.click_types import JSON, LIMITS, MARKED, QUIET, STRICT, SUBMISSIONS, planned, table_option
 from flexlash.cli.submissions import Submissions
-from flexlash.outputs.naming import marked_outputs, mended_outputs
+from flexlash.outputs.naming import fixed_outputs, marked_outputs
 from flexlash.outputs.plan import Plan
 
 __all__ = ["check"]
@@ -54,7 +54,7 @@ def check(
     options["marked_copies"] |= annotate and len(submissions) == 1
     beside = [path for path in (options["tolerances"], options["materials"]) if path]
     plan = Plan(inputs=[*submissions, *beside], submissions=submissions, marked_copies=options["marked_copies"])
-    mended = planned(mended_outputs, plan, submissions, output) if apply_fixes else []
+    mended = planned(fixed_outputs, plan, submissions, output) if apply_fixes else []
     copies = planned(marked_outputs, plan, submissions, output, itself=not apply_fixes) if annotate else []
     options["given"] = submissions
     # The process that reads loads its libraries while this one loads its own.

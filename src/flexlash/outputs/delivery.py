@@ -18,7 +18,7 @@ __all__ = ["Delivery", "delivery"]
 
 @dataclass(frozen=True, kw_only=True)
 class Delivery:
-    """Where the report, or the mended submission, goes and where the marked copy, None for each that is not wanted."""
+    """Where the report, or the fixed submission, goes and where the marked copy, None for each that is not wanted."""
 
     output: Output | None
     copy: Output | None

@@ -8,15 +8,15 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from flexlash.outputs.plan import Output, Plan
-from flexlash.reading.products import CHECKED_NAME, MENDED_NAME, REPORT_NAME, is_made_by_name, made_of
+from flexlash.reading.products import CHECKED_NAME, FIXED_NAME, REPORT_NAME, is_made_by_name, made_of
 from flexlash.schema.argument_checks import file_path
 
 __all__ = [
-    "MENDED",
+    "FIXED",
     "REPORTS",
     "WORKBOOK",
+    "fixed_outputs",
     "marked_outputs",
-    "mended_outputs",
     "named_output",
     "recreated_outputs",
     "report_outputs",
@@ -26,7 +26,7 @@ __all__ = [
 REPORTS = (".xlsx", ".csv", ".parquet", ".json")
 """Forms in which results are written, by the ending of their path."""
 
-MENDED = (".xlsx", ".xlsm", ".csv")
+FIXED = (".xlsx", ".xlsm", ".csv")
 WORKBOOK = (".xlsx",)
 _ENDING = re.compile(r"\.[a-z][a-z0-9]{0,6}", re.IGNORECASE)
 """What ends the name of a kind of file; a point with a number, as in `study-2.1`, may be part of a folder's name."""
@@ -51,13 +51,13 @@ def report_outputs(plan: Plan, submissions: Sequence[Path], output: Path | None)
     return _outputs(plan, submissions, output, lambda path: f"{path.stem}{REPORT_NAME}.xlsx", REPORTS)
 
 
-def mended_outputs(plan: Plan, submissions: Sequence[Path], output: Path | None) -> list[Output]:
-    """Return where each mended submission goes; raise ValueError for an output that cannot be meant."""
+def fixed_outputs(plan: Plan, submissions: Sequence[Path], output: Path | None) -> list[Output]:
+    """Return where each fixed submission goes; raise ValueError for an output that cannot be meant."""
 
     def name(path: Path) -> str:
-        return f"{made_of(path, MENDED_NAME)}{MENDED_NAME}{path.suffix}"
+        return f"{made_of(path, FIXED_NAME)}{FIXED_NAME}{path.suffix}"
 
-    return _outputs(plan, submissions, output, name, MENDED)
+    return _outputs(plan, submissions, output, name, FIXED)
 
 
 def marked_outputs(
@@ -145,7 +145,7 @@ def _require_name(output: Path) -> None:
     """Raise ValueError for an OUT that names neither a file nor a folder."""
     if output.name == "-":
         raise ValueError(f"OUT must be a file or a folder, not {output}: only --json writes to standard output.")
-    if output.name.lower() in {*REPORTS, *MENDED}:
+    if output.name.lower() in {*REPORTS, *FIXED}:
         raise ValueError(f"OUT is an ending without a name: write a name before {output.name}.")
     if output.name.endswith(".") and not _is_there(output):
         raise ValueError(f"{output.name} ends in a point without an ending: write {output.name}xlsx, or leave it out.")

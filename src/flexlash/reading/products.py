@@ -20,7 +20,7 @@ from flexlash.schema.result_columns import result_columns
 
 __all__ = [
     "CHECKED_NAME",
-    "MENDED_NAME",
+    "FIXED_NAME",
     "REPORT_NAME",
     "is_made_by_name",
     "is_replaced",
@@ -30,11 +30,11 @@ __all__ = [
     "results_header",
 ]
 
-REPORT_NAME, CHECKED_NAME, MENDED_NAME = "-report", "-checked", "-mended"
+REPORT_NAME, CHECKED_NAME, FIXED_NAME = "-report", "-checked", "-mended"
 """What flexlash puts behind the name of a submission."""
 
-_MADE = re.compile(rf"(?P<stem>.+)(?P<what>{REPORT_NAME}|{CHECKED_NAME}|{MENDED_NAME})(?: \(\d+\))?")
-_MENDED = "mended"
+_MADE = re.compile(rf"(?P<stem>.+)(?P<what>{REPORT_NAME}|{CHECKED_NAME}|{FIXED_NAME})(?: \(\d+\))?")
+_FIXED = "mended"
 _RESULTS = tuple(column.key for column in result_columns(cross_check=False, elasticity=False))
 _LARGEST = 2**27
 """Largest file whose digest is taken to find out whether it is the original of a mended one [bytes]."""
@@ -42,7 +42,7 @@ _LARGEST = 2**27
 
 def mended_role(original: bytes) -> str:
     """Return what a mended workbook says of itself: that it is one, and of which submission."""
-    return f"{_MENDED} {hashlib.sha256(original).hexdigest()}"
+    return f"{_FIXED} {hashlib.sha256(original).hexdigest()}"
 
 
 def results_header(keys: Iterable[object]) -> bool:
@@ -109,14 +109,14 @@ def _code(role: str, path: Path, given: Iterable[Path], *, marked_copies: bool) 
     if kind == "checked" and not marked_copies:
         return "I513"
     given = list(given)
-    if kind == _MENDED and (_original_beside(path, given) or _is_among(original, path, given)):
+    if kind == _FIXED and (_original_beside(path, given) or _is_among(original, path, given)):
         return "I526"
     return ""
 
 
 def _original_beside(path: Path, given: Iterable[Path]) -> bool:
     """Whether the original, by its name, stands beside a mended file and is given as well."""
-    if (stem := made_of(path, MENDED_NAME)) == path.stem:
+    if (stem := made_of(path, FIXED_NAME)) == path.stem:
         return False
     original = path.with_name(f"{stem}{path.suffix}")
     return any(_is_same(original, other) for other in given)

@@ -16,20 +16,15 @@ from flexlash.reading.delimited import read_table
 from flexlash.reading.gate import kind_of, read_bytes
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.reading.parquet import read_parquet
-from flexlash.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored
+from flexlash.reading.raw import RawSheet, Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.reading.xlsx import Cells, read_workbook
 from flexlash.schema.findings import readable
 
 __all__ = [
-    "ErrorCell",
-    "RawSheet",
-    "RawValue",
     "ReadReport",
     "Source",
-    "Submission",
-    "Unstored",
     "limits_of_reports",
     "of_table",
     "report_of",

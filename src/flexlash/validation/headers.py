@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from flexlash.reading.read import ErrorCell, RawSheet, RawValue, Unstored
+from flexlash.reading.raw import ErrorCell, RawSheet, RawValue, Unstored
 from flexlash.schema.cell_addresses import CellAddress, column_letters
 from flexlash.schema.columns import Column, columns_of
 from flexlash.schema.findings import shown

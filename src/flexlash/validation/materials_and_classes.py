@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import Any
 
-from flexlash.reading.read import RawSheet, RawValue
+from flexlash.reading.raw import RawSheet, RawValue
 from flexlash.schema import tables
 from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, ENTRY_SHEETS, MATERIALS, SETTINGS, TOLERANCES

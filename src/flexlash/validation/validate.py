@@ -9,7 +9,7 @@ from typing import Any
 
 import polars as pl
 
-from flexlash.reading.read import Submission
+from flexlash.reading.raw import Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.column import Role
