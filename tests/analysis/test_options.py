@@ -68,7 +68,7 @@ def test_every_option_is_checked():
     """No option can be given that nothing looks at."""
     for option in fields(Options):
         with pytest.raises((TypeError, ValueError), match=f"^{option.name} = "):
-            Options(**{option.name: object()})
+            Options.of("run()", {option.name: object()})
 
 
 @pytest.mark.parametrize("call", [run, check, lambda file: mend(file, "mended.xlsx"), lambda file: run("a.xlsx", file)])
@@ -81,8 +81,9 @@ def test_files_are_paths(call, file):
 
 def test_options_of_numpy_serve():
     """Numbers and truths of NumPy are taken as Python's own."""
-    assert Options(seed=np.int64(3), jobs=np.uint8(2), strict=np.True_) == Options(seed=3, jobs=2, strict=True)
-    assert type(Options(seed=np.int64(3)).seed) is int
+    chosen = Options.of("run()", {"seed": np.int64(3), "jobs": np.uint8(2), "strict": np.True_})
+    assert chosen == Options(seed=3, jobs=2, strict=True)
+    assert type(chosen.seed) is int
 
 
 def test_without_an_earlier_run_nothing_changes():

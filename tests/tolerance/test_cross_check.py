@@ -12,7 +12,7 @@ from toleranced import plan, row, statistics_of_row
 
 from flexlash.mechanics import flexspline
 from flexlash.tolerance.cross_check import AGREEMENT, cross_checked
-from flexlash.tolerance.dimension_limits import Limits
+from flexlash.tolerance.dimension_limits import Limits, distribution_of
 from flexlash.tolerance.distributions import Normal
 from flexlash.tolerance.sampled_spread import SampledSpread
 from flexlash.tolerance.sampling import UnitPoints
@@ -55,7 +55,7 @@ def test_a_wrong_statistic_is_found(name):
 def plain(size=2**17):
     """Return the plain Monte Carlo that cross-checks the cup, drawn for the two dimensions alone."""
     points = UnitPoints(list(LIMITS), method="random", samples=size, seed=9)
-    inputs = {name: one.as_distribution() for name, one in LIMITS.items()}
+    inputs = {name: distribution_of(one) for name, one in LIMITS.items()}
     return SampledSpread(model=lambda **varied: CUP(NOMINAL | varied), inputs=inputs, points=points)
 
 

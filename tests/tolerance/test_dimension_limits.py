@@ -12,7 +12,7 @@ from flexlash.mechanics.flexspline import backlash, radius_of
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.variant import ToleranceRow, Variant
 from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform, propagate
-from flexlash.tolerance.dimension_limits import Limits, distributions, limits_of, shape_problems
+from flexlash.tolerance.dimension_limits import Limits, distribution_of, distributions, limits_of, shape_problems
 from flexlash.validation.materials_and_classes import standard_class
 
 thorough = settings(deadline=None, max_examples=60, derandomize=True)
@@ -195,7 +195,7 @@ def test_standard_class_applies_to_every_refinement():
     assert problems == ()
     assert limits["hub_fillet_radius"].high == pytest.approx(0.00385, rel=1e-12)
     assert limits["youngs_modulus"].standard_deviation == pytest.approx(211e9 * 0.02 / 3, rel=1e-12)
-    assert limits["poisson_ratio"].as_distribution() == Uniform(
+    assert distribution_of(limits["poisson_ratio"]) == Uniform(
         limits["poisson_ratio"].low, limits["poisson_ratio"].high
     )
 
@@ -203,20 +203,20 @@ def test_standard_class_applies_to_every_refinement():
 @pytest.mark.parametrize("sigma", [3.0, 2.0, 4.5])
 def test_normal_limits_are_k_standard_deviations_from_the_middle(sigma):
     """A normal is centred on mid-limits with σ = (upper − lower)/(2k), unbounded."""
-    distribution = Limits(low=1.0, high=4.0, sigma=sigma).as_distribution()
+    distribution = distribution_of(Limits(low=1.0, high=4.0, sigma=sigma))
     assert distribution == Normal(mean=2.5, sd=1.5 / sigma)
 
 
 def test_truncated_normal_is_cut_at_the_limits():
     """A truncated normal has the same σ, cut at the limits."""
-    distribution = Limits(low=1.0, high=4.0, distribution="truncated normal", sigma=2.0).as_distribution()
+    distribution = distribution_of(Limits(low=1.0, high=4.0, distribution="truncated normal", sigma=2.0))
     assert distribution == TruncatedNormal(mean=2.5, sd=0.75, low=1.0, high=4.0)
 
 
 def test_uniform_and_triangular_lie_between_the_limits():
     """Uniform and symmetric triangular distributions end at the limits, whatever k."""
-    assert Limits(low=1.0, high=4.0, distribution="uniform", sigma=7).as_distribution() == Uniform(low=1.0, high=4.0)
-    triangle = Limits(low=1.0, high=4.0, distribution="triangular").as_distribution()
+    assert distribution_of(Limits(low=1.0, high=4.0, distribution="uniform", sigma=7)) == Uniform(low=1.0, high=4.0)
+    triangle = distribution_of(Limits(low=1.0, high=4.0, distribution="triangular"))
     assert triangle == Triangular(low=1.0, high=4.0)
     assert triangle.expectation == 2.5
 
@@ -346,11 +346,11 @@ def test_far_tails_of_a_normal_are_cut(dimension, half, bounds):
     limits = limits_for(one, row(dimension, -half, half))
     kept, (problem,) = shape_problems(one, limits)
     assert (problem.kind, problem.dimension) == ("cut", dimension)
-    low, high = reach_of(kept[dimension].as_distribution())
+    low, high = reach_of(distribution_of(kept[dimension]))
     assert bounds[0] <= low
     assert high <= bounds[1]
     assert (kept[dimension].low, kept[dimension].high) == (limits[dimension].low, limits[dimension].high)
-    assert kept[dimension].as_distribution().expectation == pytest.approx(one.dimensions[dimension], rel=1e-3)
+    assert distribution_of(kept[dimension]).expectation == pytest.approx(one.dimensions[dimension], rel=1e-3)
 
 
 @pytest.mark.parametrize("distribution", ["uniform", "triangular", "truncated normal"])
@@ -672,7 +672,7 @@ def test_limits_are_centred(low, width, sigma):
     """Whatever scatters between limits is centred on their middle."""
     for distribution in ("normal", "truncated normal", "uniform", "triangular"):
         limits = Limits(low=low, high=low + width, distribution=distribution, sigma=sigma)
-        assert limits.as_distribution().expectation == pytest.approx(low + width / 2, abs=1e-9 * (width + 1))
+        assert distribution_of(limits).expectation == pytest.approx(low + width / 2, abs=1e-9 * (width + 1))
 
 
 def test_every_dimension_may_have_a_row():

@@ -14,7 +14,7 @@ from toleranced import plan, row, statistics_of_row
 
 from flexlash.mechanics import flexspline
 from flexlash.schema.units import ARCMIN
-from flexlash.tolerance.dimension_limits import Limits
+from flexlash.tolerance.dimension_limits import Limits, distribution_of
 from flexlash.tolerance.distribution_curves import CURVE_SCORES, curve_of
 from flexlash.tolerance.row_batches import batch_statistics
 from flexlash.tolerance.sensitivity import first_order_valid
@@ -149,7 +149,7 @@ def test_shares_are_those_of_the_first_order_budget():
     found = spread()
     parts = {}
     for name, limits in LIMITS.items():
-        step = limits.as_distribution().standard_deviation * 1e-3
+        step = distribution_of(limits).standard_deviation * 1e-3
         high, low = (float(CUP(NOMINAL | {name: NOMINAL[name] + sign * step})) for sign in (1, -1))
         parts[name] = ((high - low) / 2e-3) ** 2
     budget = {name: part / sum(parts.values()) for name, part in parts.items()}

@@ -14,8 +14,8 @@ from flexlash.schema.columns import DIMENSIONS, VARIANTS, columns_of
 from flexlash.schema.findings import spelled_out
 from flexlash.schema.spellings import plain
 from flexlash.schema.units import ARCMIN, RPM
-from flexlash.schema.variant import Settings, ToleranceRow, Variant
-from flexlash.tolerance.dimension_limits import Limits, LimitsProblem, limits_of, shape_problems
+from flexlash.schema.variant import Limits, Settings, ToleranceRow, Variant
+from flexlash.tolerance.dimension_limits import LimitsProblem, limits_of, shape_problems
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import UnitMistake, Validated
 

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 
 from flexlash.mechanics.nominal_record import NominalNumbers
 from flexlash.schema.findings import Finding
-from flexlash.schema.variant import Variant
+from flexlash.schema.variant import Limits, Variant
 from flexlash.validation.validated import Blocked
 
 if TYPE_CHECKING:
-    from flexlash.tolerance.dimension_limits import Limits
     from flexlash.tolerance.spread_statistics import SpreadStatistics
 
 __all__ = ["Computed", "Elasticity", "Nominal", "Spread", "Verified"]

@@ -1,4 +1,4 @@
-"""What the caller of a run decides."""
+"""What the caller of a run decides: each option's name, kind, default and help once, for Python and command line."""
 
 from __future__ import annotations
 
@@ -19,74 +19,104 @@ Progress = Callable[[int, int], None]
 """Called with how many steps are done, and of how many."""
 
 
+def _declared(check: Callable[[str, object], Any], text: str = "") -> dict[str, Any]:
+    """Return what an option must be, and its help on the command line, empty where it has no place there."""
+    return {"check": check, "help": text}
+
+
+def _setting(key: str, text: str) -> dict[str, Any]:
+    """Return the same of an option that the Settings sheet has as well, by the sheet's own bounds."""
+    column = next(one for one in SETTINGS if one.key == key)
+    if column.choices:
+        return _declared(partial(one_of, choices=column.choices), text)
+    return _declared(partial(whole_number, least=int(column.minimum or 0), most=int(column.maximum or 0)), text)
+
+
+def _output(name: str, value: object) -> Any:
+    """Return the place of an output, which may be planned already: its path alone would not tell."""
+    return value if isinstance(value, os.PathLike) else file_path(name, value)
+
+
+def _paths(name: str, value: object) -> tuple[Path, ...]:
+    return tuple(file_path(name, one) for one in of_type(name, value, Sequence, "a list of paths"))
+
+
+_LIMITS = partial(of_type, wanted=ReadingLimits, required="ReadingLimits, as ReadingLimits.of makes them,")
+_PROGRESS = partial(function, required="a function of how many steps are done, and of how many,")
+
+
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """What the caller decides; None leaves it to the submission's settings.
+    """What the caller decides; None leaves it to the submission's settings. `of` makes them and checks each.
 
-    `marked_copy` is where the submission goes with its errors and warnings marked, when there are any;
-    `marked_copies` takes such copies as submissions as well. `given` are the submissions that are given together: a
-    mended one is skipped when its original is among them. `fail_over_limit` gives an exit code of its own where a
-    variant does not meet its limit. `from_report` says that the file is a report, of whose
-    submission everything is computed anew; what is None is then as it was in that run.
+    `marked_copy` is where the submission goes with its errors and warnings marked, when there are any; `given` are the
+    submissions that are given together: a mended one is skipped when its original is among them. With `from_report`
+    what is None is as it was in the run that made the report.
     """
 
-    seed: int | None = None
-    method: str | None = None
-    samples: int | None = None
-    strict: bool | None = None
-    fail_over_limit: bool = False
-    cross_check: bool | None = None
-    elasticity: bool | None = None
-    jobs: int = 1
-    tolerances: str | Path | None = None
-    materials: str | Path | None = None
-    limits: ReadingLimits = field(default_factory=ReadingLimits)
-    marked_copy: str | os.PathLike[str] | None = None
-    marked_copies: bool = False
-    given: Sequence[Path] = ()
-    from_report: bool = False
-    progress: Progress | None = None
+    seed: int | None = field(default=None, metadata=_setting("seed", "Start of the random numbers."))
+    method: str | None = field(default=None, metadata=_setting("method", "How the spread is sampled."))
+    samples: int | None = field(default=None, metadata=_setting("samples", "Lines or points per variant."))
+    strict: bool | None = field(default=None, metadata=_declared(flag, "Compute nothing when any row has an error."))
+    fail_over_limit: bool = field(
+        default=False, metadata=_declared(flag, "End with exit code 6 when a variant does not meet its limit.")
+    )
+    cross_check: bool | None = field(
+        default=None, metadata=_declared(flag, "Put plain Monte Carlo beside the spread and say whether they agree.")
+    )
+    elasticity: bool | None = field(
+        default=None, metadata=_declared(flag, "Check each variant by two-dimensional elasticity.")
+    )
+    jobs: int = field(default=1, metadata=_declared(partial(whole_number, least=1), "Processes."))
+    tolerances: str | Path | None = field(
+        default=None, metadata=_declared(file_path, "The Tolerances table to use instead of the submission's.")
+    )
+    materials: str | Path | None = field(
+        default=None, metadata=_declared(file_path, "The Materials table to use instead of the submission's.")
+    )
+    limits: ReadingLimits = field(
+        default_factory=ReadingLimits,
+        metadata=_declared(
+            _LIMITS, "Read more, or less, of a file than usual: cells=2000000. A refusal names the limit."
+        ),
+    )
+    marked_copy: str | os.PathLike[str] | None = field(default=None, metadata=_declared(_output))
+    marked_copies: bool = field(
+        default=False, metadata=_declared(flag, "Take marked copies (<name>-checked.xlsx) as submissions, too.")
+    )
+    given: Sequence[Path] = field(default=(), metadata=_declared(_paths))
+    from_report: bool = field(
+        default=False,
+        metadata=_declared(
+            flag,
+            "The files are reports: write the submission that each carries and compute it anew, with its own options.",
+        ),
+    )
+    progress: Progress | None = field(default=None, metadata=_declared(_PROGRESS))
 
     @classmethod
     def of(cls, what: str, options: Mapping[str, Any]) -> Options:
-        """Return options by name; raise TypeError where `what` is given one that there is not, with the nearest."""
-        known(what, options, [one.name for one in fields(cls)])
-        return cls(**options)
+        """Return options by name, each checked.
 
-    def __post_init__(self) -> None:
-        for name, check in _CHECKS.items():
-            value = getattr(self, name)
-            if value is not None or name not in _MAY_BE_NONE:
-                object.__setattr__(self, name, check(name, value))
-        if self.from_report and self.marked_copy is not None:
+        Raises TypeError where `what` is given one that there is not, with the nearest, or one of another kind,
+        ValueError for a value out of range.
+        """
+        known(what, options, [one.name for one in fields(cls)])
+        chosen = cls(**{name: _checked(name, value) for name, value in options.items()})
+        if chosen.from_report and chosen.marked_copy is not None:
             raise ValueError("a report does not hold the file itself, so that nothing can be marked in it")
+        return chosen
 
     def completed(self, run_with: Mapping[str, Any] | None) -> Options:
         """Return these options, and those of an earlier run where these leave them open."""
-        return replace(self, **{name: value for name, value in (run_with or {}).items() if getattr(self, name) is None})
+        left_open = {name: value for name, value in (run_with or {}).items() if getattr(self, name) is None}
+        return replace(self, **{name: _checked(name, value) for name, value in left_open.items()})
 
 
-def _setting(key: str) -> Any:
-    """Return the check of an option that the Settings sheet has as well, by the sheet's own bounds."""
-    column = next(one for one in SETTINGS if one.key == key)
-    if column.choices:
-        return partial(one_of, choices=column.choices)
-    return partial(whole_number, least=int(column.minimum or 0), most=int(column.maximum or 0))
+_DECLARED = {one.name: one for one in fields(Options)}
 
 
-_CHECKS: dict[str, Callable[[str, object], Any]] = {
-    **{key: _setting(key) for key in ("seed", "method", "samples")},
-    **dict.fromkeys(("strict", "fail_over_limit", "cross_check", "elasticity", "marked_copies", "from_report"), flag),
-    **dict.fromkeys(("tolerances", "materials"), file_path),
-    # Where it goes may be planned already, which its path alone does not tell.
-    "marked_copy": lambda name, value: value if isinstance(value, os.PathLike) else file_path(name, value),
-    "given": lambda name, value: tuple(
-        file_path(name, one) for one in of_type(name, value, Sequence, "a list of paths")
-    ),
-    "jobs": partial(whole_number, least=1),
-    "limits": partial(of_type, wanted=ReadingLimits, required="ReadingLimits, as ReadingLimits.of makes them,"),
-    "progress": partial(function, required="a function of how many steps are done, and of how many,"),
-}
-"""What each option must be; those that are None by default may be None."""
-
-_MAY_BE_NONE = frozenset(one.name for one in fields(Options) if one.default is None)
+def _checked(name: str, value: object) -> Any:
+    """Return an option as its check returns it; None stays where it is the default."""
+    option = _DECLARED[name]
+    return value if value is None and option.default is None else option.metadata["check"](name, value)

@@ -11,8 +11,7 @@ from flexlash.analysis.tolerance_spread import spread_of
 from flexlash.mechanics.flexspline import backlash
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.limit_verdict import misses_limit
-from flexlash.schema.variant import Settings
-from flexlash.tolerance.dimension_limits import Limits
+from flexlash.schema.variant import Limits, Settings
 from flexlash.tolerance.spread_statistics import SpreadStatistics
 
 __all__ = ["Halving", "Lever", "Recommendation", "Thickening", "recommendations_of"]

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from flexlash.cli.click_types import JSON, LIMITS, MARKED, QUIET, STRICT, SUBMISSIONS, planned, table_option
+from flexlash.cli.click_types import JSON, LIMITS, QUIET, SUBMISSIONS, option, planned
 from flexlash.cli.submissions import Submissions
 from flexlash.outputs.naming import fixed_outputs, marked_outputs
 from flexlash.outputs.plan import Plan
@@ -25,13 +25,13 @@ __all__ = ["check"]
 )  # fmt: skip
 @click.option("--annotate", is_flag=True, help="Write <name>-checked.xlsx: your file with the cells to mend marked.")
 @click.option("--apply-fixes", is_flag=True, help="Write a new file in which the certain suggestions are applied.")
-@STRICT
+@option("strict")
 @LIMITS
-@MARKED
+@option("marked_copies")
 @JSON
 @QUIET
-@table_option("tolerances")
-@table_option("materials")
+@option("tolerances")
+@option("materials")
 def check(
     submissions: tuple[Path, ...],
     output: Path | None,

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import click
 
+from flexlash.analysis.options import Options
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.schema import argument_checks
 from flexlash.schema.findings import shown
 
-if TYPE_CHECKING:
-    from flexlash.reading.reading_limits import ReadingLimits
-
-__all__ = ["JSON", "LIMITS", "MARKED", "QUIET", "STRICT", "SUBMISSIONS", "planned", "table_option"]
+__all__ = ["JSON", "LIMITS", "QUIET", "SUBMISSIONS", "option", "planned"]
 
 Command = Callable[..., None]
 Planned = TypeVar("Planned")
@@ -31,8 +32,6 @@ def _limits(context: click.Context, parameter: click.Parameter, given: tuple[str
     """Return the limits of reading; raise a usage error for one that does not exist, with where it was set."""
     from click.core import ParameterSource
 
-    from flexlash.reading.reading_limits import ReadingLimits
-
     pairs = {name.strip(): value.strip() for name, _, value in (text.partition("=") for text in given)}
     try:
         return ReadingLimits.of(pairs)
@@ -44,22 +43,31 @@ def _limits(context: click.Context, parameter: click.Parameter, given: tuple[str
 
 SUBMISSIONS = click.argument("submissions", nargs=-1, required=True, type=click.Path(path_type=Path, readable=False))
 JSON = click.option("--json", "as_json", is_flag=True, help="Machine-readable outcome on stdout.")
+QUIET = click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")
+
+_DECLARED = {one.name: one for one in fields(Options)}
+
+
+def option(name: str, **shown: Any) -> Callable[[Command], Command]:
+    """Return the command line's form of a declared option; `shown` is what only the command line knows of it."""
+    declared = _DECLARED[name]
+    flag, check = f"--{name.replace('_', '-')}", declared.metadata["check"]
+    how: dict[str, Any] = {"help": declared.metadata["help"]}
+    if check is argument_checks.flag:
+        if declared.default is None:
+            flag, how["default"] = f"{flag}/--no-{flag[2:]}", None
+        else:
+            how["is_flag"] = True
+    elif check is argument_checks.file_path:
+        how |= {"type": click.Path(path_type=Path, readable=False), "metavar": "FILE.csv"}
+    elif check.func is argument_checks.one_of:
+        how["type"] = click.Choice(check.keywords["choices"])
+    elif check.func is argument_checks.whole_number:
+        how["type"] = click.IntRange(check.keywords["least"], check.keywords.get("most"))
+    return click.option(flag, name, **how | shown)
+
+
 LIMITS = click.option(
     "--limit", "limits", multiple=True, metavar="NAME=NUMBER", envvar="FLEXLASH_LIMIT", callback=_limits,
-    help="Read more, or less, of a file than usual: cells=2000000. A refusal names the limit.",
+    help=_DECLARED["limits"].metadata["help"],
 )  # fmt: skip
-MARKED = click.option(
-    "--marked-copies", is_flag=True, help="Take marked copies (<name>-checked.xlsx) as submissions, too."
-)
-QUIET = click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")
-STRICT = click.option("--strict/--no-strict", default=None, help="Compute nothing when any row has an error.")
-
-
-def table_option(name: str) -> Callable[[Command], Command]:
-    """Return the option that names a table to use instead of the submission's."""
-    return click.option(
-        f"--{name}",
-        type=click.Path(path_type=Path, readable=False),
-        metavar="FILE.csv",
-        help=f"The {name.capitalize()} table to use instead of the submission's.",
-    )

@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from flexlash.cli.click_types import JSON, LIMITS, MARKED, QUIET, STRICT, SUBMISSIONS, planned, table_option
+from flexlash.cli.click_types import JSON, LIMITS, QUIET, SUBMISSIONS, option, planned
 from flexlash.cli.submissions import Submissions
 from flexlash.cli.terminal import progress
 from flexlash.outputs.naming import marked_outputs, report_outputs
@@ -26,33 +26,25 @@ __all__ = ["run"]
     help="Report (.xlsx), Results alone (.csv, .parquet, .json), or a folder. "
     "Default: <name>-report.xlsx beside the submission.",
 )  # fmt: skip
-@click.option("--seed", type=click.IntRange(0, 2**32 - 1), help="Start of the random numbers.")
-@click.option("--method", type=click.Choice(["line", "sobol", "random"]), help="How the spread is sampled.")
-@click.option("--samples", type=click.IntRange(1, 2**22), help="Lines or points per variant.")
-@click.option(
-    "--cross-check/--no-cross-check", default=None,
-    help="Put plain Monte Carlo beside the spread and say whether they agree.",
-)  # fmt: skip
-@click.option("--elasticity/--no-elasticity", default=None, help="Check each variant by two-dimensional elasticity.")
-@click.option(
-    "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default="all cores", help="Processes."
-)
-@STRICT
-@click.option("--fail-over-limit", is_flag=True, help="End with exit code 6 when a variant does not meet its limit.")
+@option("seed")
+@option("method")
+@option("samples")
+@option("cross_check")
+@option("elasticity")
+@option("jobs", default=os.cpu_count() or 1, show_default="all cores")
+@option("strict")
+@option("fail_over_limit")
 @LIMITS
 @JSON
-@click.option(
-    "--from-report", is_flag=True,
-    help="The files are reports: write the submission that each carries and compute it anew, with its own options.",
-)  # fmt: skip
+@option("from_report")
 @QUIET
 @click.option(
     "--annotate/--no-annotate", default=True, show_default=True,
     help="Write <name>-checked.xlsx, your file with the cells to mend marked, when there are errors or warnings.",
 )  # fmt: skip
-@MARKED
-@table_option("tolerances")
-@table_option("materials")
+@option("marked_copies")
+@option("tolerances")
+@option("materials")
 def run(
     submissions: tuple[Path, ...],
     output: Path | None,

@@ -1,4 +1,4 @@
-"""The records that travel from submission to report: a variant, its tolerance rows, the settings."""
+"""The records that travel from submission to report: a variant, its tolerance rows and limits, the settings."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from typing import Literal
 
 from flexlash.schema.columns import SETTINGS
 
-__all__ = ["Material", "Settings", "ToleranceRow", "Variant"]
+__all__ = ["Limits", "Material", "Settings", "ToleranceRow", "Variant"]
+
+_FAR = 8.3
+"""Beyond this many standard deviations a normal has no weight in double precision."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,6 +58,35 @@ class ToleranceRow:
     grade: str | None = None
     distribution: str = "normal"
     limits_sigma: float = 3.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """Smallest and largest allowed value of a dimension [SI] and how parts scatter between them."""
+
+    low: float
+    high: float
+    distribution: str = "normal"
+    sigma: float = 3.0
+    cut: tuple[float, float] | None = None
+
+    @property
+    def middle(self) -> float:
+        """Middle of the limits."""
+        return (self.low + self.high) / 2
+
+    @property
+    def standard_deviation(self) -> float:
+        """Standard deviation of the normal before any cut."""
+        return (self.high - self.low) / (2 * self.sigma)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Smallest and largest value that the distribution can produce."""
+        if self.distribution == "normal":
+            far = _FAR * self.standard_deviation
+            return self.middle - far, self.middle + far
+        return self.low, self.high
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,59 +8,15 @@ from dataclasses import dataclass, replace
 
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.tolerance_grades import deviations
-from flexlash.schema.variant import ToleranceRow, Variant
+from flexlash.schema.variant import Limits, ToleranceRow, Variant
 from flexlash.tolerance.distributions import Distribution, Normal, Triangular, Uniform
 from flexlash.tolerance.gaps import Gap, gaps
 from flexlash.tolerance.truncated_normal import TruncatedNormal
 
-__all__ = ["Limits", "LimitsProblem", "distributions", "limits_of", "shape_problems"]
+__all__ = ["Limits", "LimitsProblem", "distribution_of", "distributions", "limits_of", "shape_problems"]
 
 _ROUNDING = 1e-12
 """Decimals become binary with a relative error below this; limits that close count as reached."""
-
-_FAR = 8.3
-"""Beyond this many standard deviations a normal has no weight in double precision."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Limits:
-    """Smallest and largest allowed value of a dimension [SI] and how parts scatter between them."""
-
-    low: float
-    high: float
-    distribution: str = "normal"
-    sigma: float = 3.0
-    cut: tuple[float, float] | None = None
-
-    @property
-    def middle(self) -> float:
-        """Middle of the limits."""
-        return (self.low + self.high) / 2
-
-    @property
-    def standard_deviation(self) -> float:
-        """Standard deviation of the normal before any cut."""
-        return (self.high - self.low) / (2 * self.sigma)
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Smallest and largest value that the distribution can produce."""
-        if self.distribution == "normal":
-            far = _FAR * self.standard_deviation
-            return self.middle - far, self.middle + far
-        return self.low, self.high
-
-    def as_distribution(self) -> Distribution:
-        """Return the distribution between, or around, the limits."""
-        if self.distribution == "uniform":
-            return Uniform(self.low, self.high)
-        if self.distribution == "triangular":
-            return Triangular(self.low, self.high)
-        if self.distribution == "truncated normal":
-            return TruncatedNormal(self.middle, self.standard_deviation, self.low, self.high)
-        if self.cut:
-            return TruncatedNormal(self.middle, self.standard_deviation, *self.cut)
-        return Normal(self.middle, self.standard_deviation)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -209,6 +165,19 @@ def _overlaps(variant: Variant, limits: Mapping[str, Limits], overlapping: Itera
     }.values()
 
 
+def distribution_of(limits: Limits) -> Distribution:
+    """Return the distribution between, or around, limits."""
+    if limits.distribution == "uniform":
+        return Uniform(limits.low, limits.high)
+    if limits.distribution == "triangular":
+        return Triangular(limits.low, limits.high)
+    if limits.distribution == "truncated normal":
+        return TruncatedNormal(limits.middle, limits.standard_deviation, limits.low, limits.high)
+    if limits.cut:
+        return TruncatedNormal(limits.middle, limits.standard_deviation, *limits.cut)
+    return Normal(limits.middle, limits.standard_deviation)
+
+
 def distributions(limits: Mapping[str, Limits]) -> dict[str, Distribution]:
     """Return the distributions of the dimensions that scatter; limits that coincide shift without scatter."""
-    return {name: limit.as_distribution() for name, limit in limits.items() if limit.low < limit.high}
+    return {name: distribution_of(limit) for name, limit in limits.items() if limit.low < limit.high}

@@ -15,8 +15,9 @@ import numpy as np
 
 from flexlash.schema.arrays import Array
 from flexlash.schema.units import ARCMIN
+from flexlash.schema.variant import Limits
 from flexlash.tolerance.cross_check import cross_checked
-from flexlash.tolerance.dimension_limits import Limits, distributions
+from flexlash.tolerance.dimension_limits import distributions
 from flexlash.tolerance.engine.line_direction import Indices, Inputs
 from flexlash.tolerance.engine.line_statistics import line_statistics
 from flexlash.tolerance.propagate import NOT_LINES
