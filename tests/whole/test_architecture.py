@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 from grids import for_each
@@ -32,7 +33,6 @@ ROOMS = (
 ENTRANCES = {"__init__", "__main__"}
 
 CLIMBS = {
-    ("analysis.run_summary", "feedback.fixing.fix"),
     ("reading.inside_limits", "validation.validate"),
 }
 """The imports that go the other way, each because the limited process loads before its limits what it will need."""
@@ -70,6 +70,7 @@ def _imports(path):
             yield from (alias.name for alias in node.names)
 
 
+@cache
 def _edges():
     """Return which module imports which other one of the package."""
     return {
@@ -86,6 +87,68 @@ def test_imports_point_one_way():
         if name.split(".")[0] not in ENTRANCES and ROOMS.index(target.split(".")[0]) > ROOMS.index(name.split(".")[0])
     }
     assert found == CLIMBS
+
+
+STAGES = (
+    "validation.validate",
+    "analysis.assessment",
+    "analysis.tolerance_spread",
+    "analysis.verification",
+    "analysis.run_result",
+    "report.report_data",
+    "outputs.delivery",
+    "pipeline",
+)
+"""The stages of a submission in their order, by the module that returns each one's record."""
+
+RECORDS = ("validation.validated", "analysis.computed", "analysis.outcome")
+"""What the stages return: whoever receives it loads none of the code that makes it."""
+
+
+def _reached(name):
+    """Return every module of the package that is loaded with one, whether at once or later."""
+    edges, reached, ahead = _edges(), set(), {name}
+    while ahead:
+        reached |= ahead
+        ahead = {target for known in ahead for target in edges[known]} - reached
+    return reached
+
+
+def test_no_stage_imports_a_later_one():
+    """Nothing that a stage uses, by however many steps, belongs to a later stage; records belong to none."""
+    for number, stage in enumerate(STAGES):
+        assert not _reached(stage) & {*STAGES[number + 1 :]}, stage
+    for record in RECORDS:
+        assert not _reached(record) & {*STAGES}, record
+
+
+BUILT = {"cli.submissions", "outputs.plan", "reading.delimited", "report.submission_sheets"}
+"""Where a record is filled step by step by the code beside it, and stays with it."""
+
+OURS = {"schema", "validation", "mechanics", "tolerance", "analysis", "comparison", "outputs", "pipeline"}
+"""The rooms whose objects are all of our own making; elsewhere, cells and sheets of libraries are given attributes."""
+
+
+def _assigned(path):
+    """Yield the owner of every attribute that a module assigns, as written."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        for target in targets:
+            for one in ast.walk(target) if target is not None else ():
+                if isinstance(one, ast.Attribute) and isinstance(one.ctx, ast.Store):
+                    yield ast.unparse(one.value)
+
+
+def test_records_are_never_changed():
+    """Every record is frozen, and an object's attributes are assigned by itself alone; the ledger is filled openly."""
+    for name, path in NAMES.items():
+        text = path.read_text(encoding="utf-8")
+        assert "object.__setattr__" not in text, name
+        if name not in BUILT:
+            for line in text.splitlines():
+                assert not line.strip().startswith("@dataclass") or "frozen=True" in line, name
+        if name.split(".")[0] in OURS:
+            assert set(_assigned(path)) <= {"self", "cls", "ledger", "self.ledger"}, name
 
 
 def test_every_entry_is_a_room():

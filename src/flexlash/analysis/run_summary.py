@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.feedback.fixing.fix import Repair
 from flexlash.schema.cell_addresses import cell_ranges
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import CATALOGUE, Finding, shown
@@ -27,7 +26,6 @@ __all__ = [
     "points_range",
     "points_words",
     "quoted",
-    "repair_lines",
     "rounded",
     "share_words",
     "spread_notes",
@@ -37,7 +35,6 @@ __all__ = [
 ]
 
 _SHOWN_MESSAGES = 3
-_SHOWN_REPAIRS = 10
 _NO_MEND = "Nothing to do"
 """How the mend begins of a finding that needs none."""
 
@@ -115,19 +112,6 @@ def _written(outcome: Outcome, path: Path) -> str:
         return f"Findings alone, since your file itself could not be marked: {named}"
     without = f", without its {', '.join(outcome.written.not_carried)}" if outcome.written.not_carried else ""
     return f"Marked copy of your file{without}: {named}"
-
-
-def repair_lines(repairs: Sequence[Repair]) -> Iterator[str]:
-    """Yield what was changed in a mended submission, every cell of it."""
-    yield (
-        f"{counted(len(repairs), 'cell')} mended:"
-        if repairs
-        else "There is nothing that could be mended with certainty."
-    )
-    for repair in repairs[:_SHOWN_REPAIRS]:
-        yield f'    {shown(repair.place)}: "{shown(repair.found)}" → {shown(repair.written)} ({repair.code})'
-    if len(repairs) > _SHOWN_REPAIRS:
-        yield f"    … and {len(repairs) - _SHOWN_REPAIRS} more; a workbook lists them all on its sheet Fixes"
 
 
 def _next_step(counts: Mapping[str, int], name: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,10 +14,10 @@ import click
 
 from flexlash import __version__
 from flexlash.cli.terminal import complain, internal_error, named, print_json, reason
-from flexlash.mechanics.elasticity import MISSING
+from flexlash.mechanics.elasticity import MissingLibrariesError
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.exit_codes import ExitCode, most_severe
-from flexlash.schema.findings import Finding, finding, readable
+from flexlash.schema.findings import Finding, finding, readable, shown
 from flexlash.schema.variant import Settings
 
 if TYPE_CHECKING:
@@ -39,6 +39,7 @@ _NOT_OURS = (click.ClickException, click.Abort, KeyboardInterrupt, SystemExit, G
 _KINDS = {ExitCode.FINE: "computed", ExitCode.OVER_LIMIT: "computed", ExitCode.SOME_ROWS: "partly"}
 """How much of a submission was computed, by its exit code; by any other, nothing."""
 
+_SHOWN_REPAIRS = 10
 _COLOURS = {"error": "red", "warning": "yellow", "info": "cyan"}
 
 
@@ -126,14 +127,14 @@ class Submissions:
         except Refusal as refusal:
             facts: dict[str, Any] = {"file": path.name, **refusal.facts}
             ended.refusal = finding(refusal.code, **facts)
-            self._fail(ended, ExitCode.NOTHING, ended.refusal.message)
+            self._fail(ended, refusal.exit_code, ended.refusal.message)
         except OSError as fault:
             place = named(fault.filename or path)
             self._fail(ended, ExitCode.NO_FILE, f"{place} could not be opened or written: {reason(fault, path)}")
         except BaseException as fault:  # noqa: BLE001 - a panic of polars is no Exception
-            missing = isinstance(fault, ModuleNotFoundError) and str(fault) == MISSING
-            code = ExitCode.USAGE if missing else ExitCode.INTERNAL
-            self._fail(ended, code, f"{MISSING} Without it: --no-elasticity." if missing else internal_error(fault))
+            missing = isinstance(fault, MissingLibrariesError)
+            code = MissingLibrariesError.exit_code if missing else ExitCode.INTERNAL
+            self._fail(ended, code, f"{fault} Without it: --no-elasticity." if missing else internal_error(fault))
         ended.seconds = time.perf_counter() - start
         self._count(ended)
         self._print(ended, lines)
@@ -184,10 +185,10 @@ class Submissions:
         outcome = ended.outcome
         if outcome is None or self.as_json or (self.quiet and not ended.code):
             return
-        from flexlash.analysis.run_summary import finding_lines, repair_lines, summary_lines
+        from flexlash.analysis.run_summary import finding_lines, summary_lines
 
         name = f"{named(ended.path)}: " if self.several else ""
-        yield from (_Line(text) for text in repair_lines(ended.repairs)) if ended.repairs is not None else ()
+        yield from (_Line(text) for text in _repair_lines(ended.repairs)) if ended.repairs is not None else ()
         for level, text in finding_lines(outcome.findings):
             yield _Line(f"{name}{text}", _COLOURS.get(level), self.ran)
         yield from (_Line(text) for text in summary_lines(outcome, ended.name, ran=self.ran))
@@ -207,3 +208,18 @@ class Submissions:
             complain(ended.error if named(ended.path) in ended.error else f"{name}{ended.error}")
         if ended.refusal:
             click.echo(f"{name if self.several else ''}Mend: {ended.refusal.fix}", err=True)
+
+
+def _repair_lines(repairs: Sequence[Repair]) -> Iterator[str]:
+    """Yield what was changed in a mended submission, the first cells of it by name."""
+    from flexlash.analysis.run_summary import counted
+
+    yield (
+        f"{counted(len(repairs), 'cell')} mended:"
+        if repairs
+        else "There is nothing that could be mended with certainty."
+    )
+    for repair in repairs[:_SHOWN_REPAIRS]:
+        yield f'    {shown(repair.place)}: "{shown(repair.found)}" → {shown(repair.written)} ({repair.code})'
+    if len(repairs) > _SHOWN_REPAIRS:
+        yield f"    … and {len(repairs) - _SHOWN_REPAIRS} more; a workbook lists them all on its sheet Fixes"

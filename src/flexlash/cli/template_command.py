@@ -11,7 +11,6 @@ import click
 from flexlash.cli.click_types import planned
 from flexlash.cli.terminal import named, print_refusal
 from flexlash.outputs.naming import template_output
-from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.findings import finding, shown
 
 __all__ = ["template"]
@@ -54,7 +53,7 @@ def _upgraded(old: Path) -> bytes:
         facts: dict[str, Any] = {"file": old.name, **refusal.facts}
         found = finding(refusal.code, **facts)
         print_refusal(found, old.name)
-        sys.exit(ExitCode.NOTHING)
+        sys.exit(refusal.exit_code)
     made = f", made from template version {upgrade.version}" if upgrade.version else ""
     click.echo(f"{named(old)}{made}: {upgrade.rows} {'row' if upgrade.rows == 1 else 'rows'} of Variants carried over.")
     for remark in upgrade.remarks:

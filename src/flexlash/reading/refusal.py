@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
+from flexlash.schema.exit_codes import ExitCode
+
 __all__ = ["Refusal"]
 
 
 class Refusal(Exception):
     """The submission as a whole cannot be used: a finding code and what its message needs."""
+
+    exit_code = ExitCode.NOTHING
 
     def __init__(self, code: str, **facts: Any) -> None:
         super().__init__(code)
