@@ -131,7 +131,8 @@ def tapered_disk_integral(
     start, end = outer * outer_thickness, inner * inner_thickness
     on_axis = axis_thickness(start, end, reach)
     closed = closed_integral(outer, inner, start, end, on_axis, relative_slope(inner_radius, inner_thickness, on_axis))
+    growth = end - start
     total: Quantity = 0.0
     for node, weight in zip(TAPER_NODES, TAPER_WEIGHTS, strict=True):
-        total = total + summand(weight, outer + reach * node, start + (end - start) * node)
+        total = total + summand(weight, outer + reach * node, start + growth * node)
     return where(is_nearly_proportional(start, end), total * reach, closed)
