@@ -132,7 +132,7 @@ class Difference:
             },
             "removed": [name.text for name in self.removed],
             "added": [name.text for name in self.added],
-            "variants": [one.as_dictionary() for one in self.variants],
+            "variants": [variant.as_dictionary() for variant in self.variants],
         }
 
 

@@ -294,10 +294,10 @@ def result_rows(sheet: RawSheet | None) -> dict[Name, dict[str, Any]]:
     header_row = next((row for row, cells in sheet.rows.items() if {"variant", "status"} <= _texts(cells)), None)
     if header_row is None or header_row > _TOP:
         raise Refusal("E122", found="its sheet Results has no row of keys")
-    columns = {key: place for place, key in sheet.rows[header_row].items() if key in known}
+    columns = {key: column for column, key in sheet.rows[header_row].items() if key in known}
     numeric = {key: known[str(key)].is_number for key in columns}
     rows: list[dict[str, Any]] = [
-        {str(key): _plain_value(cells.get(place), is_number=numeric[key]) for key, place in columns.items()}
+        {str(key): _plain_value(cells.get(column), is_number=numeric[key]) for key, column in columns.items()}
         for row, cells in sheet.rows.items()
         if row > header_row
     ]

@@ -103,8 +103,8 @@ def carried_out(task: Callable[..., Any], limits: ReadingLimits, arguments: tupl
     try:
         with limited(limits):
             return task(*arguments)
-    except (Refusal, ChangedLibrary) as told:
-        return told
+    except (Refusal, ChangedLibrary) as answer:
+        return answer
     except MemoryError:
         return limits.exceeded("memory_mebibytes")
     except BaseException as fault:  # noqa: BLE001

@@ -19,13 +19,13 @@ def read_struct(data: bytes, start: int) -> tuple[dict[int, Any], int]:
     Raises ValueError or IndexError where there is none.
     """
     reader = _Reader(data, start)
-    return reader.struct(), reader.place
+    return reader.struct(), reader.position
 
 
 class _Reader:
-    def __init__(self, data: bytes, place: int) -> None:
+    def __init__(self, data: bytes, position: int) -> None:
         self.data = data
-        self.place = place
+        self.position = position
         self.depth = 0
         self.readers: dict[int, Callable[[], Any]] = {
             **dict.fromkeys((_TRUE, _FALSE, _BYTE), self._byte),
@@ -71,18 +71,18 @@ class _Reader:
 
     def _possible(self, length: int) -> int:
         """Return a length; each member takes a byte at least."""
-        if length > len(self.data) - self.place:
+        if length > len(self.data) - self.position:
             raise ValueError("longer than the file")
         return length
 
     def _byte(self) -> int:
-        self.place += 1
-        return self.data[self.place - 1]
+        self.position += 1
+        return self.data[self.position - 1]
 
     def _bytes(self, length: int) -> bytes:
-        start = self.place
-        self.place += self._possible(length)
-        return self.data[start : self.place]
+        start = self.position
+        self.position += self._possible(length)
+        return self.data[start : self.position]
 
     def _unsigned(self) -> int:
         """Read a whole number in groups of seven bits, the lowest first."""

@@ -62,7 +62,7 @@ def report_bytes(outcome: Outcome) -> bytes:
         write_stress(book, data)
     write_findings(book, outcome)
     write_submission(book, outcome)
-    inputs = stored_inputs([one.computed for one in drawn], outcome.settings.lost_motion_percent)
+    inputs = stored_inputs([variant.computed for variant in drawn], outcome.settings.lost_motion_percent)
     steps = (STEPS,) if inputs.rows else ()
     write_about(book, outcome, later=(curves.name, compared.name, inputs.name, *steps))
     curves.write(book, CURVES_NOTE)

@@ -49,7 +49,7 @@ def leftovers_of(data: bytes, limits: ReadingLimits) -> Leftovers:
         if _DRAWING.fullmatch(part):
             objects["text box or shape"] += sum(len(Listing(content, limits, shape).found) for shape in _SHAPES)
     return Leftovers(
-        formulas={sheet.title: _Formulas(package.parts[sheet.part], limits).found for sheet in package.sheets},
+        formulas={sheet.title: _Formulas(package.parts[sheet.part], limits).formulas for sheet in package.sheets},
         notes={sheet.title: _notes(package, sheet, limits) for sheet in package.sheets},
         objects={name: count for name, count in sorted(objects.items()) if count},
     )
@@ -61,7 +61,7 @@ class _Formulas(Elements):
     def __init__(self, data: bytes, limits: ReadingLimits) -> None:
         self.row = self.column = 0
         self.open = False
-        self.found: dict[CellAddress, str] = {}
+        self.formulas: dict[CellAddress, str] = {}
         super().__init__(data, limits)
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
@@ -72,7 +72,7 @@ class _Formulas(Elements):
             self.column = _address(attributes["r"]).column if "r" in attributes else self.column + 1
         elif name == f"{MAIN} f":
             self.open = True
-            self.found[CellAddress(self.row, self.column)] = ""
+            self.formulas[CellAddress(self.row, self.column)] = ""
 
     def end(self, name: str) -> None:
         """Leave a formula."""
@@ -81,7 +81,7 @@ class _Formulas(Elements):
     def text(self, text: str) -> None:
         """Collect a formula's text."""
         if self.open:
-            self.found[CellAddress(self.row, self.column)] += text
+            self.formulas[CellAddress(self.row, self.column)] += text
 
 
 def _notes(package: Package, sheet: SheetPart, limits: ReadingLimits) -> list[CellAddress]:
