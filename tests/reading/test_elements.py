@@ -53,7 +53,7 @@ def test_refused_by_its_code(what):
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
 def test_unicode_is_read_in_each_of_its_forms(encoding):
     """The text of an element is the same in every form of Unicode."""
-    assert Texts("<a><t>Δ µ 𝄞</t></a>".encode(encoding), ReadingLimits(), "t").found == ["Δ µ 𝄞"]
+    assert Texts("<a><t>Δ µ 𝄞</t></a>".encode(encoding), ReadingLimits(), "t").texts == ["Δ µ 𝄞"]
 
 
 def test_depth_at_its_limit():
@@ -78,19 +78,19 @@ def test_siblings_do_not_add_to_the_depth():
 def test_a_listing_finds_attributes_by_local_name():
     """A listing gives the attributes of every element of a name, whatever its prefix."""
     data = f'<x:a xmlns:x="{MAIN}"><x:b n="1"/><c><b n="2" xmlns=""/></c><x:bb n="3"/></x:a>'.encode()
-    assert [one["n"] for one in Listing(data, ReadingLimits(), "b").found] == ["1", "2"]
+    assert [one["n"] for one in Listing(data, ReadingLimits(), "b").attributes] == ["1", "2"]
 
 
 def test_a_listing_within_another_element():
     """A listing within an element passes over what stands outside of it."""
     data = b'<a><b n="0"/><in><b n="1"/><c><b n="2"/></c></in><b n="3"/><in><b n="4"/></in></a>'
-    assert [one["n"] for one in Listing(data, ReadingLimits(), "b", "in").found] == ["1", "2", "4"]
+    assert [one["n"] for one in Listing(data, ReadingLimits(), "b", "in").attributes] == ["1", "2", "4"]
 
 
 def test_texts_of_children_belong_to_their_parent():
     """The text of an element includes that of its children, CDATA and references."""
     data = b"<a><t>1<b>2</b><![CDATA[<3>]]>&#52;</t>no<t/></a>"
-    assert Texts(data, ReadingLimits(), "t").found == ["12<3>4", ""]
+    assert Texts(data, ReadingLimits(), "t").texts == ["12<3>4", ""]
 
 
 @pytest.mark.parametrize(("name", "expected"), [("urn:x y", "y"), ("y", "y")])

@@ -72,13 +72,13 @@ class Listing(Elements):
         self.wanted = wanted
         self.inside = inside
         self.open = not inside
-        self.found: list[dict[str, str]] = []
+        self.attributes: list[dict[str, str]] = []
         super().__init__(data, limits)
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
         """Keep the attributes of a wanted element."""
         if self.open and local(name) == self.wanted:
-            self.found.append(attributes)
+            self.attributes.append(attributes)
         elif local(name) == self.inside:
             self.open = True
 
@@ -94,7 +94,7 @@ class Texts(Elements):
     def __init__(self, data: bytes, limits: ReadingLimits, wanted: str) -> None:
         self.wanted = wanted
         self.open = False
-        self.found: list[str] = []
+        self.texts: list[str] = []
         self.pieces: list[str] = []
         super().__init__(data, limits)
 
@@ -108,7 +108,7 @@ class Texts(Elements):
         """Complete a wanted element."""
         if local(name) == self.wanted:
             self.open = False
-            self.found.append("".join(self.pieces))
+            self.texts.append("".join(self.pieces))
 
     def text(self, text: str) -> None:
         """Keep the text of a wanted element."""

@@ -86,7 +86,9 @@ def open_package(parts: Mapping[str, bytes], limits: ReadingLimits) -> Package:
         parts=usual,
         workbook=workbook,
         sheets=sheets,
-        styles=max(1, len(Listing(usual[styles], limits, "xf", "cellXfs").found)) if styles in usual else limits.cells,
+        styles=max(1, len(Listing(usual[styles], limits, "xf", "cellXfs").attributes))
+        if styles in usual
+        else limits.cells,
         strings=strings if strings in usual else "",
         texts=_Strings(usual[strings], limits).count if strings in usual else 0,
         modified=_modified(usual, limits),
@@ -97,7 +99,7 @@ def open_package(parts: Mapping[str, bytes], limits: ReadingLimits) -> Package:
 def _without_dangling_types(parts: Mapping[str, bytes], limits: ReadingLimits) -> dict[str, bytes]:
     """Leave out the types of parts that are not there; some programs list them, and readers look for the parts."""
     types = parts.get(_TYPES, b"")
-    for entry in Listing(types, limits, "Override").found if types else ():
+    for entry in Listing(types, limits, "Override").attributes if types else ():
         name = entry.get("PartName", "")
         if name.lstrip("/") not in parts:
             pattern = rb"<(?:\w+:)?Override\b[^<>]*PartName=([\"'])%s\1[^<>]*/>" % re.escape(name.encode())
@@ -122,7 +124,7 @@ def _usual_dialect(parts: dict[str, bytes]) -> dict[str, bytes]:
 def _workbook_part(parts: Mapping[str, bytes], limits: ReadingLimits) -> str:
     """Name of the part that lists the sheets."""
     if _ROOT in parts:
-        for relation in Listing(parts[_ROOT], limits, "Relationship").found:
+        for relation in Listing(parts[_ROOT], limits, "Relationship").attributes:
             if relation.get("Type", "").endswith("/officeDocument"):
                 part = relation.get("Target", "").lstrip("/")
                 if part in parts and local(Elements(parts[part], limits).root) == "workbook":
@@ -130,9 +132,14 @@ def _workbook_part(parts: Mapping[str, bytes], limits: ReadingLimits) -> str:
     raise Refusal("E101", found="the archive holds no workbook")
 
 
+def _count_styles(styles: bytes, limits: ReadingLimits) -> int:
+    """Return how many cell formats the part of the styles holds."""
+    return max(1, len(Listing(styles, limits, "xf", "cellXfs").attributes))
+
+
 def _check_type(parts: Mapping[str, bytes], workbook: str, limits: ReadingLimits) -> None:
     """Refuse a file whose list of types names another workbook than its relations do: readers would differ."""
-    types = Listing(parts[_TYPES], limits, "Override").found if _TYPES in parts else []
+    types = Listing(parts[_TYPES], limits, "Override").attributes if _TYPES in parts else []
     mains = [
         override.get("PartName", "") for override in types if override.get("ContentType", "").endswith(".main+xml")
     ]
@@ -147,7 +154,7 @@ def _relations(parts: Mapping[str, bytes], workbook: str, limits: ReadingLimits)
     if part not in parts:
         raise Refusal("E102")
     relations = {}
-    for relation in Listing(parts[part], limits, "Relationship").found:
+    for relation in Listing(parts[part], limits, "Relationship").attributes:
         target = relation.get("Target", "")
         path = target.lstrip("/") if target.startswith("/") else posixpath.normpath(posixpath.join(folder, target))
         relations[relation.get("Id", "")] = (relation.get("Type", ""), path)
@@ -166,9 +173,9 @@ def _sheets(
     listing = Listing(parts[workbook], limits, "sheet")
     if not listing.root.startswith(f"{MAIN} "):
         raise Refusal("E106")
-    limits.require("sheets", len(listing.found))
+    limits.require("sheets", len(listing.attributes))
     sheets = []
-    for sheet in listing.found:
+    for sheet in listing.attributes:
         kind, part = relations.get(sheet.get(f"{_OFFICE} id", ""), ("", ""))
         if part not in parts or not kind.endswith(_SHEET_KINDS):
             raise Refusal("E102")
@@ -209,7 +216,7 @@ def _modified(parts: Mapping[str, bytes], limits: ReadingLimits) -> datetime.dat
     if _CORE not in parts:
         return None
     try:
-        (text,) = Texts(parts[_CORE], limits, "modified").found
+        (text,) = Texts(parts[_CORE], limits, "modified").texts
         moment = datetime.datetime.fromisoformat(text.strip())
         return (moment.astimezone(datetime.UTC) if moment.tzinfo else moment).replace(tzinfo=None, microsecond=0)
     except (ValueError, OverflowError):

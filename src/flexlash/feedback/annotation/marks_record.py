@@ -15,6 +15,7 @@ from flexlash.feedback.splicing.workbook_parts import WorkbookParts
 from flexlash.feedback.splicing.xml_spans import element_spans
 from flexlash.reading.elements import MAIN
 from flexlash.schema.cell_addresses import cell_address, column_letters
+from flexlash.schema.unused_names import numbered_names
 
 __all__ = ["Record", "free_titles", "quoted", "record_sheet", "take_record"]
 
@@ -34,12 +35,7 @@ class Record:
 
 def free_titles(wanted: str) -> Iterator[str]:
     """Yield titles for a sheet, the one wanted first."""
-    yield wanted
-    yield f"flexlash {wanted}"
-    number = 2
-    while True:
-        yield f"{wanted} ({number})"
-        number += 1
+    return numbered_names(wanted, f"flexlash {wanted}", numbered=lambda number: f"{wanted} ({number})")
 
 
 def quoted(title: str) -> str:

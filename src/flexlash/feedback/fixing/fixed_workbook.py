@@ -14,6 +14,7 @@ from flexlash.reading.products import mended_role
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.xlsx import PROPERTY
 from flexlash.schema.cell_addresses import cell_address
+from flexlash.schema.unused_names import numbered_names
 
 __all__ = ["FIXES_SHEET", "mended_workbook"]
 
@@ -42,7 +43,9 @@ def mended_workbook(data: bytes, repairs: Sequence[Repair], limits: ReadingLimit
                 made += done
     if made:
         book.set_attributes(book.workbook, "calcPr", fullCalcOnLoad="1")
-        titles = (FIXES_SHEET, *(f"flexlash {FIXES_SHEET} {number}" for number in range(1, len(book.sheets) + 2)))
+        titles = numbered_names(
+            FIXES_SHEET, f"flexlash {FIXES_SHEET} 1", numbered=f"flexlash {FIXES_SHEET} {{}}".format
+        )
         book.add_sheet(book.free_title(titles), _sheet(made))
         book.set_property(PROPERTY, mended_role(data))
     return book.data(), made

@@ -18,6 +18,7 @@ from flexlash.feedback.splicing.xml_spans import (
 from flexlash.reading.archive import packed, unpacked
 from flexlash.reading.package import STRICT_NAMES, open_package
 from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.schema.unused_names import numbered_names, unused_name
 
 __all__ = ["Relation", "Sheet", "WorkbookParts"]
 
@@ -115,8 +116,8 @@ class WorkbookParts:
         name = _relations_of(owner)
         if name not in self.parts:
             self.parts[name] = _HEAD + f'<Relationships xmlns="{_PACKAGE}/relationships"></Relationships>'.encode()
-        known = {one.attributes.get("Id") for one in element_spans(self.read(name), ("Relationship",))}
-        own = next(text for number in range(1, len(known) + 2) if (text := f"rIdOwn{number}") not in known)
+        known = {one.attributes.get("Id", "") for one in element_spans(self.read(name), ("Relationship",))}
+        own = unused_name(known, "rIdOwn1", numbered="rIdOwn{}".format)
         target = posixpath.relpath(part, posixpath.dirname(owner) or ".")
         new = f'<@Relationship Id="{own}" Type="{_OFFICE}/relationships/{kind}" Target="{target}"/>'
         self.parts[name] = appended(self.read(name), "Relationships", self.dialect(new.encode()))
@@ -136,8 +137,8 @@ class WorkbookParts:
     def free_name(self, pattern: str) -> str:
         """Return the first name of this pattern that no part bears: `xl/comments{}.xml`."""
         taken = {name.casefold() for name in self.parts}
-        numbered = (pattern.format(number) for number in range(1, len(taken) + 2))
-        return next(name for name in numbered if name.casefold() not in taken)
+        names = numbered_names(pattern.format(1), numbered=pattern.format)
+        return next(name for name in names if name.casefold() not in taken)
 
     def remove(self, owner: str, part: str) -> None:
         """Remove a part that another one refers to, and what it alone refers to."""

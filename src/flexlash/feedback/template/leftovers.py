@@ -47,7 +47,7 @@ def leftovers_of(data: bytes, limits: ReadingLimits) -> Leftovers:
     for part, content in package.parts.items():
         objects.update(name for name, pattern in _OBJECTS if re.fullmatch(rf"(?:.*/)?{pattern}", part))
         if _DRAWING.fullmatch(part):
-            objects["text box or shape"] += sum(len(Listing(content, limits, shape).found) for shape in _SHAPES)
+            objects["text box or shape"] += sum(len(Listing(content, limits, shape).attributes) for shape in _SHAPES)
     return Leftovers(
         formulas={sheet.title: _Formulas(package.parts[sheet.part], limits).formulas for sheet in package.sheets},
         notes={sheet.title: _notes(package, sheet, limits) for sheet in package.sheets},
@@ -89,12 +89,12 @@ def _notes(package: Package, sheet: SheetPart, limits: ReadingLimits) -> list[Ce
     folder, name = posixpath.split(sheet.part)
     relations = package.parts.get(f"{folder}/_rels/{name}.rels", b"")
     addresses: list[CellAddress] = []
-    for relation in Listing(relations, limits, "Relationship").found if relations else ():
+    for relation in Listing(relations, limits, "Relationship").attributes if relations else ():
         target = relation.get("Target", "")
         part = target.lstrip("/") if target.startswith("/") else posixpath.normpath(posixpath.join(folder, target))
         if relation.get("Type", "").endswith("/comments") and part in package.parts:
             addresses += [
-                _address(note.get("ref", "")) for note in Listing(package.parts[part], limits, "comment").found
+                _address(note.get("ref", "")) for note in Listing(package.parts[part], limits, "comment").attributes
             ]
     return sorted(addresses)
 
