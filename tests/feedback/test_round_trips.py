@@ -180,7 +180,7 @@ def test_names_are_kept(books):
     assert {name: one.attr_text for name, one in after.defined_names.items()} == {
         name: one.attr_text for name, one in before.defined_names.items()
     }
-    assert len(before.defined_names) == 11
+    assert len(before.defined_names) == 14
 
 
 def test_properties_are_kept(books):

@@ -10,7 +10,7 @@ from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.entry_words import inner_name
 from flexlash.schema.part_row import Operand, PartRow, PartRule, Reached
 
-__all__ = ["PART_RULES", "fillet_meets_rim", "fillets_overlap", "is_off_the_wall"]
+__all__ = ["PART_RULES", "fillet_meets_rim", "fillets_overlap", "is_off_the_wall", "said_before"]
 
 
 _WALL_SHARES = (0.006, 0.02)
@@ -123,15 +123,6 @@ PART_RULES = (
     _missing("disk_inner_radius", "cup"),
     _missing("disk_outer_radius", "hat"),
     PartRule(
-        code="E330",
-        dimension="wall_thickness",
-        words="wall is not below twice the mean radius: no bore",
-        broken=lambda row: (row.bore <= row.edge,),
-        facts=lambda row: {"other": 2 * row["mean_radius"]},
-        compares_lengths=True,
-        reached=Reached(kind="impossible", words="the axis: no bore is left"),
-    ),
-    PartRule(
         code="E303",
         dimension="disk_inner_radius",
         words="disk inner radius is not below disk outer radius",
@@ -140,6 +131,15 @@ PART_RULES = (
         after=("E311",),
         compares_lengths=True,
         reached=Reached(kind="impossible", words="the other radius of the disk"),
+    ),
+    PartRule(
+        code="E330",
+        dimension="wall_thickness",
+        words="wall is not below twice the mean radius: no bore",
+        broken=lambda row: (row.bore <= row.edge,),
+        facts=lambda row: {"other": 2 * row["mean_radius"]},
+        compares_lengths=True,
+        reached=Reached(kind="impossible", words="the axis: no bore is left"),
     ),
     _half_rim("rim_thickness", "rim_length", "a tooth rim without a thickness"),
     _half_rim("rim_length", "rim_thickness", "a tooth rim without a length"),
@@ -280,3 +280,9 @@ PART_RULES = (
     ),
 )
 """Every rule, in the order in which a row's faults are told; one that stands `after` others follows them."""
+
+
+def said_before(rule: PartRule) -> list[PartRule]:
+    """Return the rules that say what a rule says when they are broken: those it stands after, and theirs in turn."""
+    named = [one for one in PART_RULES if one.code in rule.after]
+    return [one for one in PART_RULES if any(one in (before, *said_before(before)) for before in named)]

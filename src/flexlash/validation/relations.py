@@ -11,7 +11,7 @@ import polars as pl
 
 from flexlash.schema.columns import DIMENSIONS, VARIANTS
 from flexlash.schema.part_row import NumberRow, PartRow, PartRule
-from flexlash.schema.part_rules import PART_RULES
+from flexlash.schema.part_rules import PART_RULES, said_before
 
 __all__ = ["RELATIONS", "FrameRow", "Relation", "numbers_of"]
 
@@ -68,14 +68,13 @@ class Relation:
 
 
 def _relations() -> Iterator[Relation]:
-    """Yield a relation for each rule, silent where the rules that it stands after, or those before them, are broken."""
-    row, own, silent = FrameRow(), dict[str, list[pl.Expr]](), dict[str, set[str]]()
+    """Yield a relation for each rule, silent where one that says it already is broken."""
+    row = FrameRow()
+    broken = {rule.id: row.all_of(*rule.broken(row)).fill_null(value=False) for rule in PART_RULES}
     for rule in PART_RULES:
-        silent[rule.code] = {*rule.after, *(code for before in rule.after for code in silent[before])}
-        before = [expression for code in sorted(silent[rule.code]) for expression in own[code]]
-        broken = row.all_of(*rule.broken(row)).fill_null(value=False)
-        own.setdefault(rule.code, []).append(broken)
-        yield Relation(rule=rule, broken=broken & ~row.any_of(*before) if before else broken)
+        before = [broken[one.id] for one in said_before(rule)]
+        expression = broken[rule.id] & ~row.any_of(*before) if before else broken[rule.id]
+        yield Relation(rule=rule, broken=expression)
 
 
 RELATIONS = {relation.rule.id: relation for relation in _relations()}

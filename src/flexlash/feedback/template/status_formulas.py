@@ -1,172 +1,176 @@
-"""What the template's row status says: each sentence with its Excel condition and the same test in Python.
+"""What the template's row status says: the first fault of a row, as formulas of Excel and as they come to.
 
-The Python twin gives the value that is stored with the formula, so that a viewer which does not calculate
-shows the right text.
+The formulas stand in defined names whose references are relative to the row, so that each is written once for all rows.
+What they come to is stored beside them, so that a viewer which does not calculate shows the right text.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import operator
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from flexlash.schema.columns import VARIANTS
+from flexlash.feedback.template.cell_operands import CellRow
+from flexlash.reading.raw import ErrorCell
+from flexlash.schema.columns import DIMENSIONS, VARIANTS, Column
+from flexlash.schema.entry_words import inner_name, wrong_number
+from flexlash.schema.part_row import NumberRow, first_broken
+from flexlash.schema.part_rules import PART_RULES
 
-__all__ = ["COMPLETE", "status_formula", "status_text"]
+__all__ = ["COMPLETE", "Names", "status_formula", "status_names", "status_text"]
 
 COMPLETE = "complete"
 
 Row = Mapping[str, Any]
 
-_KEYS = [column.key for column in VARIANTS]
-_NUMBERS = [column.key for column in VARIANTS if column.is_number]
+_ENTRIES, _PART, _STATUS = "fl_row_entries", "fl_row_part", "fl_row_status"
+_ERRORS = [rule for rule in PART_RULES if rule.is_error]
+_ERROR = "a cell holds an error"
+_DIMENSION_KEYS = {name: column.key for name, column in DIMENSIONS.items() if column.sheet == "Variants"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Names:
+    """The names, in small letters, that a row's entries are looked up in; of the variants how often each stands."""
+
+    variants: Mapping[str, int]
+    materials: Collection[str]
+    classes: Collection[str]
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Rule:
-    """A sentence, its Excel condition with `{key}` for a row's cells, and the same condition on a row."""
+    """A fault of an entry in words, its Excel condition on the cell `{0}`, and the same condition on a row."""
 
+    key: str
     text: str
     excel: str
-    holds: Callable[[Row, Sequence[Row]], bool]
+    holds: Callable[[Row, Names], bool]
 
 
-def _missing(key: str) -> _Rule:
-    name = next(column.plain_name for column in VARIANTS if column.key == key)
-    return _Rule(text=f"{name.lower()} missing", excel=f'{{{key}}}=""', holds=lambda row, _: not row.get(key))
+def _is_blank(value: Any) -> bool:
+    return value is None or value == ""
 
 
-def _blank(row: Row, key: str) -> bool:
-    return row.get(key) in {None, ""}
+def _text(row: Row, key: str) -> str:
+    """Return a text as Excel compares it."""
+    return str(row.get(key) or "").casefold()
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+def _missing(column: Column) -> _Rule:
+    """Return the rule that a required cell is filled."""
+    text, key = f"{column.plain_name.lower()} missing", column.key
+    return _Rule(key=key, text=text, excel='{0}=""', holds=lambda row, _: _is_blank(row.get(key)))
 
 
-def _same(one: Any, other: Any) -> bool:
-    return str(one).casefold() == str(other).casefold()
+def _unlisted(column: Column) -> _Rule:
+    """Return the rule that an entry is one of a column's list."""
+    key, listed = column.key, ("", *column.choices)
+    differs = ",".join(f'TRIM({{0}})<>"{word}"' for word in listed)
+    return _Rule(
+        key=key,
+        text=f"{inner_name(column)} is not one of its list",
+        excel=f"AND({differs})",
+        holds=lambda row, _: _text(row, key).strip() not in listed,
+    )
 
 
-def _type(row: Row) -> str:
-    return str(row.get("flexspline_type") or "cup").lower()
+def _unknown(key: str, text: str, names: str, known: Callable[[Names], Collection[str]]) -> _Rule:
+    """Return the rule that a name stands in a list: a range of the template, and what is known of it."""
+    return _Rule(
+        key=key,
+        text=text,
+        excel=f'AND({{0}}<>"",COUNTIF({names},{{0}})=0)',
+        holds=lambda row, names: not _is_blank(row.get(key)) and _text(row, key) not in known(names),
+    )
 
 
-def _bore(row: Row) -> float:
-    """Return the radius of the bore; what is not given counts as 0, as in the formula."""
-    mean, bore = row.get("mean_radius_mm") or 0.0, row.get("bore_diameter_mm") or 0.0
-    return float(max(mean - row["wall_thickness_mm"] / 2, bore / 2))
+def _no_number(column: Column) -> _Rule:
+    """Return the rule that an entry is a number within the bounds of its column."""
+    key, least, most = column.key, column.minimum or 0.0, column.maximum
+    is_low = operator.le if column.exclusive_minimum else operator.lt
+    low = f"{{0}}{'<=' if column.exclusive_minimum else '<'}{least:.15g}"
+    beyond = low if most is None else f"OR({low},{{0}}>{most:.15g})"
+
+    def holds(row: Row, _: Names) -> bool:
+        value = row.get(key)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            return not _is_blank(value)
+        return is_low(value, least) or (most is not None and value > most)
+
+    # LibreOffice takes TRUE for a number.
+    excel = f'IF(AND(ISNUMBER({{0}}),NOT(ISLOGICAL({{0}}))),{beyond},{{0}}<>"")'
+    return _Rule(key=key, text=wrong_number(column), excel=excel, holds=holds)
 
 
-def _hub_too_large(row: Row, _: Sequence[Row]) -> bool:
-    mean = _bore(row) + row["wall_thickness_mm"] / 2
-    return _type(row) == "cup" and row["disk_inner_radius_mm"] >= (row.get("disk_outer_radius_mm") or mean)
-
-
-_BORE = "MAX({mean_radius_mm}-{wall_thickness_mm}/2,{bore_diameter_mm}/2)"
-_CUP = 'OR({flexspline_type}="",{flexspline_type}="cup")'
-_RULES = (
-    *(_missing(column.key) for column in VARIANTS if column.required),
+_ENTRY_RULES = (
+    *(_missing(column) for column in VARIANTS if column.required),
+    *(_unlisted(column) for column in VARIANTS if column.choices),
+    _unknown("material", "material not in Materials", "fl_materials", lambda names: names.materials),
+    *(_no_number(column) for column in VARIANTS if column.is_number),
+)
+_LAST_RULES = (
+    _unknown("tolerance_class", "tolerance class not in Tolerances", "fl_tolerance_rows", lambda names: names.classes),
     _Rule(
-        text="material not in Materials",
-        excel="COUNTIF(fl_materials,{material})=0",
-        holds=lambda row, _: str(row["material"]).casefold() not in row["_materials"],
-    ),
-    _Rule(
-        text="a number is text",
-        excel="COUNTA({torque_Nm}:{backlash_limit_arcmin})>COUNT({torque_Nm}:{backlash_limit_arcmin})",
-        holds=lambda row, _: any(not _blank(row, key) and not _is_number(row[key]) for key in _NUMBERS),
-    ),
-    _Rule(
-        text="a number is negative",
-        excel='COUNTIF({torque_Nm}:{backlash_limit_arcmin},"<0")>0',
-        holds=lambda row, _: any(not _blank(row, key) and row[key] < 0 for key in _NUMBERS),
-    ),
-    _Rule(
-        text="mean radius or bore missing",
-        excel='AND({mean_radius_mm}="",{bore_diameter_mm}="")',
-        holds=lambda row, _: _blank(row, "mean_radius_mm") and _blank(row, "bore_diameter_mm"),
-    ),
-    _Rule(
-        text="mean radius and bore both given",
-        excel='AND({mean_radius_mm}<>"",{bore_diameter_mm}<>"")',
-        holds=lambda row, _: not _blank(row, "mean_radius_mm") and not _blank(row, "bore_diameter_mm"),
-    ),
-    _Rule(
-        text="disk inner radius missing",
-        excel=f'AND({_CUP},{{disk_inner_radius_mm}}="")',
-        holds=lambda row, _: _type(row) == "cup" and _blank(row, "disk_inner_radius_mm"),
-    ),
-    _Rule(
-        text="disk outer radius missing",
-        excel='AND({flexspline_type}="hat",{disk_outer_radius_mm}="")',
-        holds=lambda row, _: _type(row) == "hat" and _blank(row, "disk_outer_radius_mm"),
-    ),
-    _Rule(
-        text="a cylinder has no disk",
-        excel='AND({flexspline_type}="cylinder",COUNTA({disk_thickness_mm}:{disk_cone_angle_deg})>0)',
-        holds=lambda row, _: (
-            _type(row) == "cylinder" and any(not _blank(row, key) for key in _KEYS if key.startswith("disk_"))
-        ),
-    ),
-    _Rule(
-        text="exponent needs the thickness at hub",
-        excel=f'AND({_CUP},{{disk_thickness_exponent}}<>"",{{disk_hub_thickness_mm}}="")',
-        holds=lambda row, _: (
-            _type(row) == "cup" and not _blank(row, "disk_thickness_exponent") and _blank(row, "disk_hub_thickness_mm")
-        ),
-    ),
-    _Rule(
-        text="exponent and disk thickness both given",
-        excel='AND({disk_thickness_exponent}<>"",{disk_thickness_mm}<>"")',
-        holds=lambda row, _: not _blank(row, "disk_thickness_exponent") and not _blank(row, "disk_thickness_mm"),
-    ),
-    _Rule(
-        text="wall fills the bore",
-        excel=f"{_BORE}<=0",
-        holds=lambda row, _: _bore(row) <= 0,
-    ),
-    _Rule(
-        text="hub larger than the disk",
-        excel=f'AND({_CUP},{{disk_inner_radius_mm}}>=IF({{disk_outer_radius_mm}}<>"",{{disk_outer_radius_mm}},'
-        f"{_BORE}+{{wall_thickness_mm}}/2))",
-        holds=_hub_too_large,
-    ),
-    _Rule(
-        text="rim length and thickness belong together",
-        excel='({rim_length_mm}="")<>({rim_thickness_mm}="")',
-        holds=lambda row, _: _blank(row, "rim_length_mm") != _blank(row, "rim_thickness_mm"),
-    ),
-    _Rule(
-        text="tolerance class not in Tolerances",
-        excel='AND({tolerance_class}<>"",COUNTIF(fl_tolerance_rows,{tolerance_class})=0)',
-        holds=lambda row, _: (
-            not _blank(row, "tolerance_class") and str(row["tolerance_class"]).casefold() not in row["_classes"]
-        ),
-    ),
-    _Rule(
+        key="variant",
         text="variant used twice",
-        excel="COUNTIF(fl_variants,{variant})>1",
-        holds=lambda row, rows: sum(_same(other.get("variant"), row["variant"]) for other in rows) > 1,
+        excel="COUNTIF(fl_variants,{0})>1",
+        holds=lambda row, names: names.variants[_text(row, "variant")] > 1,
     ),
 )
 
 
-def status_formula(row: int, letters: Mapping[str, str]) -> str:
-    """Return the status formula of a row, the columns standing under these letters."""
-    cells = {key: f"${letter}{row}" for key, letter in letters.items()}
-    formula = f'"{COMPLETE}"'
-    for rule in reversed(_RULES):
-        formula = f'IF({rule.excel.format(**cells)},"{rule.text}",{formula})'
-    first, last = cells[_KEYS[0]], cells[_KEYS[-1]]
-    return f'=IF(COUNTA({first}:{last})=0,"",{formula})'
+def status_names(letters: Mapping[str, str]) -> dict[str, str]:
+    """Return the formulas of a row's status by name, the columns standing under these letters.
 
-
-def status_text(row: Row, rows: Sequence[Row], materials: Sequence[str], classes: Sequence[str]) -> str:
-    """Return what the status formula shows for a filled row."""
-    known = {
-        **row,
-        "_materials": {name.casefold() for name in materials},
-        "_classes": {name.casefold() for name in classes},
+    References are relative to the first row: a name means the row of the cell that uses it.
+    """
+    cells = {key: f"Variants!${letter}1" for key, letter in letters.items()}
+    first, *_, last = letters.values()
+    row = CellRow(cells)
+    part = {rule.words: str(row.all_of(*rule.broken(row))) for rule in _ERRORS}
+    before = {_ERROR: f"SUMPRODUCT(--ISERROR(Variants!${first}1:${last}1))>0"}
+    status = _first(_conditions(_LAST_RULES, cells), f'"{COMPLETE}"')
+    status = f'IF({_ENTRIES}<>"",{_ENTRIES},IF({_PART}<>"",{_PART},{status}))'
+    return {
+        _ENTRIES: f"={_first(_conditions(_ENTRY_RULES, cells))}",
+        _PART: f"={_first(part)}",
+        _STATUS: f"={_first(before, status)}",
     }
-    return next((rule.text for rule in _RULES if rule.holds(known, rows)), COMPLETE)
+
+
+def _conditions(rules: Iterable[_Rule], cells: Mapping[str, str]) -> dict[str, str]:
+    return {rule.text: rule.excel.format(cells[rule.key]) for rule in rules}
+
+
+def _first(faults: dict[str, str], otherwise: str = '""') -> str:
+    """Return the formula for the first of some texts whose condition holds."""
+    formula = otherwise
+    for text, condition in reversed(faults.items()):
+        formula = f'IF({condition},"{text}",{formula})'
+    return formula
+
+
+def status_formula(row: int, letters: Mapping[str, str]) -> str:
+    """Return the formula in the status cell of a row; a blank row has no status."""
+    first, *_, last = letters.values()
+    return f'=IF(COUNTA(${first}{row}:${last}{row})=0,"",{_STATUS})'
+
+
+def status_text(row: Row, names: Names) -> str:
+    """Return what the status formula shows for a filled row."""
+    if any(isinstance(value, ErrorCell) for value in row.values()):
+        return _ERROR
+    return _fault(_ENTRY_RULES, row, names) or _part_fault(row) or _fault(_LAST_RULES, row, names) or COMPLETE
+
+
+def _fault(rules: Iterable[_Rule], row: Row, names: Names) -> str | None:
+    return next((rule.text for rule in rules if rule.holds(row, names)), None)
+
+
+def _part_fault(row: Row) -> str | None:
+    """Return which rule of the book a row of sound entries breaks first."""
+    entries = {name: float(row[key]) for name, key in _DIMENSION_KEYS.items() if not _is_blank(row.get(key))}
+    rule = first_broken(_ERRORS, NumberRow(type=_text(row, "flexspline_type").strip() or "cup", entries=entries))
+    return rule.words if rule else None

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import datetime
-from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from flexlash.feedback.template.cell_writer import Formula
+from flexlash.feedback.template.cell_writer import Formula, writable
 from flexlash.feedback.template.filling import Entries
-from flexlash.feedback.template.status_formulas import status_text
-from flexlash.reading.raw import ErrorCell, Unstored
+from flexlash.feedback.template.status_formulas import Names, status_text
+from flexlash.reading.raw import Unstored
 
 __all__ = ["listed_name", "stored_statuses"]
+
+_DAY_0 = datetime.datetime(1899, 12, 30)  # noqa: DTZ001
+"""The day that Excel counts from."""
 
 
 def listed_name(value: Any) -> str:
@@ -21,32 +24,31 @@ def listed_name(value: Any) -> str:
 
 
 def stored_statuses(entries: Entries, materials: Sequence[str], classes: Sequence[str]) -> list[str]:
-    """Return what Excel would show as the status of each row; an error in the row shows through."""
+    """Return what Excel would show as the status of each row."""
     rows = [_as_excel({column.key: row.get(column.key) for column in entries.columns}) for row in entries.rows]
-    twins: dict[str, list[Mapping[str, Any]]] = defaultdict(list)
-    for row in rows:
-        twins[str(row.get("variant")).casefold()].append(row)
-    return [_stored_status(row, twins[str(row.get("variant")).casefold()], materials, classes) for row in rows]
+    variants = Counter(_small(row["variant"] for row in rows if "variant" in row))
+    names = Names(variants=variants, materials={*_small(materials)}, classes={*_small(classes)})
+    return [status_text(row, names) if row else "" for row in rows]
 
 
-def _stored_status(
-    row: Mapping[str, Any], twins: Sequence[Mapping[str, Any]], materials: Sequence[str], classes: Sequence[str]
-) -> str:
-    """Return the status of a row; `twins` are the rows of its name."""
-    if not row:
-        return ""
-    error = next((value.text for value in row.values() if isinstance(value, ErrorCell)), None)
-    return error or status_text(row, twins, materials, classes)
+def _small(names: Iterable[Any]) -> Iterable[str]:
+    return (str(name).casefold() for name in names)
 
 
 def _as_excel(row: Mapping[str, Any]) -> dict[str, Any]:
     """Return a row's entries as a formula sees them: times as numbers, results for formulas."""
-    seen = {}
-    for key, value in row.items():
-        if isinstance(value, Formula):
-            seen[key] = 1.0 if value.result is None else value.result
-        elif isinstance(value, datetime.date | datetime.time | datetime.timedelta | Unstored):
-            seen[key] = 1.0
-        elif value is not None:
-            seen[key] = value
-    return seen
+    return {key: _seen(writable(value)) for key, value in row.items() if value is not None}
+
+
+def _seen(value: Any) -> Any:
+    if isinstance(value, Formula):
+        return 1.0 if value.result is None else value.result
+    if isinstance(value, Unstored):
+        return 1.0
+    if isinstance(value, datetime.time):
+        value = datetime.datetime.combine(_DAY_0, value)
+    elif isinstance(value, datetime.date) and not isinstance(value, datetime.datetime):
+        value = datetime.datetime.combine(value, datetime.time())
+    if isinstance(value, datetime.datetime):
+        value -= _DAY_0
+    return value / datetime.timedelta(days=1) if isinstance(value, datetime.timedelta) else value

@@ -22,7 +22,7 @@ from flexlash.feedback.template.entry_rules import (
     write_lists,
 )
 from flexlash.feedback.template.filling import Entries, Filling, study
-from flexlash.feedback.template.status_formulas import COMPLETE, status_formula
+from flexlash.feedback.template.status_formulas import COMPLETE, status_formula, status_names
 from flexlash.feedback.template.stored_status import listed_name, stored_statuses
 from flexlash.schema.columns import ENTRY_SHEETS, SETTINGS, Column
 from flexlash.validation.headers import STATUS_HEADER
@@ -186,9 +186,11 @@ class _Template:
         sheet.write_string(2, status, "", self.formats["group"])
         sheet.write_string(HEADER_ROW, status, STATUS_HEADER, self.formats["header"])
         sheet.write_comment(HEADER_ROW, status, "Calculated while you type: what the row still lacks.")
-        sheet.set_column(status, status, 36, self.formats["status"])
+        sheet.set_column(status, status, 48, self.formats["status"])
         self._fill(sheet, entries, status + 1)
         letters = {column.key: xl_col_to_name(index) for index, column in enumerate(columns)}
+        for name, formula in status_names(letters).items():
+            self.workbook.define_name(name, formula)
         texts = stored_statuses(entries, materials, classes)
         prepared = max(PREPARED_ROWS, len(texts))
         for index in range(prepared):

@@ -32,7 +32,7 @@ from flexlash.schema.entry_words import wrong_number
 from flexlash.schema.part_row import PartRow
 from flexlash.schema.part_rules import PART_RULES
 
-__all__ = ["ALWAYS", "RULES_WIDTH", "TYPES", "write_rules"]
+__all__ = ["ALWAYS", "RULES_WIDTH", "TYPES", "InputRow", "write_rules"]
 
 ALWAYS = frozenset({
     "torque", "cylinder_length", "wall_thickness", "cylinder_calibration", "disk_calibration",
@@ -59,7 +59,7 @@ class _Rule:
     code: Live
 
 
-class _InputRow(PartRow):
+class InputRow(PartRow):
     """The inputs of Trace as its steps refer to them; a bore or radius that is typed takes the other's place."""
 
     def __init__(self, page: Page) -> None:
@@ -110,7 +110,7 @@ class _InputRow(PartRow):
 
 def write_rules(page: Page, sheet: Any, top: int) -> tuple[Live, int]:
     """Write the rules below a row; return the words of the first that is broken, else "", and the last row."""
-    inputs = _InputRow(page)
+    inputs = InputRow(page)
     rules = [*_entries(inputs), _constants(inputs), *_of_part(inputs)]
     for column, (heading, width) in enumerate(_HEADS):
         sheet.set_column(column, column, width)
@@ -140,7 +140,7 @@ def _rule(code: str, words: str, *broken: Live) -> _Rule:
     return _Rule(words=words, broken=AND(*broken), code=live(code))
 
 
-def _entries(inputs: _InputRow) -> Iterator[_Rule]:
+def _entries(inputs: InputRow) -> Iterator[_Rule]:
     """Yield that a change is an entry of the list, or a number within the bounds of its column."""
     change = inputs.change("flexspline_type")
     known = OR(*(change.equals(word) for word in ("", *TYPES)))
@@ -160,13 +160,13 @@ def _entries(inputs: _InputRow) -> Iterator[_Rule]:
         )
 
 
-def _constants(inputs: _InputRow) -> _Rule:
+def _constants(inputs: InputRow) -> _Rule:
     """Return that a material has elastic constants."""
     young_or_poisson = OR(inputs.blank("youngs_modulus"), inputs.blank("poisson_ratio"))
     return _rule("E322", "neither E with ν nor G is given", inputs.blank("shear_modulus"), young_or_poisson)
 
 
-def _of_part(inputs: _InputRow) -> Iterator[_Rule]:
+def _of_part(inputs: InputRow) -> Iterator[_Rule]:
     """Yield the rules of a submission that make no part."""
     for rule in PART_RULES:
         if rule.is_error:
