@@ -22,7 +22,7 @@ from flexlash.feedback.splicing.xml_spans import (
     xml_text,
 )
 from flexlash.reading.delimited import read_table
-from flexlash.reading.products import mended_role
+from flexlash.reading.products import fixed_role
 from flexlash.reading.raw import RawSheet
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.xlsx import read_workbook
@@ -195,7 +195,7 @@ def test_cells_change_and_nothing_else(book):
         "xl/_rels/workbook.xml.rels", "_rels/.rels",
     }  # fmt: skip
     workbook = openpyxl.load_workbook(io.BytesIO(data))
-    assert workbook.custom_doc_props["flexlash"].value == mended_role(book)
+    assert workbook.custom_doc_props["flexlash"].value == fixed_role(book)
     sheet = workbook["Variants"]
     assert [[cell.value for cell in row] for row in sheet] == [
         ["Variant", "Wall", "Sum"],

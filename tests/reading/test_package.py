@@ -149,16 +149,16 @@ def test_styles_are_where_readers_look_for_them():
     links = parts_of()[RELATIONS].replace("styles.xml", "looks.xml")
     package = _opened(parts_of(**{STYLES: None, "xl/looks.xml": styles_of(0, 14), RELATIONS: links}))
     assert package.parts[STYLES] == styles_of(0, 14).encode()
-    assert (package.styles, package.mended) == (2, True)
+    assert (package.styles, package.is_rewritten) == (2, True)
 
 
 def test_a_type_without_its_part_is_left_out():
     """A part that is listed and not there is forgotten, and the workbook is told as mended."""
     listed = '<Override PartName="/xl/theme/theme1.xml" ContentType="x"/></Types>'
     package = _opened(_replaced(TYPES, "</Types>", listed))
-    assert package.mended
+    assert package.is_rewritten
     assert b"theme" not in package.parts[TYPES]
-    assert not _opened(parts_of()).mended
+    assert not _opened(parts_of()).is_rewritten
 
 
 def test_the_strict_dialect_is_read_as_the_usual_one():
@@ -169,7 +169,7 @@ def test_the_strict_dialect_is_read_as_the_usual_one():
     }
     package = _opened(strict)
     assert [sheet.title for sheet in package.sheets] == ["S"]
-    assert package.mended
+    assert package.is_rewritten
     assert package.texts == 2
     assert not any(b"purl.oclc.org" in part for part in package.parts.values())
 

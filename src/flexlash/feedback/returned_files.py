@@ -15,7 +15,7 @@ from flexlash.feedback.fixing.fix import Repair
 from flexlash.feedback.fixing.fixed_table import mended_table
 from flexlash.feedback.fixing.fixed_workbook import mended_workbook
 from flexlash.reading.limited_process import ProcessFaultError, ask
-from flexlash.reading.products import mended_role
+from flexlash.reading.products import fixed_role
 from flexlash.reading.raw import Submission
 from flexlash.reading.read import ReadReport, Source
 from flexlash.reading.reading_limits import ReadingLimits
@@ -55,7 +55,7 @@ def mended(source: Source | ReadReport | Refusal, options: Options) -> Mended:
         if not made:
             break
         outcome = outcome_of(examined(Source(name=original.name, data=data), options))
-    return Mended(data=data, role=mended_role(original.data), outcome=outcome, repairs=tuple(repairs.values()))
+    return Mended(data=data, role=fixed_role(original.data), outcome=outcome, repairs=tuple(repairs.values()))
 
 
 def worth_marking(outcome: Outcome) -> bool:

@@ -59,7 +59,7 @@ def settle_numbers(
         return settled._replace(comma_number=first)
     is_proven = points and points >= _PREVAILING * commas
     if not is_proven and (commas or delimiter != ","):
-        # The commas may be the only sign of the doubt: mended, they would leave 1.200 behind as an ordinary number.
+        # The commas may be the only sign of the doubt: once fixed, they would leave 1.200 behind as an ordinary number.
         commas_too = ("comma", "thousands_points") if counts["open_point"] else ()
         _mark(rows, others, dict.fromkeys(("open_point", *commas_too), DoubtfulNumber))
     return settled

@@ -53,6 +53,7 @@ class Package:
     """A workbook's parts in the usual dialect.
 
     `styles` is how many cell formats it has, `strings` the part that holds the `texts` its cells share.
+    `is_rewritten` says that parts are not as the file has them, but in the usual dialect.
     """
 
     parts: dict[str, bytes]
@@ -62,7 +63,7 @@ class Package:
     strings: str = ""
     texts: int = 0
     modified: datetime.datetime | None = None
-    mended: bool = False
+    is_rewritten: bool = False
 
 
 def open_package(parts: Mapping[str, bytes], limits: ReadingLimits) -> Package:
@@ -86,13 +87,11 @@ def open_package(parts: Mapping[str, bytes], limits: ReadingLimits) -> Package:
         parts=usual,
         workbook=workbook,
         sheets=sheets,
-        styles=max(1, len(Listing(usual[styles], limits, "xf", "cellXfs").attributes))
-        if styles in usual
-        else limits.cells,
+        styles=_count_styles(usual[styles], limits) if styles in usual else limits.cells,
         strings=strings if strings in usual else "",
         texts=_Strings(usual[strings], limits).count if strings in usual else 0,
         modified=_modified(usual, limits),
-        mended=usual != parts,
+        is_rewritten=usual != parts,
     )
 
 

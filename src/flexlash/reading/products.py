@@ -1,7 +1,7 @@
 """What flexlash itself wrote, met again among submissions, and the lock files of other programs: they are skipped.
 
 A workbook says what it is in its document properties, which stay when somebody works in it and saves it. A table cannot
-say so: Results are known by their header row, a mended table by its name beside its original.
+say so: Results are known by their header row, a fixed table by its name beside its original.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ __all__ = [
     "CHECKED_NAME",
     "FIXED_NAME",
     "REPORT_NAME",
+    "fixed_role",
     "is_made_by_name",
     "is_replaced",
     "made_of",
-    "mended_role",
     "require_submission",
     "results_header",
 ]
@@ -37,11 +37,11 @@ _MADE = re.compile(rf"(?P<stem>.+)(?P<what>{REPORT_NAME}|{CHECKED_NAME}|{FIXED_N
 _FIXED = "mended"
 _RESULTS = tuple(column.key for column in result_columns(cross_check=False, elasticity=False))
 _LARGEST = 2**27
-"""Largest file whose digest is taken to find out whether it is the original of a mended one [bytes]."""
+"""Largest file whose digest is taken to find out whether it is the original of a fixed one [bytes]."""
 
 
-def mended_role(original: bytes) -> str:
-    """Return what a mended workbook says of itself: that it is one, and of which submission."""
+def fixed_role(original: bytes) -> str:
+    """Return what a fixed workbook says of itself: that it is one, and of which submission."""
     return f"{_FIXED} {hashlib.sha256(original).hexdigest()}"
 
 
@@ -73,7 +73,7 @@ def made_of(path: Path, what: str) -> str:
 def require_submission(submission: Submission, path: Path, given: Iterable[Path], *, marked_copies: bool) -> None:
     """Raise Refusal, with the code of an info, for a file that flexlash itself wrote and that is therefore skipped.
 
-    `given` are all files given with it: a mended file is skipped when its original is among them.
+    `given` are all files given with it: a fixed file is skipped when its original is among them.
     """
     if code := _product(submission, path, [Path(path) for path in given], marked_copies=marked_copies):
         raise Refusal(code)
@@ -93,7 +93,7 @@ def _product(submission: Submission, path: Path, given: Iterable[Path], *, marke
 def is_replaced(role: str, path: Path, given: Iterable[Path], *, marked_copies: bool) -> bool:
     """Whether a given file with this role in its stamp will be skipped, so that its successor may take its place.
 
-    A table that was mended has no stamp, but a name.
+    A table that was fixed has no stamp, but a name.
     """
     if path.suffix.lower() == ".csv":
         return _original_beside(path, given)
@@ -115,7 +115,7 @@ def _code(role: str, path: Path, given: Iterable[Path], *, marked_copies: bool) 
 
 
 def _original_beside(path: Path, given: Iterable[Path]) -> bool:
-    """Whether the original, by its name, stands beside a mended file and is given as well."""
+    """Whether the original, by its name, stands beside a fixed file and is given as well."""
     if (stem := made_of(path, FIXED_NAME)) == path.stem:
         return False
     original = path.with_name(f"{stem}{path.suffix}")

@@ -57,7 +57,7 @@ class CommaNumber(str):
 
 
 class DoubtfulNumber(str):
-    """A text of a table whose sign may not be what it seems, such as 1.600 or 1.7 beside 1,6; never mended unasked."""
+    """A text of a table whose sign may not be what it seems, such as 1.600 or 1.7 beside 1,6; never fixed unasked."""
 
     __slots__ = ()
 

@@ -49,7 +49,7 @@ def read_workbook(data: bytes, limits: ReadingLimits, only: Collection[str] = ()
         # openpyxl warns of every feature that it does not carry over, none of which holds a cell's value.
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            cells = _read(packed(package.parts) if package.mended else data, package, looked_at)
+            cells = _read(packed(package.parts) if package.is_rewritten else data, package, looked_at)
     except MemoryError:
         raise
     except Exception as fault:

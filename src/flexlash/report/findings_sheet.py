@@ -1,4 +1,4 @@
-"""The Findings sheet: each rule once with its count and mend, below them every finding with its links."""
+"""The Findings sheet: each rule once with its count and what fixes it, below them every finding with its links."""
 
 from __future__ import annotations
 

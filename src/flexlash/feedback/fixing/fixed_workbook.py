@@ -10,7 +10,7 @@ from flexlash.feedback.splicing.sheet_spans import SheetSpans, cell_xml
 from flexlash.feedback.splicing.workbook_parts import WorkbookParts
 from flexlash.feedback.splicing.xml_spans import spliced, xml_text
 from flexlash.reading.elements import MAIN
-from flexlash.reading.products import mended_role
+from flexlash.reading.products import fixed_role
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.xlsx import PROPERTY
 from flexlash.schema.cell_addresses import cell_address
@@ -47,7 +47,7 @@ def mended_workbook(data: bytes, repairs: Sequence[Repair], limits: ReadingLimit
             FIXES_SHEET, f"flexlash {FIXES_SHEET} 1", numbered=f"flexlash {FIXES_SHEET} {{}}".format
         )
         book.add_sheet(book.free_title(titles), _sheet(made))
-        book.set_property(PROPERTY, mended_role(data))
+        book.set_property(PROPERTY, fixed_role(data))
     return book.data(), made
 
 
