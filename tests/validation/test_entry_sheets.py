@@ -8,7 +8,7 @@ from flexlash.reading.raw import RawSheet, Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.columns import columns_of
-from flexlash.validation.entry_sheets import entry_sheets, tell_other_names, tell_second_tables
+from flexlash.validation.entry_sheets import entry_sheets, report_other_names, report_second_tables
 from flexlash.validation.ledger import Ledger
 
 
@@ -54,7 +54,7 @@ def test_a_sheet_that_alone_has_the_headers_of_variants_is_read(name):
     found = entry_sheets(submission, ReadingLimits())
     assert {schema: sheet.name for schema, sheet in found.items()} == {"Variants": name, "Materials": "Materials"}
     ledger = Ledger("a.xlsx")
-    assert tell_other_names(submission, found, ledger) == set()
+    assert report_other_names(submission, found, ledger) == set()
     assert [(one.code, one.place) for one in ledger.findings] == [("I520", name)]
 
 
@@ -76,7 +76,7 @@ def test_a_side_sheet_of_another_name_is_read(schema, name, headers):
     found = entry_sheets(submission, ReadingLimits())
     assert found[schema].name == name
     ledger = Ledger("a.xlsx")
-    assert tell_other_names(submission, found, ledger) == set()
+    assert report_other_names(submission, found, ledger) == set()
     assert [(one.code, one.place) for one in ledger.findings] == [("I520", name)]
     assert not ledger.everything
 
@@ -91,7 +91,7 @@ def test_of_two_side_sheets_none_is_read():
     """Two sheets that may be Tolerances stop the work: no built-in class takes their place."""
     submission = _submission(Variants="Variants", coarse="Tolerances", fine="Tolerances")
     ledger = Ledger("a.xlsx")
-    assert tell_other_names(submission, entry_sheets(submission, ReadingLimits()), ledger) == {"Tolerances"}
+    assert report_other_names(submission, entry_sheets(submission, ReadingLimits()), ledger) == {"Tolerances"}
     assert [(found.code, found.place) for found in ledger.findings] == [("E127", "coarse")]
     assert "coarse, fine" in ledger.findings[0].message
     assert ledger.everything
@@ -111,7 +111,7 @@ def test_other_sheets_are_left_alone(sheets):
     """A sheet with few or no such headers, or beside the right one, is the author's own."""
     submission = _submission(Variants="Variants", **sheets)
     ledger = Ledger("a.xlsx")
-    assert tell_other_names(submission, entry_sheets(submission, ReadingLimits()), ledger) == set()
+    assert report_other_names(submission, entry_sheets(submission, ReadingLimits()), ledger) == set()
     assert ledger.findings == []
 
 
@@ -139,5 +139,5 @@ def test_a_second_table_is_not_read_in_silence(name, headers, told):
     """A sheet that holds the table of an entry sheet once more is warned of, by its own name; other sheets are not."""
     submission = _submission(Variants="Variants", Materials="Materials", **{name: headers})
     ledger = Ledger("a.xlsx")
-    tell_second_tables(submission, entry_sheets(submission, ReadingLimits()), ledger)
+    report_second_tables(submission, entry_sheets(submission, ReadingLimits()), ledger)
     assert [(found.code, found.place) for found in ledger.findings] == [(code, f"{name}!A1") for code in told]

@@ -54,10 +54,10 @@ def whole_number(name: str, value: object, *, least: int, most: int | None = Non
     required = f"a whole number of at least {least}" + ("" if most is None else f" and at most {most}")
     if isinstance(value, bool) or not isinstance(value, Integral):
         raise TypeError(_refusal(name, value, required))
-    found = int(value)
-    if found < least or (most is not None and found > most):
+    whole = int(value)
+    if whole < least or (most is not None and whole > most):
         raise ValueError(_refusal(name, value, required))
-    return found
+    return whole
 
 
 def number(name: str, value: object, *, finite: bool = True) -> float:
@@ -71,12 +71,12 @@ def number(name: str, value: object, *, finite: bool = True) -> float:
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(_refusal(name, value, required))
     try:
-        found = float(value)
+        real = float(value)
     except OverflowError:
-        found = math.inf
-    if math.isnan(found) or (finite and math.isinf(found)):
+        real = math.inf
+    if math.isnan(real) or (finite and math.isinf(real)):
         raise ValueError(_refusal(name, value, required))
-    return found
+    return real
 
 
 def numbers(name: str, value: npt.ArrayLike, *, least: float = -math.inf, most: float = math.inf) -> Array:
@@ -90,15 +90,15 @@ def numbers(name: str, value: npt.ArrayLike, *, least: float = -math.inf, most: 
 
     required = "numbers" if math.isinf(most) else f"numbers between {least:g} and {most:g}"
     try:
-        found = np.asarray(value)
+        array = np.asarray(value)
     except ValueError as fault:
         raise TypeError(_refusal(name, value, required, plural=True)) from fault
-    if found.size and found.dtype.kind not in "iuf":
+    if array.size and array.dtype.kind not in "iuf":
         raise TypeError(_refusal(name, value, required, plural=True))
-    wanted = found.astype(float)
-    if not np.all((wanted >= least) & (wanted <= most)):
+    reals = array.astype(float)
+    if not np.all((reals >= least) & (reals <= most)):
         raise ValueError(_refusal(name, value, required, plural=True))
-    return wanted
+    return reals
 
 
 def one_of(name: str, value: object, choices: Collection[str]) -> str:
@@ -139,10 +139,10 @@ def file_path(name: str, value: object) -> Path:
     Traceback (most recent call last):
     TypeError: output = 5: the path of a file, as a text or a pathlib.Path, is required
     """
-    found = os.fspath(value) if isinstance(value, os.PathLike) else value
-    if not isinstance(found, str):
+    path = os.fspath(value) if isinstance(value, os.PathLike) else value
+    if not isinstance(path, str):
         raise TypeError(_refusal(name, value, "the path of a file, as a text or a pathlib.Path,"))
-    return Path(found)
+    return Path(path)
 
 
 def of_type(name: str, value: object, wanted: type | tuple[type, ...], required: str) -> Any:

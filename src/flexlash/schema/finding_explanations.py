@@ -104,8 +104,13 @@ def findings_page(examples: Mapping[str, str]) -> str:
     return "\n".join(parts)
 
 
-def _section(one: Explanation) -> str:
-    """Return the section of one finding."""
-    example = f"Example: `{one.example}`\n" if one.example else ""
-    lines = (f"### {one.code} {one.title}", f"`{one.pattern}`", one.meaning, f"Mend: {one.mend}", example)
-    return "\n\n".join(line for line in lines if line).rstrip() + "\n"
+def _section(explanation: Explanation) -> str:
+    """Return the section of a finding."""
+    parts = (
+        f"### {explanation.code} {explanation.title}",
+        f"`{explanation.pattern}`",
+        explanation.meaning,
+        f"Mend: {explanation.mend}",
+        f"Example: `{explanation.example}`\n" if explanation.example else "",
+    )
+    return "\n\n".join(filter(None, parts)).rstrip() + "\n"

@@ -105,7 +105,7 @@ def readable(text: object) -> str:
     >>> readable("caf\udce9.csv")
     'caf\\xe9.csv'
     """
-    return _NO_CHARACTER.sub(lambda found: _escaped(ord(found[0])), str(text))
+    return _NO_CHARACTER.sub(lambda match: _escaped(ord(match[0])), str(text))
 
 
 def _escaped(code: int) -> str:

@@ -33,11 +33,11 @@ _LONGEST = 200
 
 def known_names(columns: Mapping[str, Column]) -> dict[str, str]:
     """Return every accepted header without its unit → key: key, label with and without symbol, short forms."""
-    found = {}
+    keys = {}
     for key, column in columns.items():
         for spelling in (key, column.dimension, column.name, column.plain_name, *_SHORT.get(key, ())):
-            found[plain(spelling)] = key
-    return found
+            keys[plain(spelling)] = key
+    return keys
 
 
 def name_and_unit(header: str) -> tuple[str, str | None]:
@@ -50,7 +50,7 @@ def name_and_unit(header: str) -> tuple[str, str | None]:
     text = header.rstrip() if len(header) <= _LONGEST else ""
     if text.endswith(("]", ")")):
         inside = max(text.rfind("]", 0, -1), text.rfind(")", 0, -1)) + 1
-        openings = [place for sign in "[(" if (place := text.find(sign, inside)) >= 0]
+        openings = [opening for sign in "[(" if (opening := text.find(sign, inside)) >= 0]
         if openings:
             name, unit = text[: min(openings)].rstrip(), text[min(openings) + 1 : -1].strip()
     return " ".join(word for word in name[: _LONGEST + 1].split(" ") if word not in _LOST), unit

@@ -37,9 +37,9 @@ def plain(text: str) -> str:
     return "".join(character for character in folded if not character.isspace() and character not in "_-\u200b")
 
 
-def likeness(one: str, other: str) -> float:
+def likeness(first: str, second: str) -> float:
     """Return how alike two plain spellings are: twice the letters in common, in order, over the letters of both."""
-    return Indel.normalized_similarity(one, other)
+    return Indel.normalized_similarity(first, second)
 
 
 def affordable(names: Collection[str]) -> int:
@@ -95,7 +95,7 @@ def suggested(text: str, names: Iterable[str], cutoff: float = 0.6) -> str:
     holding = index.by_word.get(wanted, [])
     if not holding and len(wanted) >= _SHORTEST:
         first = bisect_left(index.ordered, (wanted, ""))
-        beginning = takewhile(lambda one: one[0].startswith(wanted), islice(index.ordered, first, None))
+        beginning = takewhile(lambda known_as: known_as[0].startswith(wanted), islice(index.ordered, first, None))
         holding = [name for _, name in islice(beginning, _NAMED + 1)]
     if holding:
         return " or ".join(holding) if len(holding) <= _NAMED else ""

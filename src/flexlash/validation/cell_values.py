@@ -110,8 +110,8 @@ def _from_text(value: RawValue, column: Column | None, measure: Measure | None, 
     number = text.replace(",", ".") if isinstance(value, CommaNumber) else text
     doubtful = isinstance(value, DoubtfulNumber)
     if readable and _NUMBER.fullmatch(number) and not doubtful:
-        found = float(number)
-        return found if math.isfinite(found) else Fault(code="E212", value=text)
+        parsed = float(number)
+        return parsed if math.isfinite(parsed) else Fault(code="E212", value=text)
     if column and is_no_value(text):
         return Fault(code="E221", value=value, facts=no_value_facts(column))
     meant = meant_number(str(value), column, measure) if column else Meant()

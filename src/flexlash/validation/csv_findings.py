@@ -28,8 +28,8 @@ def report_dialect(sheet: RawSheet, ledger: Ledger) -> None:
         ledger.add("I511", **facts | _at(sheet, dialect.foreign_text))
 
 
-def _at(sheet: RawSheet, place: tuple[int, int]) -> dict[str, Any]:
+def _at(sheet: RawSheet, address: tuple[int, int]) -> dict[str, Any]:
     """Return the address and the text of a cell."""
-    row, column = place
+    row, column = address
     text = str(sheet.rows[row][column]).strip()
     return {"sheet": sheet.name, "cell": CellAddress(row=row, column=column), "value": text}

@@ -13,7 +13,7 @@ from flexlash.schema.spellings import closest, plain
 from flexlash.validation.headers import count_headings
 from flexlash.validation.ledger import Ledger
 
-__all__ = ["entry_sheets", "sheet_names", "tell_other_names", "tell_second_tables"]
+__all__ = ["entry_sheets", "report_other_names", "report_second_tables", "sheet_names"]
 
 _RESEMBLING = 0.75
 """Likeness of names from which on a sheet with headers of a missing one is taken for it."""
@@ -34,25 +34,25 @@ def entry_sheets(submission: Submission, limits: ReadingLimits) -> dict[str, Raw
         if plain(name) in names and plain(name) in map(plain, ENTRY_SHEETS):
             raise Refusal("E117", found=name, other=names[plain(name)])
         names[plain(name)] = name
-    found = {schema: submission.sheets[name] for schema, name in sheet_names(submission).items()}
-    if "Variants" not in found:
+    sheets = {schema: submission.sheets[name] for schema, name in sheet_names(submission).items()}
+    if "Variants" not in sheets:
         raise _without_variants(submission)
     if submission.kind == "workbook":
-        for sheet in found.values():
+        for sheet in sheets.values():
             limits.require("rows", len(sheet.rows))
             limits.require("columns", max((max(cells) for cells in sheet.rows.values()), default=0))
-    return found
+    return sheets
 
 
 def sheet_names(submission: Submission) -> dict[str, str]:
     """Return the name of each entry sheet that a submission has, by schema, in the order of the template."""
     names = {plain(name): name for name in submission.sheets}
-    found = {schema: names[plain(schema)] for schema in ENTRY_SHEETS if plain(schema) in names}
-    for schema in ENTRY_SHEETS.keys() - found.keys():
-        meant = [name for name in _meant(submission, schema) if name not in found.values()]
+    chosen = {schema: names[plain(schema)] for schema in ENTRY_SHEETS if plain(schema) in names}
+    for schema in ENTRY_SHEETS.keys() - chosen.keys():
+        meant = [name for name in _meant(submission, schema) if name not in chosen.values()]
         if len(meant) == 1:
-            found[schema] = meant[0]
-    return {schema: found[schema] for schema in ENTRY_SHEETS if schema in found}
+            chosen[schema] = meant[0]
+    return {schema: chosen[schema] for schema in ENTRY_SHEETS if schema in chosen}
 
 
 def _without_variants(submission: Submission) -> Refusal:
@@ -81,7 +81,7 @@ def _meant(submission: Submission, schema: str) -> list[str]:
     return sure or [like] * bool(like)
 
 
-def tell_other_names(submission: Submission, present: dict[str, RawSheet], ledger: Ledger) -> set[str]:
+def report_other_names(submission: Submission, present: dict[str, RawSheet], ledger: Ledger) -> set[str]:
     """Tell sheets that were read under another name, and several that may be meant; return the schemas of the latter.
 
     No built-in table may take the place of a sheet that is there twice.
@@ -89,17 +89,17 @@ def tell_other_names(submission: Submission, present: dict[str, RawSheet], ledge
     for schema, sheet in present.items():
         if submission.kind == "workbook" and plain(sheet.name) != plain(schema):
             ledger.add("I520", sheet=sheet.name, value=sheet.name, other=schema)
-    found = set()
+    unclear = set()
     for schema in ENTRY_SHEETS.keys() - present.keys():
         read = {sheet.name for sheet in present.values()}
         if meant := [name for name in _meant(submission, schema) if name not in read]:
             ledger.add("E127", sheet=meant[0], **_several(meant, schema))
             ledger.everything = True
-            found.add(schema)
-    return found
+            unclear.add(schema)
+    return unclear
 
 
-def tell_second_tables(submission: Submission, present: dict[str, RawSheet], ledger: Ledger) -> None:
+def report_second_tables(submission: Submission, present: dict[str, RawSheet], ledger: Ledger) -> None:
     """Warn of sheets that hold the table of an entry sheet once more, such as the copy `Variants (2)`."""
     read = {sheet.name for sheet in present.values()}
     for name, sheet in submission.sheets.items():

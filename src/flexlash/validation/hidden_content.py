@@ -13,7 +13,7 @@ from flexlash.schema.columns import columns_of, naming_column
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import Table
 
-__all__ = ["tell_overlooked"]
+__all__ = ["report_hidden_content"]
 
 _EMPTY_ROWS = 60
 """So many empty rows between two rows fill more than a screen: who scrolls does not see both."""
@@ -21,7 +21,7 @@ _EMPTY_ROWS = 60
 _DIGITS = re.compile(r"\d{1,3}", re.ASCII)
 
 
-def tell_overlooked(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
+def report_hidden_content(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
     """Tell what an engineer may not see in the rows of an entry sheet; cells under a merged area are errors."""
     rows = sorted(table.cells)
     if sheet.hidden and rows:

@@ -63,41 +63,41 @@ _CALLED = {
 def likely_headers(
     names: Mapping[int, str], columns: Mapping[str, Column], spellings: Mapping[str, str]
 ) -> dict[int, list[str]]:
-    """Return the keys that each unknown header may mean, by its place; more than one where they are as near.
+    """Return the keys that each unknown header may mean, by its index; more than one where they are as near.
 
     `names` are the headers of a row without their units, `spellings` the keys by every spelling that is known.
     """
     present = {spellings[plain(name)] for name in names.values() if plain(name) in spellings}
-    unknown = {place: name for place, name in names.items() if plain(name) not in spellings}
-    alike = {place: _likenesses(name, spellings) for place, name in unknown.items()}
+    unknown = {index: name for index, name in names.items() if plain(name) not in spellings}
+    alike = {index: _likenesses(name, spellings) for index, name in unknown.items()}
     absent = columns.keys() - present - (set() if present.isdisjoint(_RADII) else set(_RADII))
     called = _called(unknown, absent)
     missing = _missing(columns, present | {*called.values()})
     pairs = sorted(
-        (-_nearness(name, key, columns[key], spellings), place, key)
-        for place, name in unknown.items()
+        (-_nearness(name, key, columns[key], spellings), index, key)
+        for index, name in unknown.items()
         for key in missing
-        if place not in called
+        if index not in called
     )
-    rivals = Counter((opposite, place) for opposite, place, _ in pairs)
-    found = {place: [key] for place, key in called.items()}
-    for opposite, place, key in pairs:
-        if -opposite < max(_MISSING, *alike[place].values()) or place in found or rivals[opposite, place] > 1:
+    rivals = Counter((opposite, index) for opposite, index, _ in pairs)
+    likely = {index: [key] for index, key in called.items()}
+    for opposite, index, key in pairs:
+        if -opposite < max(_MISSING, *alike[index].values()) or index in likely or rivals[opposite, index] > 1:
             continue
-        if [key] not in found.values():
-            found[place] = [key]
-    return {place: _resembling(alike[place], present) for place in unknown} | found
+        if [key] not in likely.values():
+            likely[index] = [key]
+    return {index: _resembling(alike[index], present) for index in unknown} | likely
 
 
 def _called(unknown: Mapping[int, str], absent: Collection[str]) -> dict[int, str]:
-    """Return the absent column that each header names in other words, by its place; the first header of two."""
+    """Return the absent column that each header names in other words, by its index; the first header of two."""
     spelt = {name: key for key, names in _CALLED.items() if key in absent for name in map(plain, names.split())}
-    found: dict[int, str] = {}
-    for place, name in unknown.items():
+    named: dict[int, str] = {}
+    for index, name in unknown.items():
         key = spelt.get(plain(name)) or spelt.get(plain(" ".join(words(name))))
-        if key and key not in found.values():
-            found[place] = key
-    return found
+        if key and key not in named.values():
+            named[index] = key
+    return named
 
 
 def _missing(columns: Mapping[str, Column], present: set[str]) -> list[str]:
@@ -120,10 +120,10 @@ def _nearness(name: str, key: str, column: Column, spellings: Mapping[str, str])
 
 def _likenesses(name: str, spellings: Mapping[str, str]) -> dict[str, float]:
     """Return how like a header is to each column by its letters."""
-    found: dict[str, float] = {}
+    likenesses: dict[str, float] = {}
     for spelling, key in spellings.items():
-        found[key] = max(found.get(key, 0.0), likeness(plain(name), spelling))
-    return found
+        likenesses[key] = max(likenesses.get(key, 0.0), likeness(plain(name), spelling))
+    return likenesses
 
 
 def _resembling(alike: Mapping[str, float], present: set[str]) -> list[str]:

@@ -114,10 +114,10 @@ def meant_number(text: str, column: Column, measure: Measure | None = None) -> M
             return Meant()
         bare, certain, factor = bare[mark.end() :], certain and round_factor == 1, round_factor
     readings = (_in_cell(digits, unit, column, measure, factor) for digits, unit in _readings(bare))
-    found = dict(filter(None, readings))
-    fitting = [number for number, fits in found.items() if fits]
+    numbers = dict(filter(None, readings))
+    fitting = [number for number, fits in numbers.items() if fits]
     certain = certain and len(fitting) == 1 and not _FRACTION.fullmatch(bare)
-    return Meant(numbers=tuple(fitting or found), certain=certain)
+    return Meant(numbers=tuple(fitting or numbers), certain=certain)
 
 
 def is_both_ways(text: str) -> bool:
@@ -133,10 +133,10 @@ def _deviations(bare: str, measure: Measure) -> str:
     readings = dict(_readings(bare.removesuffix("%").rstrip() if per_cent else bare))
     if len(readings) != 1 or not (both or per_cent):
         return ""
-    found = _in_cell(*readings.popitem(), _DEVIATION, measure, 1.0)
-    if found is None:
+    entered = _in_cell(*readings.popitem(), _DEVIATION, measure, 1.0)
+    if entered is None:
         return ""
-    number = found[0].lstrip("-") if both else found[0]
+    number = entered[0].lstrip("-") if both else entered[0]
     entry = f"-{number} in lower and {number} in upper" if both else number
     return f"{entry}, and % as the deviation unit" if per_cent else entry
 

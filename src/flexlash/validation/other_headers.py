@@ -93,24 +93,24 @@ def radius_of_diameter(name: str, present: Collection[str]) -> str | None:
 
 
 def tolerance_columns(names: Mapping[int, tuple[str, str | None]]) -> dict[int, str]:
-    """Return what each header that seems to hold a tolerance or a figure of a process looks like, by its place.
+    """Return what each header that seems to hold a tolerance or a figure of a process looks like, by its index.
 
     `names` are the unknown headers of a row and the units in their brackets.
 
     >>> tolerance_columns({1: ("Wall thickness tol.", "mm"), 2: ("Cpk", None), 3: ("Specification", None)})
     {1: 'a tolerance', 2: 'a figure of a process'}
     """
-    found = {place: what for place, (name, unit) in names.items() if (what := _looks_like(name, unit))}
+    looks = {index: what for index, (name, unit) in names.items() if (what := _looks_like(name, unit))}
     ends: dict[str, dict[tuple[str, ...], int]] = {"lower": {}, "upper": {}}
-    for place, (name, _) in names.items():
+    for index, (name, _) in names.items():
         words = _words(name)
         for end, spellings in _ENDS.items():
             rest = tuple(word for word in words if word not in spellings)
             if len(rest) < len(words) and _is_dimension(rest):
-                ends[end][rest] = place
+                ends[end][rest] = index
     for rest in ends["lower"].keys() & ends["upper"].keys():
-        found |= {ends[end][rest]: "a limit" for end in ends}
-    return dict(sorted(found.items()))
+        looks |= {ends[end][rest]: "a limit" for end in ends}
+    return dict(sorted(looks.items()))
 
 
 def _looks_like(name: str, unit: str | None) -> str:

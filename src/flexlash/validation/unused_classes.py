@@ -12,12 +12,12 @@ from flexlash.schema.spellings import affordable, misspelt, plain
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import Table
 
-__all__ = ["tell_unused_classes"]
+__all__ = ["report_unused_classes"]
 
 _KEY = "tolerance_class"
 
 
-def tell_unused_classes(tolerances: Table | None, variants: Table, known: Iterable[str], ledger: Ledger) -> None:
+def report_unused_classes(tolerances: Table | None, variants: Table, known: Iterable[str], ledger: Ledger) -> None:
     """Warn once of each unused class whose name is nearly that of a class in use; `known` are plain names.
 
     A class that is used but not known has an error of its own; standard, which is in every template, is none.

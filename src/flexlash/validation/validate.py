@@ -18,8 +18,8 @@ from flexlash.schema.spellings import affordable, misspelt, plain, spelt_alike, 
 from flexlash.schema.variant import Material, Settings, ToleranceRow, Variant
 from flexlash.validation.cell_values import is_no_value, no_value_facts
 from flexlash.validation.csv_findings import report_dialect
-from flexlash.validation.entry_sheets import entry_sheets, tell_other_names, tell_second_tables
-from flexlash.validation.hidden_content import tell_overlooked
+from flexlash.validation.entry_sheets import entry_sheets, report_other_names, report_second_tables
+from flexlash.validation.hidden_content import report_hidden_content
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.materials_and_classes import (
     built_in_materials,
@@ -31,7 +31,7 @@ from flexlash.validation.materials_and_classes import (
 from flexlash.validation.row_checks import check_cells, check_relations
 from flexlash.validation.template_versions import TEMPLATE_VERSION, check_version
 from flexlash.validation.typed_columns import tabulate
-from flexlash.validation.unused_classes import tell_unused_classes
+from flexlash.validation.unused_classes import report_unused_classes
 from flexlash.validation.validated import Table, Validated
 
 __all__ = ["TEMPLATE_VERSION", "validate"]
@@ -50,13 +50,13 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     ledger = Ledger(submission.name)
     check_version(submission)
     sheets = entry_sheets(submission, limits or ReadingLimits())
-    unclear = tell_other_names(submission, sheets, ledger)
-    tell_second_tables(submission, sheets, ledger)
+    unclear = report_other_names(submission, sheets, ledger)
+    report_second_tables(submission, sheets, ledger)
     tables: dict[str, Table] = {}
     for schema, sheet in sheets.items():
         table = tabulate(sheet, schema, ledger)
         if table is not None:
-            tell_overlooked(sheet, table, ledger)
+            report_hidden_content(sheet, table, ledger)
             check_cells(table, ledger)
             tables[schema] = table
     for sheet in sheets.values():
@@ -65,8 +65,8 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     variants = tables.get("Variants")
     if variants is not None:
         _check_rows(variants, used, ledger)
-        tell_unused_classes(tables.get("Tolerances"), variants, used.classes, ledger)
-    _tell_other_sources(submission, ledger)
+        report_unused_classes(tables.get("Tolerances"), variants, used.classes, ledger)
+    _report_other_sources(submission, ledger)
     sound = variants.frame.iter_rows(named=True) if variants is not None and not ledger.everything else ()
     return Validated(
         file=submission.name,
@@ -191,7 +191,7 @@ def _blame(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts:
     ledger.add(code, sheet=table.sheet, cell=cell, column=key, name=name, rows=[row], **facts)
 
 
-def _tell_other_sources(submission: Submission, ledger: Ledger) -> None:
+def _report_other_sources(submission: Submission, ledger: Ledger) -> None:
     """Warn when the sheet of a later version is filled."""
     for name, sheet in submission.sheets.items():
         if plain(name) == plain(_OTHER_SOURCES) and len(sheet.rows) > 1:
