@@ -8,6 +8,7 @@ import polars as pl
 import pytest
 
 import flexlash
+from flexlash.analysis import results as analysis_results
 from flexlash.schema.columns import ENTRY_SHEETS
 from flexlash.schema.result_columns import RESULTS, result_columns
 from flexlash.validation.column_schemas import ResultsError, checked_results, entry_schema, failures
@@ -51,8 +52,8 @@ def _results() -> pl.DataFrame:
     return pl.DataFrame([dict.fromkeys(types)] * ROWS, schema=types)
 
 
-def test_results_of_a_run_keep_their_contract(tmp_path):
-    """Results are checked on their way out: those of a run, with a faulty row among them, pass."""
+def test_results_are_checked_on_their_way_out(tmp_path, monkeypatch):
+    """Results of a run, a faulty row among them, keep their contract; were one of its columns another, it would end."""
     path = tmp_path / "two.csv"
     path.write_text(
         "variant,material,torque_Nm,cylinder_length_mm,mean_radius_mm,wall_thickness_mm,disk_inner_radius_mm\n"
@@ -62,6 +63,9 @@ def test_results_of_a_run_keep_their_contract(tmp_path):
     results = flexlash.run(path).results
     assert results.height == ROWS
     assert checked_results(results, result_columns()) is results
+    monkeypatch.setitem(analysis_results._STEMS, "disk_share", ("stiffness", 1.0))
+    with pytest.raises(ResultsError, match=r"disk_share\|maximum"):
+        flexlash.run(path)
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ def test_every_column_is_known(schema, spelling):
     """Each column is recognised by its label, its key, and its label without unit."""
     columns = ENTRY_SHEETS[schema]
     heading, ledger = _headings([getattr(column, spelling) for column in columns], schema)
-    assert heading.places == {column.key: place for place, column in enumerate(columns, start=1)}
+    assert heading.columns == {column.key: place for place, column in enumerate(columns, start=1)}
     assert set(heading.factors.values()) == {1.0}
     assert {found.code for found in ledger.findings} <= {"I503"}
     assert not ledger.everything
@@ -58,14 +58,14 @@ def test_every_column_is_known(schema, spelling):
 def test_case_spacing_and_brackets_do_not_matter(header):
     """A header is recognised in other case, other spacing, with round brackets or without its symbol, silently."""
     heading, findings = _beside(header)
-    assert heading.places == {"variant": 1, "material": 2, "wall_thickness_mm": 3}
+    assert heading.columns == {"variant": 1, "material": 2, "wall_thickness_mm": 3}
     assert findings == []
 
 
 def test_order_does_not_matter():
     """Columns are found in whatever order they stand, with gaps."""
     heading, _ = _headings(["Wall thickness [mm]", None, "Material", None, "variant"])
-    assert heading.places == {"wall_thickness_mm": 1, "material": 3, "variant": 5}
+    assert heading.columns == {"wall_thickness_mm": 1, "material": 3, "variant": 5}
 
 
 @pytest.mark.parametrize(
@@ -96,7 +96,7 @@ def test_order_does_not_matter():
 def test_a_known_unit_is_converted_and_told(header, key, unit, factor):
     """A header in another unit of the same quantity converts its column and says so once."""
     heading, findings = _beside(header)
-    assert heading.places[key] == 3
+    assert heading.columns[key] == 3
     assert heading.factors[key] == pytest.approx(factor, rel=1e-14)
     assert [(found.code, found.value, found.column) for found in findings] == [("I501", unit, key)]
 
@@ -114,7 +114,7 @@ def test_a_known_unit_is_converted_and_told(header, key, unit, factor):
 def test_units_of_materials(header, factor):
     """Units of Materials are converted alike; one of the same size is told as well."""
     heading, ledger = _headings(["Material", header], "Materials")
-    (key,) = set(heading.places) - {"material"}
+    (key,) = set(heading.columns) - {"material"}
     assert heading.factors[key] == pytest.approx(factor, rel=1e-14)
     assert [found.code for found in ledger.findings] == ["I501"]
 
@@ -143,7 +143,7 @@ def test_a_missing_unit_is_assumed_and_told(header):
 def test_an_unknown_unit_is_an_error(header, unit):
     """A unit that is unknown, or measures something else, leaves its column unread and names the right one."""
     heading, findings = _beside(header)
-    assert set(heading.places) == set(heading.factors) == {"variant", "material"}
+    assert set(heading.columns) == set(heading.factors) == {"variant", "material"}
     assert list(heading.doubtful) == [3]
     (found,) = findings
     assert (found.code, found.value) == ("E113", header)
@@ -162,7 +162,7 @@ def test_a_unit_on_a_number_without_one():
 def test_brackets_on_a_text_do_not_matter():
     """Brackets behind a text column's name are read past."""
     heading, findings = _beside("Notes (internal)")
-    assert heading.places["notes"] == 3
+    assert heading.columns["notes"] == 3
     assert findings == []
 
 
@@ -183,7 +183,7 @@ def test_brackets_on_a_text_do_not_matter():
 def test_a_misspelt_header_is_an_error(header, key, suggestion):
     """A header that resembles a known one is never passed over: it is an error with the right header as suggestion."""
     heading, findings = _beside(header)
-    assert set(heading.places) == {"variant", "material"}
+    assert set(heading.columns) == {"variant", "material"}
     assert heading.doubtful == {3: key}
     (found,) = findings
     assert (found.code, found.column, found.suggestion) == ("E112", key, suggestion)
@@ -209,7 +209,7 @@ def test_a_header_twice():
     """With two columns of one meaning nothing is computed; the second names the first."""
     required = ["Torque T [N·m]", "Cylinder length l [mm]"]
     heading, ledger = _headings([*MATES, "Wall thickness [mm]", *required, "wall_thickness_mm"])
-    assert heading.places["wall_thickness_mm"] == 3
+    assert heading.columns["wall_thickness_mm"] == 3
     assert heading.doubtful == {6: "wall_thickness_mm"}
     (found,) = ledger.findings
     assert (found.code, found.cell) == ("E114", "F1")
@@ -291,7 +291,7 @@ def test_a_header_that_is_no_text_passes_through():
 def test_a_typographic_apostrophe():
     """A header with a typographic apostrophe is the same header."""
     heading, _ = _headings(["Material", "Source", "Young’s modulus E [GPa]"], "Materials")
-    assert "youngs_modulus_GPa" in heading.places
+    assert "youngs_modulus_GPa" in heading.columns
 
 
 @pytest.mark.parametrize(

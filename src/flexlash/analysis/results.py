@@ -17,6 +17,7 @@ from flexlash.schema.column import Column
 from flexlash.schema.findings import Finding
 from flexlash.schema.result_columns import result_columns
 from flexlash.schema.units import ARCMIN, RPM, as_entered
+from flexlash.validation.column_schemas import checked_results
 from flexlash.validation.validated import Table
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def results_of(
     remarks = _remarks(table, computed.keys(), findings, stops)
     joined = rows.join(remarks, on="row", how="left", maintain_order="left")
     joined = joined.join(numbers, on="row", how="left", maintain_order="left")
-    return joined.select(column.key for column in columns)
+    return checked_results(joined.select(column.key for column in columns), columns)
 
 
 _OF_THE_ROW = frozenset({"variant", "notes", "status", "findings"})

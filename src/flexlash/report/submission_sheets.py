@@ -76,7 +76,7 @@ def write_submission(book: Book, outcome: Outcome) -> None:
             }
             mirror = _Mirror(raw=raw, title=title, header=headers.get(schema, 0), guilty=of_sheet)
             if schema == "Variants" and table is not None:
-                linked = table.heading.places.get("variant", 0) - 1
+                linked = table.heading.columns.get("variant", 0) - 1
                 mirror = replace(mirror, linked=linked, targets=result_rows(outcome))
             _write_mirror(book, mirror)
         elif schema in BUILT_IN_SHEETS:

@@ -17,36 +17,36 @@ __all__ = ["Waiting", "stopped_by", "waiting_rows", "with_waiting_rows"]
 
 
 def stopped_by(table: Table, blocked: Blocked, findings: Iterable[Finding]) -> dict[int, list[Finding]]:
-    """Return the errors at other places that stop each row of Variants, by its row number."""
-    by_place: dict[tuple[str, int], list[Finding]] = defaultdict(list)
-    for found in findings:
-        if found.level == "error":
-            by_place[found.sheet, found.row].append(found)
-    headers = by_place[table.sheet, table.heading.row]
-    named = {place for places in blocked.sources.values() for place in places}
+    """Return the errors elsewhere that stop each row of Variants, by its row number."""
+    by_row: dict[tuple[str, int], list[Finding]] = defaultdict(list)
+    for finding in findings:
+        if finding.level == "error":
+            by_row[finding.sheet, finding.row].append(finding)
+    headers = by_row[table.sheet, table.heading.row]
+    named = {source for sources in blocked.sources.values() for source in sources}
     own = {(table.sheet, row) for row in table.frame["row"]}
     of_rows = named | own
-    general = [found for place, group in by_place.items() if place not in of_rows for found in group]
+    general = [finding for source, group in by_row.items() if source not in of_rows for finding in group]
     stops: dict[int, list[Finding]] = {}
     for row, material, tolerance_class in table.frame.select("row", "material", "tolerance_class").iter_rows():
         owners: tuple[Owner, ...] = (
             ("material", plain(material or "")),
             ("class", plain(tolerance_class or "standard")),
         )
-        errors = [one for owner in owners for place in blocked.sources.get(owner, ()) for one in by_place[place]]
-        errors += general if blocked.everything else [one for one in headers if (row, one.column) in table.faulty]
+        errors = [error for owner in owners for source in blocked.sources.get(owner, ()) for error in by_row[source]]
+        errors += general if blocked.everything else [error for error in headers if (row, error.column) in table.faulty]
         stops[row] = list(dict.fromkeys(errors))
     return stops
 
 
 @dataclass(frozen=True, kw_only=True)
 class Waiting:
-    """Rows of Variants that wait for a faulty material or class; `places` are the sheets and rows of its faults."""
+    """Rows of Variants that wait for a faulty material or class; `sources` are the sheets and rows of its faults."""
 
     kind: str
     name: str
     rows: Sequence[int]
-    places: Sequence[tuple[str, int]]
+    sources: Sequence[tuple[str, int]]
 
 
 def waiting_rows(table: Table, blocked: Blocked) -> list[Waiting]:
@@ -63,22 +63,25 @@ def waiting_rows(table: Table, blocked: Blocked) -> list[Waiting]:
             if owner in sources:
                 rows[owner].append(row)
                 names.setdefault(owner, name)
-    return [Waiting(kind=one[0], name=names[one], rows=rows[one], places=sources[one]) for one in rows]
+    return [
+        Waiting(kind=owner[0], name=names[owner], rows=waiting, sources=sources[owner])
+        for owner, waiting in rows.items()
+    ]
 
 
 def with_waiting_rows(findings: Sequence[Finding], table: Table, blocked: Blocked) -> list[Finding]:
     """Return findings of which errors in a material or class, or that stop everything, say which rows wait."""
     sheet = shown(table.sheet)
     sentences: dict[tuple[str, int], str] = {}
-    for one in waiting_rows(table, blocked):
-        wait = f"{_rows_words(one.rows)} of {sheet} wait{'s' if len(one.rows) == 1 else ''}"
-        sentences |= dict.fromkeys(one.places, f" {wait} for {one.kind} {shown(one.name)}.")
+    for waiting in waiting_rows(table, blocked):
+        wait = f"{_rows_words(waiting.rows)} of {sheet} wait{'s' if len(waiting.rows) == 1 else ''}"
+        sentences |= dict.fromkeys(waiting.sources, f" {wait} for {waiting.kind} {shown(waiting.name)}.")
     every = f" All rows of {sheet} wait for it." if blocked.everything and not table.frame.is_empty() else ""
     return [
-        replace(found, message=found.message + sentences.get((found.sheet, found.row), every))
-        if found.level == "error" and found.cell and found.sheet != table.sheet
-        else found
-        for found in findings
+        replace(finding, message=finding.message + sentences.get((finding.sheet, finding.row), every))
+        if finding.level == "error" and finding.cell and finding.sheet != table.sheet
+        else finding
+        for finding in findings
     ]
 
 

@@ -59,13 +59,13 @@ def _results_schema(columns: tuple[Column, ...]) -> pa.DataFrameSchema:
 
 
 def failures(schema: pa.DataFrameSchema, frame: pl.DataFrame) -> Iterator[tuple[str, int]]:
-    """Yield the id of a broken rule and the place in the frame, in row order, for every failure."""
+    """Yield the id of a broken rule and the index in the frame, in row order, for every failure."""
     try:
         schema.validate(frame, lazy=True)
     except SchemaErrors as errors:
         cases = errors.failure_cases.sort("index", maintain_order=True)
-        for check, case, column, place in cases.select("check", "failure_case", "column", "index").iter_rows():
-            yield _rule_id(check, case, column), place
+        for check, case, column, index in cases.select("check", "failure_case", "column", "index").iter_rows():
+            yield _rule_id(check, case, column), index
 
 
 def _rule_id(check: str, case: object, column: str) -> str:

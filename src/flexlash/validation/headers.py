@@ -36,12 +36,12 @@ def _as_header(cell: RawValue) -> str:
 
 
 def _filled(sheet: RawSheet, header: int) -> set[int]:
-    """Return the places that hold anything below the header row."""
+    """Return the columns that hold anything below the header row."""
     return {
-        place
+        index
         for row, cells in sheet.rows.items()
         if row > header
-        for place, value in cells.items()
+        for index, value in cells.items()
         if not (isinstance(value, str) and not value.strip(BLANK))
     }
 
@@ -82,13 +82,13 @@ class _Recogniser:
             self.ledger.everything = True
             return None
         heading = Heading(row=best)
-        headers = {place: _as_header(cell) for place, cell in self.sheet.rows[best].items()}
-        heading.ignored.update(place for place, header in headers.items() if plain(header) == plain(STATUS_HEADER))
-        headers = {place: text for place, text in headers.items() if text.strip() and place not in heading.ignored}
+        headers = {index: _as_header(cell) for index, cell in self.sheet.rows[best].items()}
+        heading.ignored.update(index for index, header in headers.items() if plain(header) == plain(STATUS_HEADER))
+        headers = {index: text for index, text in headers.items() if text.strip() and index not in heading.ignored}
         self._filled = _filled(self.sheet, best)
         unknown = self._unknown(heading, headers)
-        for place, header in headers.items():
-            self._place(heading, place, header, unknown.get(place))
+        for index, header in headers.items():
+            self._take_header(heading, index, header, unknown.get(index))
         self._require(heading, max(self.sheet.rows[best]) + 1)
         return heading
 
@@ -101,48 +101,48 @@ class _Recogniser:
         """Return the column that a cell names as its header, None for another."""
         return self.spellings.get(plain(name_and_unit(cell)[0])) if isinstance(cell, str) else None
 
-    def _require(self, heading: Heading, next_place: int) -> None:
+    def _require(self, heading: Heading, next_index: int) -> None:
         """Tell which required columns are missing, at the cell where they could be added."""
         for key, column in self.columns.items():
-            if not column.required or key in heading.places:
+            if not column.required or key in heading.columns:
                 continue
             self.ledger.everything = True
             if key not in heading.doubtful.values():
-                address = CellAddress(row=heading.row, column=next_place)
+                address = CellAddress(row=heading.row, column=next_index)
                 facts: dict[str, Any] = {"column": key, "name": column.name, "label": column.label}
                 self.ledger.add("E111", sheet=self.sheet.name, cell=address, **facts)
 
     def _unknown(self, heading: Heading, headers: Mapping[int, str]) -> dict[int, _Unknown]:
         """Return what each unknown header may mean."""
-        split = {place: name_and_unit(header) for place, header in headers.items()}
+        split = {index: name_and_unit(header) for index, header in headers.items()}
         present = {self.spellings[plain(name)] for name, _ in split.values() if plain(name) in self.spellings}
-        unknown = {place: one for place, one in split.items() if plain(one[0]) not in self.spellings}
+        unknown = {index: header for index, header in split.items() if plain(header[0]) not in self.spellings}
         is_variants = "mean_radius_mm" in self.columns
-        diameters = {place: radius_of_diameter(name, present) for place, (name, _) in unknown.items() if is_variants}
+        diameters = {index: radius_of_diameter(name, present) for index, (name, _) in unknown.items() if is_variants}
         scatter = {} if "setting" in self.columns or "source" in self.columns else tolerance_columns(unknown)
-        names = {place: name for place, (name, _) in split.items() if not diameters.get(place)}
+        names = {index: name for index, (name, _) in split.items() if not diameters.get(index)}
         likely = likely_headers(names, self.columns, self.spellings)
-        found = {}
-        for place in unknown:
-            diameter, keys = diameters.get(place), likely.get(place, [])
+        meanings = {}
+        for index in unknown:
+            diameter, keys = diameters.get(index), likely.get(index, [])
             is_needed = any(self.columns[key].required and key not in present for key in keys)
             if diameter:
-                heading.diameters.update({place} if "radius" in diameter else ())
-                found[place] = _Unknown([diameter])
-            elif place in scatter and place in self._filled and not is_needed and not _OF_TOLERANCES.intersection(keys):
-                found[place] = _Unknown([], scatter[place])
+                heading.diameters.update({index} if "radius" in diameter else ())
+                meanings[index] = _Unknown([diameter])
+            elif index in scatter and index in self._filled and not is_needed and not _OF_TOLERANCES.intersection(keys):
+                meanings[index] = _Unknown([], scatter[index])
             else:
-                found[place] = _Unknown(keys)
-        return found
+                meanings[index] = _Unknown(keys)
+        return meanings
 
-    def _place(self, heading: Heading, place: int, header: str, unknown: _Unknown | None) -> None:
+    def _take_header(self, heading: Heading, index: int, header: str, unknown: _Unknown | None) -> None:
         """Recognise one header cell, or say what is wrong with it; `unknown` is what it may mean else."""
         name, unit_text = name_and_unit(header)
         meant = unknown.keys if unknown else [self.spellings[plain(name)]]
-        address = CellAddress(row=heading.row, column=place)
+        address = CellAddress(row=heading.row, column=index)
         facts: dict[str, Any] = {"sheet": self.sheet.name, "cell": address, "value": header.strip()}
         if not meant:
-            heading.extra[place] = header.strip()
+            heading.extra[index] = header.strip()
             scatter = unknown.scatter if unknown else ""
             self.ledger.add("W434" if scatter else "I502", detail=scatter, **facts)
             return
@@ -154,26 +154,26 @@ class _Recogniser:
             "unit": column.unit or "the unit that Deviation unit names",
         }
         if unknown:
-            heading.doubtful[place] = column.key
-            self._tell_unknown(heading, place, meant, facts)
+            heading.doubtful[index] = column.key
+            self._report_unknown(heading, index, meant, facts)
             return
         unit = _unit(column, unit_text, by_key=plain(name) == plain(column.key))
-        if column.key in heading.places:
-            self._tell_twice(heading, place, facts)
+        if column.key in heading.columns:
+            self._report_twice(heading, index, facts)
         elif unit is None and unit_text is not None and column.is_number:
-            heading.doubtful[place] = column.key
-            self.ledger.add(self._error_if_filled("E113", place, column), suggestion=column.label, **facts)
+            heading.doubtful[index] = column.key
+            self.ledger.add(self._error_if_filled("E113", index, column), suggestion=column.label, **facts)
         else:
-            heading.places[column.key] = place
+            heading.columns[column.key] = index
             heading.factors[column.key] = unit.si / column.si_unit.si if unit else 1.0
-            self._tell_unit(column, unit, facts, unit_text)
+            self._report_unit(column, unit, facts, unit_text)
 
-    def _tell_unknown(self, heading: Heading, place: int, keys: Sequence[str], facts: Mapping[str, Any]) -> None:
+    def _report_unknown(self, heading: Heading, index: int, keys: Sequence[str], facts: Mapping[str, Any]) -> None:
         """Tell which columns a header probably means: by half its values, or under another header."""
         name, unit_text = name_and_unit(facts["value"])
         columns = [self.columns[key] for key in keys]
         labels = [_label(column, unit_text) for column in columns]
-        if place in heading.diameters:
+        if index in heading.diameters:
             bore = (
                 f", or the bore under {self.columns['bore_diameter_mm'].label}" if keys[0] == "mean_radius_mm" else ""
             )
@@ -183,26 +183,26 @@ class _Recogniser:
         is_known = unit is not None or columns[0].unit in {"", "-"}
         sure = misspelt(name, self.spellings) == keys[0] and is_known and len(labels) == 1
         meant = {"label": " or ".join(labels), "name": " or ".join(column.name for column in columns)}
-        code = self._error_if_filled("E112", place, columns[0])
+        code = self._error_if_filled("E112", index, columns[0])
         self.ledger.add(code, suggestion=meant["label"], repair=labels[0] if sure else None, **{**facts, **meant})
 
-    def _tell_twice(self, heading: Heading, place: int, facts: Mapping[str, Any]) -> None:
+    def _report_twice(self, heading: Heading, index: int, facts: Mapping[str, Any]) -> None:
         """Tell that a column stands twice; an empty second one does no harm."""
         key = facts["column"]
-        other = column_letters(heading.places[key])
-        if place not in self._filled:
-            heading.ignored.add(place)
+        other = column_letters(heading.columns[key])
+        if index not in self._filled:
+            heading.ignored.add(index)
             self.ledger.add("W436", other=other, **facts)
             return
-        heading.doubtful[place] = key
+        heading.doubtful[index] = key
         self.ledger.add("E114", other=other, **facts)
         self.ledger.everything = True
 
-    def _error_if_filled(self, code: str, place: int, column: Column) -> str:
+    def _error_if_filled(self, code: str, index: int, column: Column) -> str:
         """Return the code of an error, or of a warning where nothing is lost: no value, and no column that must be."""
-        return code if place in self._filled or column.required else "W435"
+        return code if index in self._filled or column.required else "W435"
 
-    def _tell_unit(self, column: Column, unit: Unit | None, facts: dict[str, Any], text: str | None) -> None:
+    def _report_unit(self, column: Column, unit: Unit | None, facts: dict[str, Any], text: str | None) -> None:
         """Tell a unit that was assumed or converted."""
         if unit is None and column.unit not in {"", "-"}:
             self.ledger.add("I503", **facts)

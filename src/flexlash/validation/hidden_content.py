@@ -26,8 +26,8 @@ def report_hidden_content(sheet: RawSheet, table: Table, ledger: Ledger) -> None
     rows = sorted(table.cells)
     if sheet.hidden and rows:
         ledger.add("W426", sheet=sheet.name, cell=CellAddress(row=1, column=1), value=len(rows))
-    for row, place, area in _covered(sheet, table, rows):
-        _blame_covered(table, ledger, row, place, area)
+    for row, index, area in _covered(sheet, table, rows):
+        _report_covered(table, ledger, row, index, area)
     for first, last in _runs(rows, sheet.hidden_rows):
         words = f"row {first} is" if first == last else f"rows {first} to {last} are"
         ledger.add("W425", sheet=sheet.name, cell=_name_cell(table, first), detail=words)
@@ -35,10 +35,10 @@ def report_hidden_content(sheet: RawSheet, table: Table, ledger: Ledger) -> None
         if row - above > _EMPTY_ROWS:
             cell = _name_cell(table, row)
             ledger.add("W427", sheet=sheet.name, cell=cell, detail=row - above - 1, other=above)
-    _tell_digits(sheet, table, ledger)
+    _report_digits(sheet, table, ledger)
 
 
-def _tell_digits(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
+def _report_digits(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
     """Warn of remarks that are nothing but short digits, as where decimal commas have split numbers."""
     if sheet.dialect is None or sheet.dialect.delimiter != ",":
         return
@@ -56,24 +56,24 @@ def _name_cell(table: Table, row: int) -> CellAddress:
 
 
 def _covered(sheet: RawSheet, table: Table, rows: list[int]) -> Iterator[tuple[int, int, str]]:
-    """Yield row, place and area of every cell of a column that is read but lies under another cell."""
-    judged = dict.fromkeys(table.heading.places.values(), 0)
+    """Yield row, column and area of every cell of a column that is read but lies under another cell."""
+    judged = dict.fromkeys(table.heading.columns.values(), 0)
     for top, left, bottom, right in sorted(sheet.merged):
         last = bisect_right(rows, bottom)
         shown = sheet.rows.get(top, {}).get(left) is not None
-        for place in judged if bisect_left(rows, top) < last else ():
+        for index in judged if bisect_left(rows, top) < last else ():
             # Areas that overlap, which only a faulty program writes, would cost their number times the rows.
-            first = bisect_left(rows, max(top, judged[place] + 1)) if left <= place <= right else last
+            first = bisect_left(rows, max(top, judged[index] + 1)) if left <= index <= right else last
             for row in rows[first:last]:
-                hides = place in table.cells[row]
-                if (row, place) != (top, left) and (shown or hides):
-                    yield row, place, f"{CellAddress(row=top, column=left)}:{CellAddress(row=bottom, column=right)}"
-                judged[place] = row
+                hides = index in table.cells[row]
+                if (row, index) != (top, left) and (shown or hides):
+                    yield row, index, f"{CellAddress(row=top, column=left)}:{CellAddress(row=bottom, column=right)}"
+                judged[index] = row
 
 
-def _blame_covered(table: Table, ledger: Ledger, row: int, place: int, area: str) -> None:
+def _report_covered(table: Table, ledger: Ledger, row: int, index: int, area: str) -> None:
     """Record that a cell lies under a merged area, unless it holds a remark or has a finding already."""
-    (key,) = (key for key, own in table.heading.places.items() if own == place)
+    (key,) = (key for key, own in table.heading.columns.items() if own == index)
     column = columns_of(table.schema)[key]
     # A remark may well be merged over the rows that it is about.
     if column.role == "remark" or (row, key) in table.faulty:

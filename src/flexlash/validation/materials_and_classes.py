@@ -44,11 +44,11 @@ _DEVIATIONS = ("lower_deviation", "upper_deviation")
 def built_in_sheet(schema: str) -> RawSheet:
     """Return a built-in table as it would stand on its sheet."""
     columns = [column for column in ENTRY_SHEETS[schema] if column.key != "tolerance_class"]
-    rows: dict[int, dict[int, RawValue]] = {1: {place: column.label for place, column in enumerate(columns, start=1)}}
+    rows: dict[int, dict[int, RawValue]] = {1: {index: column.label for index, column in enumerate(columns, start=1)}}
     for number, row in enumerate(tables.rows(BUILT_IN_SHEETS[schema]), start=2):
         rows[number] = {
-            place: float(row[column.key]) if column.is_number else row[column.key]
-            for place, column in enumerate(columns, start=1)
+            index: float(row[column.key]) if column.is_number else row[column.key]
+            for index, column in enumerate(columns, start=1)
             if row.get(column.key)
         }
     return RawSheet(name=schema, rows=rows)
@@ -82,8 +82,8 @@ def _material(record: dict[str, Any], name: str) -> Material:
 
 def materials_of(table: Table, ledger: Ledger) -> dict[str, Material]:
     """Return the materials of a sheet by plain name; faulty ones are named in the ledger."""
-    found: dict[str, Material] = {}
-    doubled = _tell_doubled(table, ledger, ("material",), "E321")
+    materials: dict[str, Material] = {}
+    doubled = _report_doubled(table, ledger, ("material",), "E321")
     for record in table.frame.iter_rows(named=True):
         row, name = record["row"], record["material"]
         if name is None:
@@ -91,9 +91,9 @@ def materials_of(table: Table, ledger: Ledger) -> dict[str, Material]:
         key = plain(name)
         if row in doubled or any((row, column) in table.faulty for column in _MATERIAL):
             ledger.spoil("material", key, table.sheet, row)
-        found.setdefault(key, _material(record, name))
+        materials.setdefault(key, _material(record, name))
         _check_constants(table, ledger, record, key)
-    return found
+    return materials
 
 
 def _check_constants(table: Table, ledger: Ledger, record: dict[str, Any], material: str) -> None:
@@ -106,7 +106,7 @@ def _check_constants(table: Table, ledger: Ledger, record: dict[str, Any], mater
         for key, value in (("youngs_modulus_GPa", young), ("poisson_ratio", poisson)):
             if value is None:
                 ledger.spoil("material", material, table.sheet, row)
-                _blame(table, ledger, "E322", row, key)
+                _report(table, ledger, "E322", row, key)
     elif (
         young is not None
         and poisson is not None
@@ -114,10 +114,10 @@ def _check_constants(table: Table, ledger: Ledger, record: dict[str, Any], mater
     ):
         implied = young / (2 * (1 + poisson))
         if abs(shear / implied - 1) > 5e-4:  # noqa: PLR2004
-            _blame(table, ledger, "W404", row, "shear_modulus_GPa", value=shear, other=implied)
+            _report(table, ledger, "W404", row, "shear_modulus_GPa", value=shear, other=implied)
 
 
-def _tell_doubled(table: Table, ledger: Ledger, keys: tuple[str, ...], code: str) -> set[int]:
+def _report_doubled(table: Table, ledger: Ledger, keys: tuple[str, ...], code: str) -> set[int]:
     """Mark every row whose keys another row has too, each with its partners; return the rows."""
     groups: dict[tuple[str, ...], list[int]] = defaultdict(list)
     for row, *names in table.frame.select("row", *keys).iter_rows():
@@ -125,11 +125,11 @@ def _tell_doubled(table: Table, ledger: Ledger, keys: tuple[str, ...], code: str
             groups[tuple(plain(name) for name in names)].append(row)
     doubled = {row: others for rows in groups.values() for row, others in table.partners(rows, keys[-1])}
     for row, others in doubled.items():
-        _blame(table, ledger, code, row, keys[-1], value=table.entered(row, keys[-1]), other=others)
+        _report(table, ledger, code, row, keys[-1], value=table.entered(row, keys[-1]), other=others)
     return set(doubled)
 
 
-def _blame(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts: Any) -> None:
+def _report(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts: Any) -> None:
     """Record a finding at a cell of a Materials, Tolerances or Settings row."""
     columns = _MATERIAL if table.schema == "Materials" else _TOLERANCE
     name = columns[key].name if key in columns else "Setting"
@@ -138,13 +138,13 @@ def _blame(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts:
 
 def standard_class() -> list[ToleranceRow]:
     """Return the built-in class `standard`."""
-    found = []
+    entries = []
     for row in tables.rows("standard_class"):
         record: dict[str, Any] = {key: text or None for key, text in row.items()}
         for key in ("lower_deviation", "upper_deviation", "limits_sigma"):
             record[key] = float(record[key]) if record[key] else None
-        found.append(_tolerance_row({"row": 0, "tolerance_class": "standard", **record}))
-    return found
+        entries.append(_tolerance_row({"row": 0, "tolerance_class": "standard", **record}))
+    return entries
 
 
 def _tolerance_row(record: dict[str, Any]) -> ToleranceRow:
@@ -170,7 +170,7 @@ def _tolerance_row(record: dict[str, Any]) -> ToleranceRow:
 def tolerance_classes_of(table: Table, ledger: Ledger) -> dict[str, list[ToleranceRow]]:
     """Return the tolerance classes of a sheet by plain name; faulty ones are named in the ledger."""
     classes: dict[str, list[ToleranceRow]] = defaultdict(list)
-    doubled = _tell_doubled(table, ledger, ("tolerance_class", "dimension"), "E319")
+    doubled = _report_doubled(table, ledger, ("tolerance_class", "dimension"), "E319")
     for record in table.frame.iter_rows(named=True):
         row, name = record["row"], record["tolerance_class"]
         if name is None:
@@ -198,7 +198,7 @@ def _check_tolerance(table: Table, ledger: Ledger, record: dict[str, Any]) -> bo
     before = len(ledger.findings)
     column, unit = DIMENSIONS.get(record["dimension"]), record["deviation_unit"]
     if column and unit and unit.strip() != "%" and find_unit(unit, column.quantity) is None:
-        _blame(table, ledger, "E211", row, "deviation_unit", value=unit, dimension=column.dimension, unit=column.unit)
+        _report(table, ledger, "E211", row, "deviation_unit", value=unit, dimension=column.dimension, unit=column.unit)
     if record["grade"] is not None:
         _check_grade(table, ledger, record, column)
     elif (row, "grade") not in table.faulty:
@@ -210,15 +210,15 @@ def _check_grade(table: Table, ledger: Ledger, record: dict[str, Any], column: C
     """Require that a grade stands alone, exists and applies to its dimension, where that is known."""
     row, grade = record["row"], record["grade"]
     if any(record[key] is not None for key in _DEVIATIONS):
-        _blame(table, ledger, "E316", row, "grade", value=grade)
+        _report(table, ledger, "E316", row, "grade", value=grade)
     elif is_no_value(grade):
-        _blame(table, ledger, "E221", row, "grade", value=grade, **no_value_facts(_TOLERANCE["grade"]))
+        _report(table, ledger, "E221", row, "grade", value=grade, **no_value_facts(_TOLERANCE["grade"]))
     elif not is_grade(grade):
         meant = meant_grade(grade)
         repair = None if grade.isdecimal() else meant or None
-        _blame(table, ledger, "E210", row, "grade", value=grade, suggestion=meant, repair=repair)
+        _report(table, ledger, "E210", row, "grade", value=grade, suggestion=meant, repair=repair)
     elif column and (column.quantity != "length" or column.grade_at == "none"):
-        _blame(table, ledger, "E320", row, "grade", value=grade, other=column.dimension)
+        _report(table, ledger, "E320", row, "grade", value=grade, other=column.dimension)
 
 
 def _check_deviations(table: Table, ledger: Ledger, record: dict[str, Any]) -> None:
@@ -227,28 +227,28 @@ def _check_deviations(table: Table, ledger: Ledger, record: dict[str, Any]) -> N
     faulty = [str(table.entered(row, key)) for key in _DEVIATIONS if (row, key) in table.faulty]
     for key in _DEVIATIONS:
         if record[key] is None and (row, key) not in table.faulty and not any(map(is_both_ways, faulty)):
-            _blame(table, ledger, "E317", row, key)
+            _report(table, ledger, "E317", row, key)
     if lower is not None and upper is not None and lower > upper:
-        _blame(table, ledger, "E318", row, "lower_deviation", value=lower, other=upper)
+        _report(table, ledger, "E318", row, "lower_deviation", value=lower, other=upper)
 
 
 def _check_shift(table: Table, ledger: Ledger, record: dict[str, Any]) -> None:
     """Warn of deviations that shift a dimension without scatter."""
     lower, upper = (record[key] for key in _DEVIATIONS)
     if lower and lower == upper:
-        _blame(table, ledger, "W410", record["row"], "upper_deviation", value=upper)
+        _report(table, ledger, "W410", record["row"], "upper_deviation", value=upper)
 
 
 def settings_of(table: Table, ledger: Ledger) -> Settings:
-    """Return the settings of a sheet; a faulty one leaves nothing computable."""
+    """Return the settings of a sheet; a faulty finding leaves nothing computable."""
     columns = {column.key: column for column in SETTINGS}
     values: dict[str, Any] = {}
     before = len(ledger.findings)
-    doubled = _tell_doubled(table, ledger, ("setting",), "E323")
-    place = table.heading.places.get("value", 0)
+    doubled = _report_doubled(table, ledger, ("setting",), "E323")
+    index = table.heading.columns.get("value", 0)
     for record in table.frame.iter_rows(named=True):
         row, name = record["row"], record["setting"]
-        raw = table.cells[row].get(place)
+        raw = table.cells[row].get(index)
         if name not in columns or row in doubled or raw is None:
             continue
         column = columns[name]
@@ -265,7 +265,7 @@ def settings_of(table: Table, ledger: Ledger) -> Settings:
         cell = table.address(row, "value")
         ledger.add(value.code, sheet=table.sheet, cell=cell, column=name, name=name, value=value.value, **facts)
     faulty = any((row, key) in table.faulty for row in table.frame["row"] for key in ("setting", "value"))
-    if faulty or any(one.level == "error" for one in ledger.findings[before:]):
+    if faulty or any(finding.level == "error" for finding in ledger.findings[before:]):
         ledger.everything = True
     return settings_from(values)
 

@@ -35,13 +35,13 @@ _RELATIONS = pa.DataFrameSchema(checks=[_relation_check(relation) for relation i
 def check_cells(table: Table, ledger: Ledger) -> None:
     """Check every cell by itself: required, bounds, lists; and find the units that are mistaken."""
     columns = columns_of(table.schema)
-    for broken, place in failures(entry_schema(table.schema), table.frame):
+    for broken, index in failures(entry_schema(table.schema), table.frame):
         key, _, rule = broken.partition("|")
-        row = table.frame["row"][place]
+        row = table.frame["row"][index]
         column = columns[key]
-        if (row, key) in table.faulty or key not in table.heading.places:
+        if (row, key) in table.faulty or key not in table.heading.columns:
             continue
-        value = table.frame[key][place]
+        value = table.frame[key][index]
         table.faulty.add((row, key))
         is_none = rule == "choices" and is_no_value(value)
         ledger.add(

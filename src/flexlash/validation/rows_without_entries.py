@@ -34,11 +34,11 @@ _SENTENCE = 4
 
 
 class NoEntry(NamedTuple):
-    """Why a row is no entry: its code, what it looks like, and the place and value of the cell that says so."""
+    """Why a row is no entry: its code, what it looks like, and the column and value of the cell that says so."""
 
     code: str
     detail: str
-    place: int
+    column: int
     value: RawValue
 
     @property
@@ -54,14 +54,14 @@ class NoEntries:
         columns = columns_of(schema)
         first = naming_column(schema).key
         others = [key for key in columns if key != first]
-        places = heading.places
+        indices = heading.columns
         self.schema = schema
-        self.first = places.get(first)
+        self.first = indices.get(first)
         self.texts = {
-            places[key] for key in others if key in places and columns[key].required and not columns[key].is_number
+            indices[key] for key in others if key in indices and columns[key].required and not columns[key].is_number
         }
-        self.numbers = {places[key] for key in others if key in places and columns[key].is_number}
-        self.others = {places[key] for key in others if key in places}
+        self.numbers = {indices[key] for key in others if key in indices and columns[key].is_number}
+        self.others = {indices[key] for key in others if key in indices}
 
     def of(self, cells: Mapping[int, RawValue], *, apart: bool) -> NoEntry | None:
         """Return why a row is no entry, or None; `cells` are those under a header.
@@ -69,28 +69,28 @@ class NoEntries:
         A total lacks the texts that every entry needs, a remark has no number. `apart` says that an empty row stands
         between it and the entries. A variant without anything in a column of numbers is an error, told once.
         """
-        place, value = next(iter(cells.items()))
+        index, value = next(iter(cells.items()))
         if not isinstance(value, str):
             return None
-        others = self.texts - {place}
-        if self.texts and others.isdisjoint(cells) and self._is_total(place, value):
-            return NoEntry("W433", "a total or a mean", place, value)
+        others = self.texts - {index}
+        if self.texts and others.isdisjoint(cells) and self._is_total(index, value):
+            return NoEntry("W433", "a total or a mean", index, value)
         if not others.isdisjoint(cells) and not self.numbers.isdisjoint(cells):
             return None
-        if place != self.first or any(_has_digits(cells[number]) for number in self.numbers & cells.keys()):
+        if index != self.first or any(_has_digits(cells[number]) for number in self.numbers & cells.keys()):
             return None
         is_alone = self.others.isdisjoint(cells)
         is_note = _begins_like_a_note(value) and self.texts.isdisjoint(cells)
         # A material may have a name of many words; without constants it is told as one that lacks them.
         reads_like_one = self.schema != "Materials" and len(value.split()) >= _SENTENCE
         if is_note or (is_alone and (apart or reads_like_one)):
-            return NoEntry("W433", "a remark", place, value)
+            return NoEntry("W433", "a remark", index, value)
         is_bare = self.schema == "Variants" and self.numbers.isdisjoint(cells)
-        return NoEntry("E217", "", place, value) if is_bare else None
+        return NoEntry("E217", "", index, value) if is_bare else None
 
-    def _is_total(self, place: int, value: str) -> bool:
+    def _is_total(self, index: int, value: str) -> bool:
         """Whether the first text of a row, as its name or instead of one, is that of a total."""
-        return place in self.texts | {self.first} and plain(value[:_LONGEST]).replace(".", "").strip(":=()") in _TOTALS
+        return index in self.texts | {self.first} and plain(value[:_LONGEST]).replace(".", "").strip(":=()") in _TOTALS
 
 
 def _has_digits(value: RawValue) -> bool:

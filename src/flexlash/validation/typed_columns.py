@@ -47,26 +47,26 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
         frame=pl.DataFrame(),
         numbers_are_texts=sheet.numbers_are_texts,
     )
-    read = {place: columns[key] for key, place in heading.places.items()}
+    read = {index: columns[key] for key, index in heading.columns.items()}
     records: list[dict[str, Any]] = []
     first_key = naming_column(schema).key
     for number, cells, bare in _entries(table, sheet, units, ledger):
         record: dict[str, Any] = {"row": number}
         if surplus := _surplus(sheet, heading, number):
-            _blame_surplus(table, number, surplus, sheet, ledger)
+            _report_surplus(table, number, surplus, sheet, ledger)
         if bare:
             table.faulty.update((number, key) for key in columns)
             where = {"sheet": sheet.name, "cell": table.address(number, first_key), "column": first_key}
             ledger.add(bare.code, rows=[number], **where, **bare.facts)
-        for place, value in cells.items():
-            if surplus and place != heading.places.get(first_key):
+        for index, value in cells.items():
+            if surplus and index != heading.columns.get(first_key):
                 continue
-            if place in read:
-                cell = _Cell(table=table, column=read[place], row=number, value=value, beside=cells)
-                record[read[place].key] = _typed(cell, ledger)
-            elif place in heading.doubtful:
+            if index in read:
+                cell = _Cell(table=table, column=read[index], row=number, value=value, beside=cells)
+                record[read[index].key] = _typed(cell, ledger)
+            elif index in heading.doubtful:
                 _spoil(ledger, schema, number)
-                table.faulty.add((number, heading.doubtful[place]))
+                table.faulty.add((number, heading.doubtful[index]))
         records.append(record)
         table.cells[number] = cells
     types = {key: pl.Float64 if column.is_number else pl.String for key, column in columns.items()}
@@ -81,7 +81,7 @@ def _entries(
     for number, cells in _data_rows(sheet, table.heading, naming_column(table.schema).key, ledger):
         none = no_entries.of(cells, apart=number > last + 1) if number != units else None
         if none and none.code[0] == "W":
-            ledger.add(none.code, sheet=sheet.name, cell=CellAddress(row=number, column=none.place), **none.facts)
+            ledger.add(none.code, sheet=sheet.name, cell=CellAddress(row=number, column=none.column), **none.facts)
             continue
         last = number
         if number != units:
@@ -89,15 +89,15 @@ def _entries(
 
 
 def _surplus(sheet: RawSheet, heading: Heading, row: int) -> list[int]:
-    """Return the places of a delimited text's row that lie beyond the last header, blank ones where they may count."""
+    """Return the columns of a delimited text's row that lie beyond the last header, blank ones where they may count."""
     if sheet.dialect is None:
         return []
     last = max(sheet.rows[heading.row])
-    found = [place for place, value in sheet.rows[row].items() if place > last and _as_shown(value)]
-    return found or ([last + 1] if row in sheet.dialect.longer else [])
+    beyond = [index for index, value in sheet.rows[row].items() if index > last and _as_shown(value)]
+    return beyond or ([last + 1] if row in sheet.dialect.longer else [])
 
 
-def _blame_surplus(table: Table, row: int, surplus: list[int], sheet: RawSheet, ledger: Ledger) -> None:
+def _report_surplus(table: Table, row: int, surplus: list[int], sheet: RawSheet, ledger: Ledger) -> None:
     """Record that a row has more cells than headers, so that nothing tells which value belongs to which."""
     table.faulty.update((row, key) for key in columns_of(table.schema))
     comma = sheet.dialect is not None and sheet.dialect.delimiter == ","
@@ -123,32 +123,32 @@ def _data_rows(
     sheet: RawSheet, heading: Heading, first_key: str, ledger: Ledger
 ) -> Iterator[tuple[int, dict[int, RawValue]]]:
     """Yield the rows below the header that hold data; a lone cell elsewhere than in the first column is none."""
-    named = {*heading.places.values(), *heading.extra, *heading.doubtful}
-    ours = {*heading.places.values(), *heading.doubtful}
-    first = heading.places.get(first_key)
+    named = {*heading.columns.values(), *heading.extra, *heading.doubtful}
+    ours = {*heading.columns.values(), *heading.doubtful}
+    first = heading.columns.get(first_key)
     nameless: dict[int, int] = {}
     for number, every in sheet.rows.items():
         if number <= heading.row:
             continue
         cells = {
-            place: value
-            for place, value in every.items()
-            if place not in heading.ignored
+            index: value
+            for index, value in every.items()
+            if index not in heading.ignored
             and not (isinstance(value, str) and not value.strip(BLANK))
-            and not (isinstance(value, Unstored) and place not in ours)
+            and not (isinstance(value, Unstored) and index not in ours)
         }
-        entered = {place: value for place, value in cells.items() if place in named}
+        entered = {index: value for index, value in cells.items() if index in named}
         if len(entered) > 1 or first in entered:
-            for place in cells.keys() - named - {*_surplus(sheet, heading, number)}:
-                nameless.setdefault(place, number)
+            for index in cells.keys() - named - {*_surplus(sheet, heading, number)}:
+                nameless.setdefault(index, number)
             yield number, entered
         elif cells:
-            place, value = next(iter((entered or cells).items()))
-            address = CellAddress(row=number, column=place)
+            index, value = next(iter((entered or cells).items()))
+            address = CellAddress(row=number, column=index)
             ledger.add("W408", sheet=sheet.name, cell=address, value=_as_shown(value))
-    for place, number in sorted(nameless.items()) if first_key != _MEANT_BESIDE else ():
-        address = CellAddress(row=number, column=place)
-        ledger.add("I509", sheet=sheet.name, cell=address, value=column_letters(place))
+    for index, number in sorted(nameless.items()) if first_key != _MEANT_BESIDE else ():
+        address = CellAddress(row=number, column=index)
+        ledger.add("I509", sheet=sheet.name, cell=address, value=column_letters(index))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,7 +163,7 @@ class _Cell:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What a finding says of its place."""
+        """What a finding says of the cell."""
         column, table = self.column, self.table
         address = table.address(self.row, column.key)
         return {"sheet": table.sheet, "cell": address, "column": column.key, "name": column.name}
@@ -173,19 +173,19 @@ class _Cell:
         """What numbers of the cell stand for, by its header or, for a deviation, by the cells beside it."""
         if self.column.key not in _DEVIATIONS:
             return Measure.of(self.column, self.table.heading.factors[self.column.key])
-        places = self.table.heading.places
+        indices = self.table.heading.columns
         unit, dimension = (
-            str(self.beside.get(places.get(key, 0), "")).strip() for key in ("deviation_unit", "dimension")
+            str(self.beside.get(indices.get(key, 0), "")).strip() for key in ("deviation_unit", "dimension")
         )
         if unit == "%":
             return Measure(quantity="ratio", si=0.01)
         column = DIMENSIONS.get(dimension.casefold())
         if column is None or column.quantity == "ratio":
             return Measure(quantity="", si=1.0, unit_is_open=not unit)
-        found = find_unit(unit, column.quantity) if unit else column.si_unit
-        if found is None:
+        measured_in = find_unit(unit, column.quantity) if unit else column.si_unit
+        if measured_in is None:
             return Measure(quantity="", si=1.0)
-        return Measure(quantity=column.quantity, si=found.si, unit_is_open=not unit)
+        return Measure(quantity=column.quantity, si=measured_in.si, unit_is_open=not unit)
 
 
 def _typed(cell: _Cell, ledger: Ledger) -> str | float | None:
@@ -193,28 +193,28 @@ def _typed(cell: _Cell, ledger: Ledger) -> str | float | None:
     column, value = cell.column, cell.value
     if (column.sheet, column.key) == _JUDGED_LATER:
         return _as_shown(value)
-    found = (
+    typed = (
         as_number(value, column, from_text=cell.table.numbers_are_texts, measure=cell.measure)
         if column.is_number
         else as_text(value, _longest(column))
     )
-    if isinstance(found, float):
+    if isinstance(typed, float):
         factor = cell.table.heading.factors[column.key]
-        found = found if factor == 1 else _on_bound(column, found * factor)
-        found = found if math.isfinite(found) else Fault(code="E212", value=value)
-    if isinstance(found, Fault):
+        typed = typed if factor == 1 else _on_bound(column, typed * factor)
+        typed = typed if math.isfinite(typed) else Fault(code="E212", value=value)
+    if isinstance(typed, Fault):
         cell.table.faulty.add((cell.row, column.key))
         rows = [cell.row] if cell.table.schema == "Variants" else []
-        meant = {"suggestion": found.suggestion, "repair": found.repair}
-        facts = {**meant, "requirement": column.requirement, **found.facts, **cell.facts}
-        ledger.add(found.code, value=found.value, rows=rows, **facts)
+        meant = {"suggestion": typed.suggestion, "repair": typed.repair}
+        facts = {**meant, "requirement": column.requirement, **typed.facts, **cell.facts}
+        ledger.add(typed.code, value=typed.value, rows=rows, **facts)
         return None
-    if isinstance(found, float):
-        if isinstance(value, Percentage) and found != value:
-            ledger.add("I514", value=value.shown, detail=f"{found:.10g}", **cell.facts)
-        return found
-    entry = _choice(column, found)
-    if entry != found or (isinstance(value, str) and found != value):
+    if isinstance(typed, float):
+        if isinstance(value, Percentage) and typed != value:
+            ledger.add("I514", value=value.shown, detail=f"{typed:.10g}", **cell.facts)
+        return typed
+    entry = _choice(column, typed)
+    if entry != typed or (isinstance(value, str) and typed != value):
         ledger.add("I504", value=value, suggestion=entry, repair=entry, **cell.facts)
     return entry or None
 
@@ -242,5 +242,5 @@ def _choice(column: Column, text: str) -> str:
 
 def _as_shown(value: RawValue) -> str:
     """Return a cell as a message shows it."""
-    found = as_text(value, longest=1000)
-    return str(found.value) if isinstance(found, Fault) else found
+    text = as_text(value, longest=1000)
+    return str(text.value) if isinstance(text, Fault) else text

@@ -85,8 +85,8 @@ def find_unit_mistakes(table: Table, ledger: Ledger) -> None:
         faulty[row][key] = None
     for record in table.frame.iter_rows(named=True):
         sound = {**record, **faulty.get(record["row"], {})}
-        for found in find(sound):
-            ledger.unit_mistakes[table.sheet, record["row"], found[0]] = _unit_mistake(table, sound, found)
+        for mistaken in find(sound):
+            ledger.unit_mistakes[table.sheet, record["row"], mistaken[0]] = _unit_mistake(table, sound, mistaken)
 
 
 def _facts(mistake: UnitMistake) -> dict[str, Any]:
@@ -106,8 +106,8 @@ def _facts(mistake: UnitMistake) -> dict[str, Any]:
 
 def settled(findings: Sequence[Finding], mistakes: Iterable[UnitMistake], file: str) -> list[Finding]:
     """Return findings with each cell's error alone: doubts about its value go, and only other mistakes are added."""
-    wrong = {(found.sheet, found.cell) for found in findings if found.level == "error"}
-    kept = [found for found in findings if found.code not in _DOUBTS or (found.sheet, found.cell) not in wrong]
+    wrong = {(known.sheet, known.cell) for known in findings if known.level == "error"}
+    kept = [known for known in findings if known.code not in _DOUBTS or (known.sheet, known.cell) not in wrong]
     return kept + [
         finding("W420", file=file, suggestion=mistake.suggestion, **_facts(mistake))
         for mistake in mistakes
@@ -117,15 +117,15 @@ def settled(findings: Sequence[Finding], mistakes: Iterable[UnitMistake], file: 
 
 def report_contradiction(mistake: UnitMistake, contradicted: str, ledger: Ledger) -> None:
     """Record, once, that a mistaken cell of Variants makes its row contradictory; the other cell is not blamed."""
-    if any((found.sheet, found.cell) == (mistake.sheet, str(mistake.cell)) for found in ledger.findings):
+    if any((known.sheet, known.cell) == (mistake.sheet, str(mistake.cell)) for known in ledger.findings):
         ledger.rows.add(mistake.row)
         return
     ledger.add("E329", contradicted=contradicted, rows=[mistake.row], **_facts(mistake))
 
 
-def _unit_mistake(table: Table, record: Mapping[str, Any], found: tuple[str, float, str]) -> UnitMistake:
+def _unit_mistake(table: Table, record: Mapping[str, Any], mistaken: tuple[str, float, str]) -> UnitMistake:
     """Return a mistake with what to say of it; the suggestion is in the unit of the cell's own header."""
-    key, factor, beside = found
+    key, factor, beside = mistaken
     row, conversion, unit = record["row"], table.heading.factors[key], columns_of(table.schema)[key].unit
     entered = record[key] / conversion
     given = spelled_out(entered, 10)

@@ -31,19 +31,19 @@ def take_units_row(sheet: RawSheet, heading: Heading, schema: str, ledger: Ledge
     """
     row = next((number for number in sorted(sheet.rows) if number > heading.row), 0)
     columns = columns_of(schema)
-    cells = {place: cell for place, cell in sheet.rows.get(row, {}).items() if place not in heading.ignored}
-    units = _units({key: cells.get(place, "") for key, place in heading.places.items()}, columns)
+    cells = {index: cell for index, cell in sheet.rows.get(row, {}).items() if index not in heading.ignored}
+    units = _units({key: cells.get(index, "") for key, index in heading.columns.items()}, columns)
     if len(units) < _FEWEST:
         return 0
     for key, unit in units.items():
         read_in = columns[key].si_unit.si * heading.factors[key]
         if not math.isclose(unit.si, read_in, rel_tol=1e-9):
-            _blame(sheet, heading, row, columns[key], ledger)
-    place = min(cells)
+            _report(sheet, heading, row, columns[key], ledger)
+    index = min(cells)
     ledger.add(
         "I515",
         sheet=sheet.name,
-        cell=CellAddress(row=row, column=place),
+        cell=CellAddress(row=row, column=index),
         value=" ".join(str(cell).strip() for cell in cells.values()),
     )
     return row
@@ -51,7 +51,7 @@ def take_units_row(sheet: RawSheet, heading: Heading, schema: str, ledger: Ledge
 
 def _units(entries: Mapping[str, RawValue], columns: Mapping[str, Column]) -> dict[str, Unit]:
     """Return the units of a row by column, none where a cell of it holds anything else."""
-    found: dict[str, Unit] = {}
+    units: dict[str, Unit] = {}
     for key, entry in entries.items():
         text = _bare(entry)
         if text is None:
@@ -61,8 +61,8 @@ def _units(entries: Mapping[str, RawValue], columns: Mapping[str, Column]) -> di
         unit = find_unit(text, columns[key].quantity) if columns[key].is_number and columns[key].quantity else None
         if unit is None:
             return {}
-        found[key] = unit
-    return found
+        units[key] = unit
+    return units
 
 
 def _bare(entry: RawValue) -> str | None:
@@ -70,18 +70,18 @@ def _bare(entry: RawValue) -> str | None:
     return entry.strip().strip("[]()").strip() if isinstance(entry, str) else None
 
 
-def _blame(sheet: RawSheet, heading: Heading, row: int, column: Column, ledger: Ledger) -> None:
+def _report(sheet: RawSheet, heading: Heading, row: int, column: Column, ledger: Ledger) -> None:
     """Record a unit that is another than the one a column is read in, and take the column out of the heading."""
-    place = heading.places.pop(column.key)
-    header = str(sheet.rows[heading.row][place])
+    index = heading.columns.pop(column.key)
+    header = str(sheet.rows[heading.row][index])
     named = name_and_unit(header)[1] if heading.factors[column.key] != 1 else None
-    heading.doubtful[place] = column.key
+    heading.doubtful[index] = column.key
     ledger.add(
         "E219",
         sheet=sheet.name,
-        cell=CellAddress(row=row, column=place),
+        cell=CellAddress(row=row, column=index),
         column=column.key,
         name=column.name,
-        value=str(sheet.rows[row][place]).strip(),
+        value=str(sheet.rows[row][index]).strip(),
         other=named or column.unit,
     )

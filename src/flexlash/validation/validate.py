@@ -102,7 +102,7 @@ def _used(submission: Submission, present: Collection[str], tables: Mapping[str,
             ledger.add("I505", value="sheet Materials", other="materials")
     classes = tolerance_classes_of(tables["Tolerances"], ledger) if "Tolerances" in tables else {}
     # Where the classes have no column, which of them there are cannot be told.
-    are_named = "Tolerances" in tables and "tolerance_class" in tables["Tolerances"].heading.places
+    are_named = "Tolerances" in tables and "tolerance_class" in tables["Tolerances"].heading.columns
     if "standard" not in classes and (are_named or "Tolerances" not in present):
         classes["standard"] = standard_class()
         if is_workbook:

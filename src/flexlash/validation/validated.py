@@ -25,14 +25,14 @@ Owner: TypeAlias = tuple[Literal["material", "class"], str]
 
 @dataclass(frozen=True, kw_only=True)
 class Heading:
-    """The columns found in a sheet: place and factor to the printed unit by key, extra headers by place.
+    """The columns found in a sheet: column and factor to the printed unit by key, extra headers by column.
 
-    `doubtful` are the places of headers that cannot be taken and the key that was probably meant, `diameters` those of
+    `doubtful` are the columns of headers that cannot be taken and the key that was probably meant, `diameters` those of
     them that hold twice what is meant; `ignored` those of the template's own formulas.
     """
 
     row: int
-    places: dict[str, int] = field(default_factory=dict)
+    columns: dict[str, int] = field(default_factory=dict)
     factors: dict[str, float] = field(default_factory=dict)
     extra: dict[int, str] = field(default_factory=dict)
     doubtful: dict[int, str] = field(default_factory=dict)
@@ -45,7 +45,7 @@ class Table:
     """Typed cells of an entry sheet in the template's units.
 
     `frame` has the column `row` and one column per key of the schema, null where blank or unreadable;
-    `cells` are the raw cells by row and place; `faulty` holds (row, key) of cells that already have a finding.
+    `cells` are the raw cells by row and column; `faulty` holds (row, key) of cells that already have a finding.
     """
 
     sheet: str
@@ -58,11 +58,11 @@ class Table:
 
     def entered(self, row: int, key: str) -> Any:
         """Return a cell as the user entered it, an empty text where it is blank."""
-        return self.cells[row].get(self.heading.places.get(key, 0), "")
+        return self.cells[row].get(self.heading.columns.get(key, 0), "")
 
     def address(self, row: int, key: str) -> CellAddress:
         """Return a cell's address; a column that the sheet lacks stands at the row's first cell."""
-        return CellAddress(row=row, column=self.heading.places.get(key, 1))
+        return CellAddress(row=row, column=self.heading.columns.get(key, 1))
 
     def partners(self, rows: Sequence[int], key: str) -> Iterator[tuple[int, str]]:
         """Yield rows that hold the same entry, each with the addresses of the others; of many rows, those of all."""

@@ -143,7 +143,7 @@ class _Carried:
     def _own_columns(self) -> list[int]:
         """Return the columns of the user, in order: unknown or doubled headers, and values without a header."""
         below = {column for row, cells in self.sheet.rows.items() if row >= self.heading.row for column in cells}
-        explained = {self.heading.places.get("value", 0) + 1} - self.sheet.rows[self.heading.row].keys()
+        explained = {self.heading.columns.get("value", 0) + 1} - self.sheet.rows[self.heading.row].keys()
         meanings = explained if self.schema == "Settings" else set()
         return sorted(below - self.keys.keys() - self.heading.ignored - meanings)
 
@@ -238,7 +238,7 @@ class _Carried:
 
 def _keys(heading: Heading) -> dict[int, str]:
     """Return the key of each column that fills one of the template; a doubtful header fills the one it meant."""
-    keys = {column: key for key, column in heading.places.items()}
+    keys = {column: key for key, column in heading.columns.items()}
     for column, key in heading.doubtful.items():
         if key not in keys.values() and column not in heading.diameters:
             keys[column] = key

@@ -83,4 +83,4 @@ def finding_rows(outcome: Outcome) -> dict[int, int]:
 def name_cell(outcome: Outcome) -> str:
     """Return the letters of the column of Submission in which the variants' names stand."""
     table = outcome.validated.table if outcome.validated else None
-    return column_letters(table.heading.places.get("variant", 1)) if table is not None else "A"
+    return column_letters(table.heading.columns.get("variant", 1)) if table is not None else "A"
