@@ -11,11 +11,11 @@ from flexlash.validation.materials_and_classes import (
     built_in_materials,
     built_in_sheet,
     materials_of,
-    settings_of,
     standard_class,
     tolerance_classes_of,
 )
 from flexlash.validation.row_checks import check_cells
+from flexlash.validation.settings_table import settings_of
 from flexlash.validation.typed_columns import tabulate
 
 MATERIALS = ["material", "youngs_modulus_GPa", "poisson_ratio", "shear_modulus_GPa", "density_kg_m3", "yield_MPa"]

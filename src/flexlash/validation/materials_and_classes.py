@@ -1,23 +1,23 @@
-"""Materials, Tolerances and Settings: from typed tables, or built in, to records in SI."""
+"""Materials and Tolerances: from typed tables, or built in, to records in SI."""
 
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
 from typing import Any
 
 from flexlash.reading.raw import RawSheet, RawValue
 from flexlash.schema import tables
 from flexlash.schema.column import Column
-from flexlash.schema.columns import DIMENSIONS, ENTRY_SHEETS, MATERIALS, SETTINGS, TOLERANCES
-from flexlash.schema.spellings import misspelt, plain, spelt_alike, suggested
+from flexlash.schema.columns import DIMENSIONS, ENTRY_SHEETS, MATERIALS, TOLERANCES
+from flexlash.schema.spellings import plain
 from flexlash.schema.tolerance_grades import is_grade
 from flexlash.schema.units import find_unit
-from flexlash.schema.variant import Material, Settings, ToleranceRow
-from flexlash.validation.cell_values import Fault, as_number, as_text, is_no_value, no_value_facts
+from flexlash.schema.variant import Material, ToleranceRow
+from flexlash.validation.cell_values import is_no_value, no_value_facts
 from flexlash.validation.grade_texts import meant_grade
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.number_texts import is_both_ways
-from flexlash.validation.unusual_values import unusual_words
 from flexlash.validation.validated import Table
 
 __all__ = [
@@ -25,7 +25,7 @@ __all__ = [
     "built_in_materials",
     "built_in_sheet",
     "materials_of",
-    "settings_of",
+    "report_doubled",
     "standard_class",
     "tolerance_classes_of",
 ]
@@ -65,7 +65,7 @@ def built_in_materials() -> dict[str, Material]:
     }
 
 
-def _material(record: dict[str, Any], name: str) -> Material:
+def _material(record: Mapping[str, Any], name: str) -> Material:
     """Return a material in SI."""
     constants = {
         column.dimension: record[column.key] * column.si_unit.si
@@ -83,7 +83,7 @@ def _material(record: dict[str, Any], name: str) -> Material:
 def materials_of(table: Table, ledger: Ledger) -> dict[str, Material]:
     """Return the materials of a sheet by plain name; faulty ones are named in the ledger."""
     materials: dict[str, Material] = {}
-    doubled = _report_doubled(table, ledger, ("material",), "E321")
+    doubled = report_doubled(table, ledger, ("material",), "E321")
     for record in table.frame.iter_rows(named=True):
         row, name = record["row"], record["material"]
         if name is None:
@@ -96,7 +96,7 @@ def materials_of(table: Table, ledger: Ledger) -> dict[str, Material]:
     return materials
 
 
-def _check_constants(table: Table, ledger: Ledger, record: dict[str, Any], material: str) -> None:
+def _check_constants(table: Table, ledger: Ledger, record: Mapping[str, Any], material: str) -> None:
     """Require G, or E and ν, and tell when all three are given and disagree."""
     row = record["row"]
     if any((row, key) in table.faulty for key in _CONSTANTS):
@@ -117,8 +117,8 @@ def _check_constants(table: Table, ledger: Ledger, record: dict[str, Any], mater
             _report(table, ledger, "W404", row, "shear_modulus_GPa", value=shear, other=implied)
 
 
-def _report_doubled(table: Table, ledger: Ledger, keys: tuple[str, ...], code: str) -> set[int]:
-    """Mark every row whose keys another row has too, each with its partners; return the rows."""
+def report_doubled(table: Table, ledger: Ledger, keys: tuple[str, ...], code: str) -> set[int]:
+    """Report every row whose keys another row has too, each with its partners; return the rows."""
     groups: dict[tuple[str, ...], list[int]] = defaultdict(list)
     for row, *names in table.frame.select("row", *keys).iter_rows():
         if all(name is not None for name in names):
@@ -147,30 +147,30 @@ def standard_class() -> list[ToleranceRow]:
     return entries
 
 
-def _tolerance_row(record: dict[str, Any]) -> ToleranceRow:
+def _tolerance_row(record: Mapping[str, Any]) -> ToleranceRow:
     """Return a valid tolerance row in SI."""
     column = DIMENSIONS[record["dimension"]]
     text = (record["deviation_unit"] or "").strip()
     relative = text == "%"
     unit = column.si_unit if relative or not text else find_unit(text, column.quantity)
     factor = 0.01 if relative else unit.si if unit else 1.0
+    given: dict[str, Any] = {key: record[key] for key in ("distribution", "limits_sigma") if record[key] is not None}
+    if record["grade"] is None:
+        given |= {"lower": record["lower_deviation"] * factor, "upper": record["upper_deviation"] * factor}
     return ToleranceRow(
         row=record["row"],
         tolerance_class=record["tolerance_class"],
         dimension=record["dimension"],
-        lower=(record["lower_deviation"] or 0.0) * factor,
-        upper=(record["upper_deviation"] or 0.0) * factor,
         relative=relative,
         grade=record["grade"],
-        distribution=record["distribution"] or "normal",
-        limits_sigma=record["limits_sigma"] or 3.0,
+        **given,
     )
 
 
 def tolerance_classes_of(table: Table, ledger: Ledger) -> dict[str, list[ToleranceRow]]:
     """Return the tolerance classes of a sheet by plain name; faulty ones are named in the ledger."""
     classes: dict[str, list[ToleranceRow]] = defaultdict(list)
-    doubled = _report_doubled(table, ledger, ("tolerance_class", "dimension"), "E319")
+    doubled = report_doubled(table, ledger, ("tolerance_class", "dimension"), "E319")
     for record in table.frame.iter_rows(named=True):
         row, name = record["row"], record["tolerance_class"]
         if name is None:
@@ -191,7 +191,7 @@ def tolerance_classes_of(table: Table, ledger: Ledger) -> dict[str, list[Toleran
     return dict(classes)
 
 
-def _check_tolerance(table: Table, ledger: Ledger, record: dict[str, Any]) -> bool:
+def _check_tolerance(table: Table, ledger: Ledger, record: Mapping[str, Any]) -> bool:
     """Check the cells of a tolerance row, as far as they have no fault yet; return whether nothing was found."""
     row = record["row"]
     record = {key: None if (row, key) in table.faulty else value for key, value in record.items()}
@@ -206,7 +206,7 @@ def _check_tolerance(table: Table, ledger: Ledger, record: dict[str, Any]) -> bo
     return len(ledger.findings) == before
 
 
-def _check_grade(table: Table, ledger: Ledger, record: dict[str, Any], column: Column | None) -> None:
+def _check_grade(table: Table, ledger: Ledger, record: Mapping[str, Any], column: Column | None) -> None:
     """Require that a grade stands alone, exists and applies to its dimension, where that is known."""
     row, grade = record["row"], record["grade"]
     if any(record[key] is not None for key in _DEVIATIONS):
@@ -221,7 +221,7 @@ def _check_grade(table: Table, ledger: Ledger, record: dict[str, Any], column: C
         _report(table, ledger, "E320", row, "grade", value=grade, other=column.dimension)
 
 
-def _check_deviations(table: Table, ledger: Ledger, record: dict[str, Any]) -> None:
+def _check_deviations(table: Table, ledger: Ledger, record: Mapping[str, Any]) -> None:
     """Require both deviations, the lower first; one cell that says both is its own finding alone."""
     row, (lower, upper) = record["row"], (record[key] for key in _DEVIATIONS)
     faulty = [str(table.entered(row, key)) for key in _DEVIATIONS if (row, key) in table.faulty]
@@ -232,74 +232,8 @@ def _check_deviations(table: Table, ledger: Ledger, record: dict[str, Any]) -> N
         _report(table, ledger, "E318", row, "lower_deviation", value=lower, other=upper)
 
 
-def _check_shift(table: Table, ledger: Ledger, record: dict[str, Any]) -> None:
+def _check_shift(table: Table, ledger: Ledger, record: Mapping[str, Any]) -> None:
     """Warn of deviations that shift a dimension without scatter."""
     lower, upper = (record[key] for key in _DEVIATIONS)
     if lower and lower == upper:
         _report(table, ledger, "W410", record["row"], "upper_deviation", value=upper)
-
-
-def settings_of(table: Table, ledger: Ledger) -> Settings:
-    """Return the settings of a sheet; a faulty finding leaves nothing computable."""
-    columns = {column.key: column for column in SETTINGS}
-    values: dict[str, Any] = {}
-    before = len(ledger.findings)
-    doubled = _report_doubled(table, ledger, ("setting",), "E323")
-    index = table.heading.columns.get("value", 0)
-    for record in table.frame.iter_rows(named=True):
-        row, name = record["row"], record["setting"]
-        raw = table.cells[row].get(index)
-        if name not in columns or row in doubled or raw is None:
-            continue
-        column = columns[name]
-        value = _setting_value(column, raw, from_text=table.numbers_are_texts)
-        if not isinstance(value, Fault):
-            values[name] = value
-            if isinstance(value, float) and (usual := unusual_words(column, value)):
-                cell = table.address(row, "value")
-                told = {"value": f"{value:.10g}", "detail": usual, "name": name}
-                ledger.add("W440", sheet=table.sheet, cell=cell, column=name, **told)
-            continue
-        facts: dict[str, Any] = {"suggestion": value.suggestion, "repair": value.repair}
-        facts |= {"requirement": column.requirement, "choices": ", ".join(column.choices), **value.facts}
-        cell = table.address(row, "value")
-        ledger.add(value.code, sheet=table.sheet, cell=cell, column=name, name=name, value=value.value, **facts)
-    faulty = any((row, key) in table.faulty for row in table.frame["row"] for key in ("setting", "value"))
-    if faulty or any(finding.level == "error" for finding in ledger.findings[before:]):
-        ledger.everything = True
-    return settings_from(values)
-
-
-def _setting_value(column: Column, raw: RawValue, *, from_text: bool) -> str | float | Fault:
-    """Return a setting's value within its bounds or list, or why it has none."""
-    if column.is_number:
-        value = as_number(raw, column, from_text=from_text)
-        return value if isinstance(value, Fault) else _number_fault(column, value) or value
-    text = as_text(raw, longest=200)
-    if isinstance(text, Fault) or text.casefold() in column.choices:
-        return text if isinstance(text, Fault) else text.casefold()
-    if is_no_value(text):
-        return Fault(code="E221", value=text, facts=no_value_facts(column))
-    repair = misspelt(text, spelt_alike(column.choices))
-    return Fault(code="E209", value=text, suggestion=suggested(text, column.choices), repair=repair)
-
-
-def _number_fault(column: Column, value: float) -> Fault | None:
-    """Return why a number is out of a setting's bounds, or None."""
-    low, high = column.minimum, column.maximum
-    if column.type == "integer" and value != int(value):
-        return Fault(code="E213", value=value)
-    if low is not None and (value < low or (column.exclusive_minimum and value == low)):
-        return Fault(code="E207", value=value)
-    return Fault(code="E208", value=value) if high is not None and value > high else None
-
-
-def settings_from(values: dict[str, Any]) -> Settings:
-    """Return settings from valid values by name; absent ones take their default."""
-    calibrations = {
-        column.key: float(values.pop(column.key, column.default)) for column in SETTINGS if column.role == "dimension"
-    }
-    for key in ("seed", "samples"):
-        if values.get(key) is not None:
-            values[key] = int(values[key])
-    return Settings(**values, calibrations=calibrations)

@@ -24,11 +24,11 @@ from flexlash.validation.ledger import Ledger
 from flexlash.validation.materials_and_classes import (
     built_in_materials,
     materials_of,
-    settings_of,
     standard_class,
     tolerance_classes_of,
 )
 from flexlash.validation.row_checks import check_cells, check_relations
+from flexlash.validation.settings_table import settings_of
 from flexlash.validation.template_versions import TEMPLATE_VERSION, check_version
 from flexlash.validation.typed_columns import tabulate
 from flexlash.validation.unused_classes import report_unused_classes
