@@ -66,6 +66,8 @@ class Column:
 
     `zero_is_blank` where a 0 says the same as a blank cell: a fillet of 0 is none. `grade_at` is the size at which a
     tolerance grade of a length is read: the length itself, the diameter of a radius, or none where no grade applies.
+    A number outside its `usual` span, in the printed unit, is warned of. `also_called` are whole names of the column
+    that engineers use in English, German, French and Italian, without spaces; a header of such a name is a question.
     """
 
     sheet: str
@@ -86,6 +88,8 @@ class Column:
     since: int = 1
     zero_is_blank: bool = False
     grade_at: Literal["length", "diameter", "none"] = "length"
+    usual: tuple[float, float] | None = None
+    also_called: str = ""
 
     @classmethod
     def entry(cls, sheet: str, role: Role, key: str, label: str, text: str, **rest: Any) -> Column:
@@ -166,7 +170,8 @@ class Column:
 
     def as_dictionary(self) -> dict[str, Any]:
         """Return the entry of `flexlash schema --json`: the fields that scripts rely on first."""
-        entry = asdict(self) | {"choices": list(self.choices), "rules": [asdict(rule) for rule in self.rules.values()]}
+        entry = asdict(self) | {"rules": [asdict(rule) for rule in self.rules.values()]}
+        entry = {key: list(value) if isinstance(value, tuple) else value for key, value in entry.items()}
         return {key: entry[key] for key in dict.fromkeys((*_FIRST, *entry))}
 
 

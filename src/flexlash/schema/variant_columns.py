@@ -22,6 +22,7 @@ VARIANTS = (
         type="text",
         required=True,
         group="Variant",
+        also_called="variante name bezeichnung nom nome part partname version design",
     ),
     _identity(
         "flexspline_type",
@@ -32,6 +33,7 @@ VARIANTS = (
         choices=("cup", "hat", "cylinder"),
         default="cup",
         group="Variant",
+        also_called="flexsplineshape bauform",
     ),
     _identity(
         "material",
@@ -40,6 +42,7 @@ VARIANTS = (
         type="text",
         required=True,
         group="Variant",
+        also_called="werkstoff matériau materiau matière materiale steel steelgrade stahl",
     ),
     _dimension(
         "torque_Nm",
@@ -48,6 +51,7 @@ VARIANTS = (
         **TORQUE,
         required=True,
         group="Load",
+        also_called="drehmoment moment couple coppia load loadtorque outputtorque peaktorque torsionalmoment",
     ),
     _dimension(
         "cylinder_length_mm",
@@ -56,6 +60,8 @@ VARIANTS = (
         **LENGTH,
         required=True,
         group="Cylinder",
+        also_called="länge laenge zylinderlänge zylinderlaenge longueur lunghezza cuplength cupdepth depth l "
+        "flexsplinelength walllength barrellength insidedepth height cupheight höhe tiefe bechertiefe",
     ),
     _dimension(
         "mean_radius_mm",
@@ -63,6 +69,8 @@ VARIANTS = (
         "Radius of the middle of the wall. Give this or the bore diameter, not both.",
         **RADIUS,
         group="Cylinder",
+        also_called="mittlererradius rayon rayonmoyen raggio raggiomedio midradius middleradius middlesurfaceradius "
+        "neutralradius neutrallineradius nominalradius cylinderradius flexsplineradius cupradius meanr r",
     ),
     _dimension(
         "bore_diameter_mm",
@@ -70,6 +78,8 @@ VARIANTS = (
         "Inside diameter of the wall. The mean radius is then bore/2 + wall/2 and follows both tolerances.",
         **LENGTH,
         group="Cylinder",
+        also_called="innendurchmesser bohrungsdurchmesser bohrung innerdiameter insidediameter bore borediam boredia "
+        "alésage flexsplinebore",
     ),
     _dimension(
         "wall_thickness_mm",
@@ -78,6 +88,8 @@ VARIANTS = (
         **LENGTH,
         required=True,
         group="Cylinder",
+        also_called="wanddicke wandstärke wandstaerke wallthk s épaisseur epaisseur spessore cupthickness "
+        "shellthickness cylinderthickness cupwall cylinderwall",
     ),
     _dimension(
         "disk_thickness_mm",
@@ -85,6 +97,8 @@ VARIANTS = (
         "Thickness of the disk or flange. Blank: the same as the wall, cut in one pass, one tolerance for both.",
         **LENGTH,
         group="Disk",
+        also_called="bottomthickness diaphragmthickness basethickness bodendicke membrandicke scheibendicke "
+        "flangethickness",
     ),
     _dimension(
         "disk_inner_radius_mm",
@@ -92,6 +106,9 @@ VARIANTS = (
         "Cup: radius of the hub, where the disk is clamped; required. Hat: blank means the mean radius.",
         **RADIUS,
         group="Disk",
+        also_called="innenradius nabenradius innerradius rayonintérieur raggiointerno hubradius hubr hubrad rhub "
+        "innerr radiusathub radiusofhub hubouterradius innerradiusofdisk innerdiskradius discinnerradius "
+        "bossradius clampingradius clampradius diskinnerr diaphragminnerradius",
     ),
     _dimension(
         "disk_outer_radius_mm",
@@ -99,6 +116,7 @@ VARIANTS = (
         "Cup: blank means the mean radius, as it should be. Hat: radius of the bolt circle; required.",
         **RADIUS,
         group="Disk",
+        also_called="boltcircleradius flangeradius flangeouterradius lochkreisradius outerradiusofdisk outerdiskradius",
     ),
     _dimension(
         "disk_hub_thickness_mm",
@@ -106,6 +124,7 @@ VARIANTS = (
         "Cup only. Disk that thins in a straight line from here to the disk thickness at its rim. Blank: even.",
         **LENGTH,
         group="Refinements",
+        also_called="hubthickness thicknessathub nabendicke",
     ),
     _dimension(
         "disk_thickness_exponent",
@@ -135,6 +154,7 @@ VARIANTS = (
         "Cup only. Fillet between hub and inner face of the disk. Blank or 0: sharp corner.",
         **FILLET,
         group="Refinements",
+        also_called="hubfillet filletathub",
     ),
     _dimension(
         "junction_fillet_radius_mm",
@@ -142,6 +162,7 @@ VARIANTS = (
         "Cup only. Fillet inside the corner of disk and wall. Blank or 0: sharp corner.",
         **FILLET,
         group="Refinements",
+        also_called="junctionfillet cornerradius cornerfillet innercornerradius",
     ),
     _dimension(
         "rim_length_mm",
@@ -149,6 +170,7 @@ VARIANTS = (
         "Length of the thicker toothed rim at the open end. Give length and thickness, or neither.",
         **LENGTH,
         group="Refinements",
+        also_called="toothrimwidth rimwidth",
     ),
     _dimension(
         "rim_thickness_mm",
@@ -164,6 +186,7 @@ VARIANTS = (
         "lost_motion_percent).",
         **TORQUE,
         group="Requirements",
+        also_called="nenndrehmoment nominaltorque ratedload",
     ),
     _requirement(
         "load_inertia_kg_m2",
@@ -173,6 +196,7 @@ VARIANTS = (
         **POSITIVE,
         group="Requirements",
         since=2,
+        usual=(1e-07, 1e06),
     ),
     _requirement(
         "backlash_limit_arcmin",
@@ -181,6 +205,9 @@ VARIANTS = (
         quantity="angle",
         **POSITIVE,
         group="Requirements",
+        usual=(0.001, 600),
+        also_called="maxbacklash backlashmax allowablebacklash permissiblebacklash backlashspec spielgrenze "
+        "zulässigesspiel",
     ),
     _identity(
         "tolerance_class",
@@ -189,6 +216,7 @@ VARIANTS = (
         type="text",
         default="standard",
         group="Requirements",
+        also_called="toleranzklasse classedetolérance tolclass",
     ),
     _remark("notes", "Notes", "Free text; carried to the report.", type="text", group="Requirements"),
 )

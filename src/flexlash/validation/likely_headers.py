@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping, Sequence
 
 from flexlash.schema.column import Column
 from flexlash.schema.spellings import likeness, plain, words
@@ -22,43 +22,6 @@ _EQUALLY = 0.05
 _RADII = ("mean_radius_mm", "bore_diameter_mm")
 """Columns of which one is required."""
 
-_CALLED = {
-    "variant": "variante name bezeichnung nom nome part partname version design",
-    "flexspline_type": "flexsplineshape bauform",
-    "material": "werkstoff matériau materiau matière materiale steel steelgrade stahl",
-    "torque_Nm": "drehmoment moment couple coppia load loadtorque outputtorque peaktorque torsionalmoment",
-    "cylinder_length_mm": "länge laenge zylinderlänge zylinderlaenge longueur lunghezza cuplength cupdepth depth l "
-    "flexsplinelength walllength barrellength insidedepth height cupheight höhe tiefe bechertiefe",
-    "mean_radius_mm": "mittlererradius rayon rayonmoyen raggio raggiomedio midradius middleradius middlesurfaceradius "
-    "neutralradius neutrallineradius nominalradius cylinderradius flexsplineradius cupradius meanr r",
-    "bore_diameter_mm": "innendurchmesser bohrungsdurchmesser bohrung innerdiameter insidediameter bore borediam "
-    "boredia alésage flexsplinebore",
-    "wall_thickness_mm": "wanddicke wandstärke wandstaerke wallthk s épaisseur epaisseur spessore cupthickness "
-    "shellthickness cylinderthickness cupwall cylinderwall",
-    "disk_thickness_mm": "bottomthickness diaphragmthickness basethickness bodendicke membrandicke scheibendicke "
-    "flangethickness",
-    "disk_inner_radius_mm": "innenradius nabenradius innerradius rayonintérieur raggiointerno hubradius hubr hubrad "
-    "rhub innerr radiusathub radiusofhub hubouterradius innerradiusofdisk innerdiskradius discinnerradius bossradius "
-    "clampingradius clampradius diskinnerr diaphragminnerradius",
-    "disk_outer_radius_mm": "boltcircleradius flangeradius flangeouterradius lochkreisradius outerradiusofdisk "
-    "outerdiskradius",
-    "disk_hub_thickness_mm": "hubthickness thicknessathub nabendicke",
-    "hub_fillet_radius_mm": "hubfillet filletathub",
-    "junction_fillet_radius_mm": "junctionfillet cornerradius cornerfillet innercornerradius",
-    "rim_length_mm": "toothrimwidth rimwidth",
-    "rated_torque_Nm": "nenndrehmoment nominaltorque ratedload",
-    "backlash_limit_arcmin": "maxbacklash backlashmax allowablebacklash permissiblebacklash backlashspec spielgrenze "
-    "zulässigesspiel",
-    "tolerance_class": "toleranzklasse classedetolérance tolclass",
-    "lower_deviation": "lower unteresabmaß unteresabmass untereabweichung lowertolerance minus",
-    "upper_deviation": "upper oberesabmaß oberesabmass obereabweichung uppertolerance plus",
-    "youngs_modulus_GPa": "emodul elastizitätsmodul elasticmodulus youngmodulus modulusofelasticity e",
-    "poisson_ratio": "querkontraktionszahl poissonzahl poisson nu ν",
-    "shear_modulus_GPa": "schubmodul gmodul modulusofrigidity g",
-    "yield_MPa": "streckgrenze yieldstress yield rp02 re",
-}
-"""What engineers call the columns, in English, German, French and Italian; whole names in plain spelling."""
-
 
 def likely_headers(
     names: Mapping[int, str], columns: Mapping[str, Column], spellings: Mapping[str, str]
@@ -71,7 +34,7 @@ def likely_headers(
     unknown = {index: name for index, name in names.items() if plain(name) not in spellings}
     alike = {index: _likenesses(name, spellings) for index, name in unknown.items()}
     absent = columns.keys() - present - (set() if present.isdisjoint(_RADII) else set(_RADII))
-    called = _called(unknown, absent)
+    called = _called(unknown, [columns[key] for key in columns if key in absent])
     missing = _missing(columns, present | {*called.values()})
     pairs = sorted(
         (-_nearness(name, key, columns[key], spellings), index, key)
@@ -89,9 +52,9 @@ def likely_headers(
     return {index: _resembling(alike[index], present) for index in unknown} | likely
 
 
-def _called(unknown: Mapping[int, str], absent: Collection[str]) -> dict[int, str]:
+def _called(unknown: Mapping[int, str], absent: Sequence[Column]) -> dict[int, str]:
     """Return the absent column that each header names in other words, by its index; the first header of two."""
-    spelt = {name: key for key, names in _CALLED.items() if key in absent for name in map(plain, names.split())}
+    spelt = {plain(name): column.key for column in absent for name in column.also_called.split()}
     named: dict[int, str] = {}
     for index, name in unknown.items():
         key = spelt.get(plain(name)) or spelt.get(plain(" ".join(words(name))))

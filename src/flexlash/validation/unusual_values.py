@@ -14,23 +14,6 @@ from flexlash.validation.validated import Table
 
 __all__ = ["report_unusual", "unusual_words"]
 
-_USUAL = {
-    "load_inertia_kg_m2": (1e-7, 1e6),
-    "backlash_limit_arcmin": (1e-3, 600.0),
-    "youngs_modulus_GPa": (1e-3, 1500.0),
-    "shear_modulus_GPa": (3e-4, 600.0),
-    "poisson_ratio": (0.1, 0.5),
-    "density_kg_m3": (10.0, 25_000.0),
-    "yield_MPa": (1.0, 10_000.0),
-    "limits_sigma": (1.0, 12.0),
-    "lost_motion_percent": (1.0, 10.0),
-    "cylinder_calibration": (0.5, 2.5),
-    "disk_calibration": (0.5, 2.5),
-}
-"""What is usual, in the printed unit: foam rubber to osmium, limits at one to twelve standard deviations, makers' lost
-motion at 3 to 4 % of the rated torque. Fillets, rims and other refinements lower a wind-up by less than a half; play
-under the teeth raises it to at most 2.3 times, which bounds a calibration."""
-
 _BEYOND = 10.0
 """How far beyond the proportions of known flexsplines a length must lie to be told."""
 
@@ -58,7 +41,7 @@ def unusual_words(column: Column, value: float) -> str:
     >>> unusual_words(SETTINGS[-1], 0.2), unusual_words(SETTINGS[-1], 0.9)
     ('0.5 to 2.5', '')
     """
-    low, high = _USUAL.get(column.key, (value, value))
+    low, high = column.usual or (value, value)
     return "" if low <= value <= high else _words(column, low, high)
 
 
@@ -69,10 +52,10 @@ def _words(column: Column, low: float, high: float) -> str:
 
 def _ranges(schema: str) -> Iterator[tuple[str, pl.Expr, pl.Expr]]:
     """Yield the columns of a sheet that have a usual range, with its ends."""
-    for key in columns_of(schema):
-        if key in _USUAL:
-            low, high = _USUAL[key]
-            yield key, pl.lit(low), pl.lit(high)
+    for key, column in columns_of(schema).items():
+        if column.usual:
+            low, high = column.usual
+            yield key, pl.lit(float(low)), pl.lit(float(high))
     if schema == "Variants":
         radius = pl.coalesce("mean_radius_mm", pl.col("bore_diameter_mm") / 2)
         for key, (least, most) in SHARES.items():
