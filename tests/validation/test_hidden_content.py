@@ -7,6 +7,7 @@ import pytest
 
 from flexlash.pipeline import check
 from flexlash.reading.raw import RawSheet, Submission
+from flexlash.validation.consolidation import consolidated
 from flexlash.validation.validate import validate
 
 KEYS = [
@@ -102,7 +103,7 @@ def test_a_run_of_hidden_rows_says_how_far_it_goes():
     submission = Submission(
         name="a.xlsx", sha256="", kind="workbook", sheets={"Variants": _sheet(2, 3, 4, hidden_rows=frozenset({3, 4}))}
     )
-    (found,) = [one for one in validate(submission).findings if one.code == "W425"]
+    (found,) = [one for one in consolidated(validate(submission)) if one.code == "W425"]
     assert found.message == "Variants!A3: rows 3 to 4 are hidden, but used."
     assert found.variant == "V3"
 

@@ -373,7 +373,7 @@ def test_no_header_row_leaves_nothing():
     sheet = _sheet("Variants", [["B3-160", "cup", "20Cr2Ni4", 800]])
     validated = validate(Submission(name="a.xlsx", sha256="", kind="csv", sheets={"Variants": sheet}))
     assert _told(validated) == [("E109", "Variants!A1")]
-    assert (validated.variants, validated.submitted) == ([], [])
+    assert (validated.variants, validated.submitted) == ((), [])
 
 
 def test_a_misspelt_sheet_is_asked_about(book):
