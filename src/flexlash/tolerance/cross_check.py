@@ -48,8 +48,8 @@ def cross_checked(statistics: SpreadStatistics, plain: SampledSpread, limit: flo
     agrees = "agrees" if greatest <= AGREEMENT else "differs"
     return replace(
         statistics,
-        numbers=statistics.numbers | beside,
-        texts=statistics.texts | {"cross_check": agrees},
+        numbers={**statistics.numbers, **beside},
+        texts={**statistics.texts, "cross_check": agrees},
     )
 
 

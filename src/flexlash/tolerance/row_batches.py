@@ -137,8 +137,8 @@ class RowBatch:
         return [
             replace(
                 row,
-                numbers=row.numbers | dict(zip(_FIRST_ORDER, numbers[index], strict=True)),
-                texts=row.texts | {"first_order_valid": "yes" if valid[index] else "no"},
+                numbers={**row.numbers, **dict(zip(_FIRST_ORDER, numbers[index], strict=True))},
+                texts={**row.texts, "first_order_valid": "yes" if valid[index] else "no"},
                 swings={name: tuple(pairs[index]) for name, pairs in swings.items()},
             )
             for index, row in enumerate(statistics)

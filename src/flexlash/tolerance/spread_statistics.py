@@ -35,11 +35,11 @@ PERCENTILES = {
 class SpreadStatistics:
     """What is kept of one row's spread; a number that the row does not have is left out or None."""
 
-    numbers: dict[str, float | None]
-    texts: dict[str, str | None] = field(default_factory=dict)
-    shares: dict[str, float] = field(default_factory=dict)
-    total_shares: dict[str, float] = field(default_factory=dict)
-    swings: dict[str, tuple[float, float]] = field(default_factory=dict)
+    numbers: Mapping[str, float | None]
+    texts: Mapping[str, str | None] = field(default_factory=dict)
+    shares: Mapping[str, float] = field(default_factory=dict)
+    total_shares: Mapping[str, float] = field(default_factory=dict)
+    swings: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @classmethod
     def of(

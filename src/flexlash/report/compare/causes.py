@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from flexlash.analysis.outcome import Outcome
@@ -28,7 +28,7 @@ class Cause:
     """What causes the spread of one variant: the share of variance of each dimension, and the main one."""
 
     name: str
-    shares: dict[str, float]
+    shares: Mapping[str, float]
     main: str | None
 
 
