@@ -470,6 +470,7 @@ def test_dimensions_of_all_variants_of_a_class_are_named(shop):
     assert "Tooth rim length, Tooth rim thickness" in message
 
 
+@pytest.mark.slow
 def test_a_row_of_zero_deviations_is_deliberate(shop):
     """Zero deviations say that a dimension is exact, and a full class or the class standard has nothing to tell."""
     names = ("cylinder_length", "mean_radius", "disk_inner_radius", "youngs_modulus", "poisson_ratio")
@@ -485,6 +486,7 @@ def test_the_class_standard_of_the_submission_counts(shop):
     assert "no row for Young's modulus, which class standard scatters" in message
 
 
+@pytest.mark.slow
 def test_a_shear_modulus_that_is_given_is_named_alone(shop, tmp_path):
     """E and ν do not count where the material gives G, which class standard does not scatter."""
     materials = tmp_path / "materials.csv"

@@ -36,6 +36,7 @@ def _only(outcome):
     return recommendation
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", [0, 1], ids=["main contributor", "all"])
 @pytest.mark.parametrize("limit", [3.75, 3.8], ids=["red", "amber"])
 def test_half_a_tolerance_does_what_a_run_with_it_says(table, sound, deviations, place, limit):
@@ -60,6 +61,7 @@ def test_the_main_contributor_and_the_main_drawing_dimension_are_halved(table, s
     assert set(every.limits) == set(shares)
 
 
+@pytest.mark.slow
 def test_a_halved_tolerance_keeps_its_middle(table, sound, tmp_path):
     """A tolerance to one side is halved about its own middle, not about the entered value."""
     tolerances = tmp_path / "tolerances.csv"

@@ -75,6 +75,7 @@ def test_run_writes_the_form_that_the_ending_names(table, sound, tmp_path, endin
     assert target.stat().st_size > 100
 
 
+@pytest.mark.slow
 def test_check_prints_findings_and_the_next_command(table, sound, capsys, main_in):
     """Check prints each finding with its place, what is required and the mend, then what to do next."""
     path = table([sound, {**sound, "variant": "b", "wall_thickness_mm": "1,6"}])
@@ -183,6 +184,7 @@ def test_jobs_must_be_at_least_one(table, sound, main_in, capsys, jobs):
     assert "--jobs" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("content", "code"),
     [("not a table", 4), ("variant,material\n", 4), ("%PDF-1.7", 4)],

@@ -158,6 +158,7 @@ def test_folders_are_no_files(arguments, tmp_path, monkeypatch, capsys):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_a_library_that_is_missing_is_no_matter_of_elasticity(report, monkeypatch):
     """Only the elasticity check's own libraries are told with the way without them."""
 

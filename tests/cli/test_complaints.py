@@ -53,6 +53,7 @@ def _places(answered, code):
     return [found.cell for found in answered[0].findings if found.code == code]
 
 
+@pytest.mark.slow
 def test_wrong_row_number_after_a_blank_row(answered):
     """Rows are counted as Excel counts them, blank rows included."""
     assert _places(answered, "E202") == ["H7"]
@@ -122,6 +123,7 @@ def test_an_error_without_a_home_cell(answered):
     assert all(found.cell for found in answered[0].findings if found.level == "error")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "code", "suggestion"),
     [
@@ -140,6 +142,7 @@ def test_misspelt_without_a_did_you_mean(change, code, suggestion, tmp_path):
     assert found.suggestion == suggestion
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("length", [4, 500, 5000])
 def test_an_empty_message_for_a_damaged_file(length, tmp_path):
     """A damaged file is told in a full sentence with a mend."""

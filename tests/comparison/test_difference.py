@@ -140,6 +140,7 @@ def test_tables_and_settings_are_told_with_who_uses_them(workbook, sound, what):
     assert not any(one.entered or one.results for one in found.variants)
 
 
+@pytest.mark.slow
 def test_tolerances_in_other_units_are_equal(workbook, sound):
     """Deviations in µm and mm that are the same are no difference, nor is sigma where it has no meaning."""
     rows = [sound | {"tolerance_class": "fine"}]
@@ -160,6 +161,7 @@ def reports(table, tmp_path):
     return make
 
 
+@pytest.mark.slow
 def test_two_reports_of_one_submission_do_not_differ(reports, sound):
     """The same rows in another order give no difference, in inputs or results."""
     rows = [sound, sound | {"variant": "b", "wall_thickness_mm": 1.7}]
@@ -167,6 +169,7 @@ def test_two_reports_of_one_submission_do_not_differ(reports, sound):
     assert (found.is_none, found.has_results, found.common) == (True, True, 2)
 
 
+@pytest.mark.slow
 def test_results_are_told_verdict_first(reports, sound):
     """Of two reports the results are compared, those of the verdict first, and a limit that was crossed is told."""
     old = reports("a", [sound | {"backlash_limit_arcmin": 3.9}])
@@ -182,6 +185,7 @@ def test_results_are_told_verdict_first(reports, sound):
     assert back.limit == "within"
 
 
+@pytest.mark.slow
 def test_another_seed_alone_changes_within_the_error(reports, sound):
     """Where only the seed is another, results are within their errors; where a wall is another, they are not."""
     rows = [sound, sound | {"variant": "b", "torque_Nm": 700.0}]
@@ -194,6 +198,7 @@ def test_another_seed_alone_changes_within_the_error(reports, sound):
     assert [one.name.text for one in changed.differing] == ["B3-160"]
 
 
+@pytest.mark.slow
 def test_a_row_that_is_missing_from_results_is_a_difference(reports, sound):
     """A variant whose row somebody took out of Results is told, never equal."""
     old = side_of(reports("a", [sound]), LIMITS)
@@ -201,6 +206,7 @@ def test_a_row_that_is_missing_from_results_is_a_difference(reports, sound):
     assert _told(one.results) == [("status", "there", "missing")]
 
 
+@pytest.mark.slow
 def test_tolerance_hides_small_differences(reports, sound):
     """Numbers that differ by less than the given part of themselves are equal; of inputs none is hidden."""
     old, new = reports("a", [sound]), reports("b", [sound], seed=9)
@@ -238,6 +244,7 @@ def test_when_values_are_equal(one, other, expected):
     assert is_equal(one, other) is expected
 
 
+@pytest.mark.slow
 def test_json_holds_everything(reports, sound):
     """The JSON form names both files, all counts and every change with its per cent."""
     old = reports("a", [sound, sound | {"variant": "gone"}])

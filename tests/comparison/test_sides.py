@@ -23,6 +23,7 @@ def study(tmp_path_factory):
     return run(STUDY, path, samples=64), path
 
 
+@pytest.mark.slow
 def test_a_report_and_its_submission_say_the_same(study):
     """Read back from the report, entries, materials, tolerances and settings are those of the submission."""
     report, submission = side_of(study[1], LIMITS), side_of(STUDY, LIMITS)
@@ -34,6 +35,7 @@ def test_a_report_and_its_submission_say_the_same(study):
     assert report.settings == submission.settings | {"samples": 64}
 
 
+@pytest.mark.slow
 def test_results_of_a_report_are_those_of_its_run(study):
     """Every number of Results comes back by key, to the digits that the sheet keeps of it."""
     outcome, path = study
@@ -85,6 +87,7 @@ TOLERANCES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("row", "words"), TOLERANCES)
 def test_tolerances_are_shown_as_a_drawing_gives_them(workbook, sound, row, words):
     """Grades by name, deviations signed in the dimension's unit, other than usual distributions in words."""
@@ -124,6 +127,7 @@ def test_cells_of_results_are_taken_by_their_column():
     }
 
 
+@pytest.mark.slow
 def test_a_table_that_is_none_is_refused(study, tmp_path):
     """A text without the template's headers is refused, and so is a report whose inputs were taken out."""
     (tmp_path / "letter.csv").write_text("Dear Sir,\nthe gear, it broke\n", encoding="utf-8")

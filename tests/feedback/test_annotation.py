@@ -354,6 +354,7 @@ def test_the_copy_is_recognised_and_keeps_other_properties():
     assert len(found) == 2
 
 
+@pytest.mark.slow
 def test_same_input_same_bytes():
     """The copy does not depend on the day or on the order of sets, and keeps the original's date of change."""
     code = (
@@ -379,6 +380,7 @@ def test_same_input_same_bytes():
         assert {entry.date_time for entry in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
 
 
+@pytest.mark.slow
 def test_no_file_is_written():
     """Marking works in a process that may not write a byte to disk."""
     resource = pytest.importorskip("resource")
@@ -426,6 +428,7 @@ def test_names_beside_chart_sheets_keep_their_sheet():
     assert found["Findings"].print_title_rows
 
 
+@pytest.mark.slow
 def test_many_cells_have_fills_but_not_all_have_notes():
     """Beyond the limits, fills go on, notes stop, the list stops, and the first lines say so."""
     findings = [fault(cell=f"{'ABC'[place % 3]}{place // 3 + 20}") for place in range(MOST_LISTED + 1)]

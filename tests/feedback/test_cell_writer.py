@@ -52,6 +52,7 @@ def _through_a_workbook(value):
     return read.rows[1][1]
 
 
+@pytest.mark.slow
 @for_each("value", SAME)
 def test_what_is_written_is_read(value):
     """Texts stay texts, numbers keep every digit and their kind, times and errors stay what they are."""

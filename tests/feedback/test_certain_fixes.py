@@ -34,6 +34,7 @@ def _only(outcome, code):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("change", "code", "repair"), FIXED, ids=repr)
 def test_a_repair_is_right(table, sound, change, code, repair):
     """The value of a repair, written into the cell, takes its finding away and the row is computed."""
@@ -56,6 +57,7 @@ def _renamed(path, old, new):
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("header", "repair"),
     [

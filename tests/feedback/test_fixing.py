@@ -260,6 +260,7 @@ def test_tables_keep_their_manner(what):
     assert mended_table(read_table(data, "Variants"), [_repair("B2", 1.6)]).decode() == expected
 
 
+@pytest.mark.slow
 def test_a_long_and_wide_table_is_written_soon():
     """A cell far down and one far to the right cost no more than their rows."""
     rows = {1: {1: "a", 256: "b"}, 2: {1: "1,6"}, 50_000: {1: "x"}}

@@ -33,6 +33,7 @@ def _coloured(path, title="Variants"):
     return {cell.coordinate for row in sheet.iter_rows() for cell in row if cell.fill.fgColor.rgb not in plain}
 
 
+@pytest.mark.slow
 def test_a_run_with_findings_marks_the_submission(workbook, sound, tmp_path):
     """Guilty cells and no others are coloured and noted in a copy of the engineer's own file; the rest is computed."""
     path = workbook([sound, {**sound, "variant": "B", "wall_thickness_mm": "1,6 mm"}])
@@ -45,6 +46,7 @@ def test_a_run_with_findings_marks_the_submission(workbook, sound, tmp_path):
     assert "did you mean 1.6?" in note
 
 
+@pytest.mark.slow
 def test_without_errors_and_warnings_no_copy(workbook, sound, tmp_path):
     """What was merely converted or assumed needs no marked copy."""
     outcome = check(workbook([{**sound, "variant": " B3-160 "}]), marked_copy=tmp_path / "copy.xlsx")
@@ -65,6 +67,7 @@ def test_a_damaged_file_gets_its_findings_alone(tmp_path):
     assert "E102" in _text(tmp_path / "copy.xlsx")
 
 
+@pytest.mark.slow
 def test_what_cannot_be_marked_gets_its_findings_alone(workbook, sound, tmp_path, monkeypatch):
     """When marking exceeds the limits, the findings go back alone, with the reason."""
 
@@ -94,6 +97,7 @@ def test_a_table_comes_back_as_a_workbook(kind, table, sound, tmp_path):
     assert "E207" in sheet[cell].comment.text
 
 
+@pytest.mark.slow
 def test_marked_copies_are_skipped_unless_wanted(workbook, sound, tmp_path):
     """A marked copy is recognised and skipped by name; where it is wanted it is read, its findings sheet ignored."""
     path = workbook([sound, {**sound, "variant": "B", "torque_Nm": None}])
@@ -109,6 +113,7 @@ def test_marked_copies_are_skipped_unless_wanted(workbook, sound, tmp_path):
     assert _titles(tmp_path / "again.xlsx").count("Findings") == 1
 
 
+@pytest.mark.slow
 def test_certain_repairs_are_made_and_listed(workbook, sound, tmp_path):
     """What leaves no doubt is mended in a new file; what does, is left and told."""
     rows = [

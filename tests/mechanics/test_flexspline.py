@@ -191,6 +191,7 @@ def test_backlash_is_twice_all_windups(kind, dimensions):
     assert flexspline.backlash(kind, dimensions) == pytest.approx(2 * sum(map(float, angles.values())), rel=1e-14)
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=cups(refined=False))
 def test_without_refinements_it_is_the_two_term_formula(cup):
@@ -198,6 +199,7 @@ def test_without_refinements_it_is_the_two_term_formula(cup):
     assert windup("cup", cup) == pytest.approx(two_term(cup), rel=1e-12)
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=cups(refined=False), rim=st.floats(0.01, 0.99))
 def test_neutral_refinements_change_nothing(cup, rim):
@@ -357,6 +359,7 @@ def test_longer_cylinder_never_winds_up_less(cup, factor):
     assert windup("cup", longer) >= windup("cup", cup)
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=cups(), factor=st.floats(1.0, 1.5))
 def test_thicker_wall_never_winds_up_more(cup, factor):

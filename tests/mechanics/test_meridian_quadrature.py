@@ -270,6 +270,7 @@ def test_hats_by_quadrature(hat):
     assert_agrees("hat", hat)
 
 
+@pytest.mark.slow
 @brief
 @given(cylinder=cylinders())
 def test_cylinders_by_quadrature(cylinder):
@@ -442,6 +443,7 @@ def test_segments_add_up(shape):
     assert float(backlash(kind, dimensions)) == 2 * sum(angles)
 
 
+@pytest.mark.slow
 @brief
 @given(shape=shapes, data=st.data())
 def test_arrays_have_the_bits_of_scalars(shape, data):
@@ -451,6 +453,7 @@ def test_arrays_have_the_bits_of_scalars(shape, data):
     assert_same_bits(kind, dimensions, pairs)
 
 
+@pytest.mark.slow
 @thorough
 @given(cup=power_law_cups())
 def test_power_law_cups_by_quadrature(cup):
@@ -458,6 +461,7 @@ def test_power_law_cups_by_quadrature(cup):
     assert_agrees("cup", cup)
 
 
+@pytest.mark.slow
 @brief
 @given(cup=power_law_cups(), factor=st.floats(1.2, 3.0))
 def test_wall_has_no_part_in_a_power_law_disk(cup, factor):
@@ -470,6 +474,7 @@ def test_wall_has_no_part_in_a_power_law_disk(cup, factor):
             assert float(thicker[segment]) == float(angle)
 
 
+@pytest.mark.slow
 @brief
 @given(cup=plain_cups(), thickness=multiples(0.2, 5.0))
 def test_power_law_of_exponent_zero_is_an_even_disk(cup, thickness):
@@ -480,6 +485,7 @@ def test_power_law_of_exponent_zero_is_an_even_disk(cup, thickness):
     assert powered == pytest.approx(windup("cup", cup | {"disk_thickness": thickness}), rel=1e-12)
 
 
+@pytest.mark.slow
 @brief
 @given(cup=power_law_cups(), data=st.data())
 def test_power_law_arrays_have_the_bits_of_scalars(cup, data):
@@ -488,6 +494,7 @@ def test_power_law_arrays_have_the_bits_of_scalars(cup, data):
     assert_same_bits("cup", cup, pairs)
 
 
+@pytest.mark.slow
 @brief
 @given(
     shape=st.tuples(st.just("cup"), cups() | power_law_cups()) | st.tuples(st.just("hat"), hats()), angle=cone_angles
@@ -499,6 +506,7 @@ def test_cones_by_quadrature(shape, angle):
     assert_agrees(kind, sharp | {"disk_cone_angle": angle})
 
 
+@pytest.mark.slow
 @brief
 @given(shape=st.tuples(st.just("cup"), cups()) | st.tuples(st.just("hat"), hats()))
 def test_right_angled_cone_is_flat(shape):
@@ -511,6 +519,7 @@ def test_right_angled_cone_is_flat(shape):
     assert float(steep["disk_body"]) == pytest.approx(2 * flat, rel=1e-14)
 
 
+@pytest.mark.slow
 @brief
 @given(
     shape=st.tuples(st.just("cup"), cups() | power_law_cups()) | st.tuples(st.just("hat"), hats()),

@@ -109,6 +109,7 @@ def test_von_mises_is_root_three_times_the_shear(shear):
     assert strength.von_mises_stress(shear) ** 2 == pytest.approx(3 * shear**2, rel=1e-14)
 
 
+@pytest.mark.slow
 @thorough
 @given(disk=disks())
 def test_disk_shear_against_a_slow_search(disk):
@@ -117,6 +118,7 @@ def test_disk_shear_against_a_slow_search(disk):
     assert found == pytest.approx(exact, rel=1e-6)
 
 
+@pytest.mark.slow
 @thorough
 @given(disk=disks())
 def test_the_stress_acts_at_its_radius(disk):

@@ -110,6 +110,7 @@ def test_area_of_the_half_section(kind, size, area):
     assert len(np.unique(corners)) == len(corners)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("features", [{}, FILLETS | RIM, {"disk_cone_angle": 0.8}], ids=["sharp", "fillets", "cone"])
 def test_bounds_close_as_the_mesh_is_refined(features):
     """Twist and stress function bracket I ever closer, within 3e-4 and then a sixth of it, despite the corners."""
@@ -165,6 +166,7 @@ def test_table_is_what_the_coarsest_mesh_gives(place):
     assert 0 < shortfall < 2e-4
 
 
+@pytest.mark.slow
 def test_one_row_in_full():
     """The table's first hat has its integral and its error."""
     kind, row = next((kind, row) for kind, row in TABLE if kind == "hat")

@@ -133,6 +133,7 @@ SHARP = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", SMOOTH.values(), ids=SMOOTH)
 def test_fourth_order_without_corners(size):
     """Where fillets round all corners the integral rises, its changes falling nearly sixteenfold a refinement."""
@@ -141,6 +142,7 @@ def test_fourth_order_without_corners(size):
     assert 13 < second / third < 17
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "size"), SHARP.values(), ids=SHARP)
 def test_sharp_corners_converge(kind, size):
     """With sharp corners the integral rises by ever less, at most by 2^(−4/3), and the error is more than remains."""

@@ -311,6 +311,7 @@ def test_outputs_in_other_letters_do_not_replace_each_other(tmp_path):
     assert lower.write(OURS).path == tmp_path / "a (2).json"
 
 
+@pytest.mark.slow
 def test_a_third_submission_is_not_replaced(tmp_path, table, workbook, sound):
     """`run a.xlsx a.csv "a-report (2).xlsx"`: the second report takes the next number."""
     workbook([sound], "a.xlsx")
@@ -322,6 +323,7 @@ def test_a_third_submission_is_not_replaced(tmp_path, table, workbook, sound):
     assert {"a-report.xlsx", "a-report (3).xlsx", "a-report (2)-report.xlsx"} <= set(_contents(tmp_path))
 
 
+@pytest.mark.slow
 def test_a_report_that_is_computed_anew_is_not_replaced(tmp_path, table, sound):
     """The report given to --from-report, and the tolerances beside it, are inputs as well."""
     run(table([sound]), tmp_path / "r.xlsx", **FEW)
@@ -360,6 +362,7 @@ def test_a_template_is_written_to_a_file_alone(what, tmp_path):
 # Only what flexlash wrote and nobody changed is replaced
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", ["xlsx", "parquet", "json"])
 def test_a_foreign_or_changed_file_is_left_alone(ending, tmp_path, table, sound, capsys):
     """Its own unchanged output is replaced by the same bytes; any other file stays, and the screen names it."""
@@ -378,6 +381,7 @@ def test_a_foreign_or_changed_file_is_left_alone(ending, tmp_path, table, sound,
     assert len(_contents(tmp_path)) == 3
 
 
+@pytest.mark.slow
 def test_work_in_a_report_is_kept(tmp_path, table, sound):
     """A report in which somebody worked stays; the new one is ` (2)`, which is replaced from then on."""
     path, report = table([sound]), tmp_path / "submission-report.xlsx"
@@ -390,6 +394,7 @@ def test_work_in_a_report_is_kept(tmp_path, table, sound):
     assert report.read_bytes() == theirs
 
 
+@pytest.mark.slow
 def test_a_csv_is_replaced_only_by_name_and_header(tmp_path, table, sound):
     """A table has no stamp: it gives way where -o names it and its header row is that of Results."""
     path, target = table([sound]), tmp_path / "out.csv"
@@ -403,6 +408,7 @@ def test_a_csv_is_replaced_only_by_name_and_header(tmp_path, table, sound):
     assert target.read_text(encoding="utf-8") == own.replace(",", ";")
 
 
+@pytest.mark.slow
 def test_own_columns_keep_a_csv_ours(tmp_path, table, sound):
     """Further columns behind those of Results do not make a table foreign."""
     path = table([{**sound, "Drawing": "D-17"}])
@@ -435,6 +441,7 @@ IN_THE_WAY = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", [what for what, made in IN_THE_WAY.items() if made])
 @pytest.mark.parametrize("name", ["submission-report.xlsx", "submission-checked.xlsx", "submission-mended.xlsx"])
 def test_whatever_stands_there_is_neither_followed_nor_waited_for(what, name, tmp_path, workbook, sound, capsys):  # noqa: PLR0917

@@ -267,6 +267,7 @@ def test_blank_disk_dimension_moves_with_the_cylinder(blank, expected):
     assert (up - down) / (2 * step) == pytest.approx(float(expected), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_one_thickness_or_two_changes_the_spread(tmp_path):
     """Wall and disk as two dimensions have 25/49 of the variance that they have as one."""
     tolerances = tmp_path / "tolerances.csv"
@@ -376,6 +377,7 @@ def test_erratum_bore_radius_is_not_the_mean_radius():
     assert printed(change, -0.0140, 3)
 
 
+@pytest.mark.slow
 def test_calibration_reproduces_the_finite_elements():
     """The example with factors 0.907 and 0.936 gives the published wind-ups, whose uncertainty shows in the spread."""
     path = Path(__file__).resolve().parents[2] / "data" / "b3-160-calibrated.xlsx"

@@ -93,6 +93,7 @@ def row(request, submitted):
     return submitted[request.param].results.row(0, named=True)
 
 
+@pytest.mark.slow
 def test_submission_is_accepted(submitted):
     """The reference and its tolerance class give no finding."""
     for outcome in submitted.values():
@@ -178,6 +179,7 @@ def test_skewness(method):
     assert error < 0.02
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("statistic", "exact"),
     [
@@ -197,6 +199,7 @@ def test_error_of_plain_monte_carlo_falls_with_the_square_root(statistic, exact)
     assert slope == pytest.approx(-0.5, abs=0.15)
 
 
+@pytest.mark.slow
 def test_error_of_lines_falls_faster():
     """The RMS error of P99.865 by lines falls at least with the lines to the power −0.8."""
     sizes = [2**7, 2**9, 2**11]

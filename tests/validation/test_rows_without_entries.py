@@ -44,6 +44,7 @@ def test_a_total_is_no_variant(book, name):
         assert (outcome.counts["rows"], outcome.counts["computed"], outcome.exit_code) == (2, 2, 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "row",
     [

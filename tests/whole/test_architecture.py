@@ -8,6 +8,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
+import pytest
 from grids import for_each
 
 SOURCE = Path(__file__).resolve().parents[2] / "src" / "flexlash"
@@ -206,6 +207,7 @@ def test_help_imports_nothing_heavy():
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
 
 
+@pytest.mark.slow
 def test_check_does_not_load_the_sampler():
     """Validation loads neither the Sobol' sampler nor the report writer's workbook."""
     study = SOURCE.parent.parent / "data" / "b3-160-study.xlsx"

@@ -33,6 +33,7 @@ def copy(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_shell_blocks_run(copy, monkeypatch, capsys):
     """Every flexlash command of the README, in order, ends with 0, or with 3 where the faulty example is given."""
     commands = [line for block in _blocks("sh") for line in block.replace(" && ", "\n").splitlines()]
@@ -55,6 +56,7 @@ def test_shell_blocks_run(copy, monkeypatch, capsys):
     assert "Traceback" not in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", _blocks("python"))
 def test_python_blocks_run(copy, block, capsys):  # noqa: ARG001
     """Every Python block of the README runs as printed."""

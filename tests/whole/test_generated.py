@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import pytest
 import regenerate
 
 from flexlash.pipeline import check, run
 
 
+@pytest.mark.slow
 def test_no_generated_file_is_stale():
     """The template, the examples, the README's tables and the page of findings are those of today's code."""
     assert list(regenerate.stale()) == []
 
 
+@pytest.mark.slow
 def test_needs_fixing_gives_exactly_its_findings():
     """The submission with twenty-four faults gives twenty-four findings, each with its code at its cell."""
     outcome = check(regenerate.ROOT / "data" / "needs-fixing.xlsx")
@@ -24,6 +27,7 @@ def test_needs_fixing_gives_exactly_its_findings():
     assert outcome.exit_code == 3
 
 
+@pytest.mark.slow
 def test_needs_fixing_computes_its_sound_rows():
     """Rows without a fault are computed beside twenty-four that are not."""
     outcome = run(regenerate.ROOT / "data" / "needs-fixing.xlsx", samples=1024)
@@ -32,6 +36,7 @@ def test_needs_fixing_computes_its_sound_rows():
     assert outcome.results["p97_5_arcmin"].is_not_null().sum() == 3
 
 
+@pytest.mark.slow
 def test_the_catalogue_example_is_plausible():
     """Over thirty constructed variants over sizes 14 to 100 have proportions of real parts, and one limit too low."""
     outcome = check(regenerate.ROOT / "data" / "catalogue-sizes.xlsx")

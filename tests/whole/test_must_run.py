@@ -32,6 +32,7 @@ def test_known(): raise AssertionError
 OUTCOMES = {"0": "4 skipped, 1 xfailed", "1": "1 failed, 1 skipped, 1 xfailed, 2 errors"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("must", "outcomes"), OUTCOMES.items())
 def test_a_skipped_test_fails_where_nothing_may_be_missing(must, outcomes, tmp_path):
     """A mark, a missing module and a fixture that skip fail with their reason; public workbooks may be missing."""

@@ -44,6 +44,7 @@ HOW = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", HOW)
 def test_a_variant_does_not_depend_on_its_neighbours(table, sound, how):
     """Rows shuffled, removed or added change no bit of a variant's numbers."""
