@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import openpyxl
 import polars as pl
+import pytest
 from libreoffice import convert, needs_libreoffice
 from random_rows import rows
 
@@ -60,6 +61,7 @@ def test_frame_and_numbers_decide_alike():
     assert [list(one) for one in frame.iter_rows()] == BROKEN
 
 
+@pytest.mark.slow
 def test_a_relation_tells_what_no_rule_before_it_tells():
     """A relation is a broken rule in whose row none of the rules is broken that it stands after, or they after."""
     types = {column.key: pl.Float64 if column.is_number else pl.String for column in VARIANTS}
@@ -91,6 +93,7 @@ def _page(row):
     return type("Lines", (dict,), {"entries": page.entries})(lines)
 
 
+@pytest.mark.slow
 def test_trace_decides_alike():
     """Trace's live rules name the rule that plain numbers break first."""
     for row in NUMBERS[:1000]:
@@ -115,6 +118,7 @@ def _statuses(path, count):
     return [row[0] for row in sheet.iter_rows(FIRST_ROW + 1, FIRST_ROW + count, place, place, values_only=True)]
 
 
+@pytest.mark.slow
 @needs_libreoffice
 def test_the_template_decides_alike(tmp_path):
     """The template's status names the rule that plain numbers break first, stored and recalculated."""
@@ -138,6 +142,7 @@ def _makes_a_row(row):
     return rule is None or rule in LENGTHS
 
 
+@pytest.mark.slow
 def test_exact_limits_decide_alike():
     """Without tolerances the check at the limits finds what the rules of lengths refuse, where nothing just touches."""
     found = Counter()
@@ -163,6 +168,7 @@ def _reached(rules):
     return {(rule.reached.kind, rule.reached.words) for rule in rules}
 
 
+@pytest.mark.slow
 def test_no_refused_part_has_a_half_section():
     """What the rules of lengths refuse closes to no half-section, and hundreds of sound rows do close."""
     closed = Counter()
