@@ -274,3 +274,13 @@ def test_a_formula_is_left_to_its_author(workbook, sound, tmp_path):
     outcome, repairs = mend(path, tmp_path / "new.xlsx")
     assert [(found.code, found.cell, found.suggestion) for found in outcome.findings] == [("E202", "H5", "1.6")]
     assert (repairs, outcome.outputs) == ([], ())
+
+
+def test_a_workbook_with_macros_comes_back_as_one(workbook, sound, tmp_path):
+    """The marked copy of a file that may hold macros is one, under a name by which Excel opens it."""
+    path = workbook([{**sound, "torque_Nm": None}]).rename(tmp_path / "a.xlsm")
+    with pytest.raises(SystemExit):
+        cli.main(["check", str(path), "--annotate"])
+    parts = unpacked((tmp_path / "a-checked.xlsm").read_bytes(), ReadingLimits())
+    assert b"sheet.macroEnabled.main+xml" in parts["[Content_Types].xml"]
+    assert stamp_at(tmp_path / "a-checked.xlsm") == "checked"

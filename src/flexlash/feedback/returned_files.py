@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import partial
 
 from flexlash.analysis.examination import examined
 from flexlash.analysis.options import Options
@@ -63,10 +64,11 @@ def worth_marking(outcome: Outcome) -> bool:
     return not outcome.skipped and any(found.level != "info" for found in outcome.findings)
 
 
-def marked(outcome: Outcome, limits: ReadingLimits) -> tuple[bytes, tuple[str, ...] | None]:
+def marked(outcome: Outcome, limits: ReadingLimits, *, macros: bool = False) -> tuple[bytes, tuple[str, ...] | None]:
     """Return a workbook that marks every finding in the submission, and what of the submission it could not take over.
 
     Where the submission cannot be marked, the workbook holds the findings alone and says why; then that is None.
+    `macros` says that the copy is to be a file of the kind that may hold macros.
     """
     from flexlash.feedback.annotation.marked_copy import findings_workbook, marked_copy, marked_table
 
@@ -75,13 +77,13 @@ def marked(outcome: Outcome, limits: ReadingLimits) -> tuple[bytes, tuple[str, .
     why = f"flexlash could not read {submission.name}, so that nothing in it could be marked"
     try:
         if submission.kind == "workbook":
-            copy = ask(marked_copy, within, submission.data, findings, submission.name, limits)
+            copy = ask(partial(marked_copy, macros=macros), within, submission.data, findings, submission.name, limits)
             return copy.data, copy.lost
         if submission.kind in {"csv", "parquet"}:
-            return ask(marked_table, within, submission.sheets, findings, submission.name), ()
+            return ask(partial(marked_table, macros=macros), within, submission.sheets, findings, submission.name), ()
     except (Refusal, ProcessFaultError):
         why = f"{submission.name} was read, but holds too much or too unusual things to be marked"
-    return findings_workbook(findings, submission.name, why), None
+    return findings_workbook(findings, submission.name, why, macros=macros), None
 
 
 def _rest(limits: ReadingLimits, used: float) -> ReadingLimits:

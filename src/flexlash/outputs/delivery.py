@@ -53,7 +53,7 @@ class Delivery:
             return written
         try:
             self.copy.require()
-            data, not_carried = marked(outcome, outcome.options.limits)
+            data, not_carried = marked(outcome, outcome.options.limits, macros=self.copy.ending == ".xlsm")
             with_copy = _with_file(written, self.copy, data, "checked")
         except OSError as fault:
             return replace(written, fault=fault)

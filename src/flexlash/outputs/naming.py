@@ -27,7 +27,10 @@ REPORTS = (".xlsx", ".csv", ".parquet", ".json")
 """Forms in which results are written, by the ending of their path."""
 
 FIXED = (".xlsx", ".xlsm", ".csv")
-WORKBOOK = (".xlsx",)
+WORKBOOK = (".xlsx", ".xlsm")
+_MACROS = ".xlsm"
+"""Ending of workbooks that may hold macros: Excel opens no other kind of workbook under it, nor those under another."""
+
 _ENDING = re.compile(r"\.[a-z][a-z0-9]{0,6}", re.IGNORECASE)
 """What ends the name of a kind of file; a point with a number, as in `study-2.1`, may be part of a folder's name."""
 
@@ -70,7 +73,8 @@ def marked_outputs(
     """
 
     def name(path: Path) -> str:
-        return f"{made_of(path, CHECKED_NAME)}{CHECKED_NAME}.xlsx"
+        ending = _MACROS if path.suffix.lower() == _MACROS else ".xlsx"
+        return f"{made_of(path, CHECKED_NAME)}{CHECKED_NAME}{ending}"
 
     if output is None or itself or _is_folder(output):
         return _outputs(plan, submissions, output, name, WORKBOOK)

@@ -69,14 +69,17 @@ def marked_copy(
     return MarkedCopy(data=_finished(book, styles), lost=lost)
 
 
-def marked_table(sheets: Mapping[str, RawSheet], findings: Sequence[Finding], name: str) -> bytes:
+def marked_table(
+    sheets: Mapping[str, RawSheet], findings: Sequence[Finding], name: str, *, macros: bool = False
+) -> bytes:
     """Return a submission that is no workbook as one, with its guilty cells marked."""
-    return marked_copy(table_workbook(sheets), findings, name, _UNLIMITED).data
+    return marked_copy(table_workbook(sheets), findings, name, _UNLIMITED, macros=macros).data
 
 
-def findings_workbook(findings: Sequence[Finding], name: str, why: str) -> bytes:
+def findings_workbook(findings: Sequence[Finding], name: str, why: str, *, macros: bool = False) -> bytes:
     """Return the findings alone, for a submission that cannot be marked; `why` is the first line."""
     book = WorkbookParts(table_workbook({RECORD: RawSheet(name=RECORD, rows={})}), _UNLIMITED)
+    book.set_kind(macros=macros)
     styles = _stylesheet(book)
     lines = [f"{name} has {counted(findings)}.", "Mend the cells listed here in your own file and submit it again."]
     _add_findings(book, styles, findings, [why, *lines], None)
