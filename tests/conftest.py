@@ -20,8 +20,11 @@ _APART = isolated._answer
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_cmdline_main(config):
-    """Run on all cores where no path is named; a room or a file alone starts sooner in this process."""
-    whole = config.args_source != pytest.Config.ArgsSource.ARGS
+    """Run on all cores where no path is named; a room or a file alone starts sooner in this process.
+
+    The processes that are started for it pass here as well, and start no others.
+    """
+    whole = config.args_source != pytest.Config.ArgsSource.ARGS and not hasattr(config, "workerinput")
     if whole and config.option.numprocesses is None and not config.option.usepdb:
         config.option.numprocesses = "auto"
 
