@@ -15,7 +15,7 @@ import openpyxl
 import pytest
 import xlsxwriter
 from libreoffice import convert, needs_libreoffice
-from marking_samples import fault, loaded, look, notes, own_workbook, rich_workbook
+from marking_samples import fault, loaded, look, notes, own_workbook, rewritten, rich_workbook
 from openpyxl.comments import Comment
 from openpyxl.styles import PatternFill
 
@@ -484,3 +484,17 @@ def test_a_table_is_marked_as_a_workbook():
     ]
     assert _levels(data) == {("Variants", "B3"): "error"}
     assert _levels(_marked(data, [])) == {}
+
+
+def test_new_relations_have_a_type_where_no_type_holds_for_all():
+    """Where a workbook gives each part of relations a type of its own, so does its copy, or it is damaged."""
+    data = marked_table({"Data": RawSheet(name="Data", rows={1: {1: "a"}})}, [], "x")
+    kind = b'ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+    each = b"".join(
+        b'<Override PartName="/%s" %s' % (name, kind) for name in (b"_rels/.rels", b"xl/_rels/workbook.xml.rels")
+    )
+    data = rewritten(data, "[Content_Types].xml", b'<Default Extension="rels" ' + kind, each)
+    after = parts_of(_marked(data, [fault(cell="A1")]))
+    for name in after:
+        assert not name.endswith(".rels") or b'PartName="/%s"' % name.encode() in after["[Content_Types].xml"]
+    assert "xl/worksheets/_rels/sheet1.xml.rels" in after

@@ -122,7 +122,7 @@ def _looks(styles: Stylesheet) -> dict[str, str]:
 
     def look(font: str, border: str = "none", alignment: str = "", fill: int = 0, number: int = 0) -> str:
         start = f'<@xf numFmtId="{number}" fontId="{fonts[font]}" fillId="{fill}" borderId="{borders[border]}"'
-        use = f'{start} xfId="0" applyNumberFormat="1" applyFont="1" applyFill="1" applyBorder="1"'
+        use = f'{start} applyNumberFormat="1" applyFont="1" applyFill="1" applyBorder="1"'
         text = f'{use} applyAlignment="1">{alignment}</@xf>' if alignment else f"{use}/>"
         return str(styles.add("cellXfs", text.encode()))
 

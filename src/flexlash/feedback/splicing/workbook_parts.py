@@ -110,12 +110,12 @@ class WorkbookParts:
     def add(self, owner: str, kind: str, part: str, content: bytes) -> str:
         """Add a part that another one refers to; return the relation's id."""
         self.parts[part] = self.dialect(content)
-        self._cut(_TYPES, "Override", "PartName", {f"/{part}"})
-        announced = f'<@Override PartName="/{part}" ContentType="{_CONTENT_TYPES[kind]}"/>'
-        self.parts[_TYPES] = appended(self.read(_TYPES), "Types", announced.encode())
+        self._announce(part, _CONTENT_TYPES[kind])
         name = _relations_of(owner)
         if name not in self.parts:
             self.parts[name] = _HEAD + f'<Relationships xmlns="{_PACKAGE}/relationships"></Relationships>'.encode()
+            # Some programs give no type to all parts of relations, but one to each.
+            self._announce(name, "application/vnd.openxmlformats-package.relationships+xml")
         known = {one.attributes.get("Id", "") for one in element_spans(self.read(name), ("Relationship",))}
         own = unused_name(known, "rIdOwn1", numbered="rIdOwn{}".format)
         target = posixpath.relpath(part, posixpath.dirname(owner) or ".")
@@ -153,7 +153,13 @@ class WorkbookParts:
             self.remove(part, one.part)
         self.parts.pop(part)
         self.parts.pop(_relations_of(part), None)
+        self._cut(_TYPES, "Override", "PartName", {f"/{part}", f"/{_relations_of(part)}"})
+
+    def _announce(self, part: str, content_type: str) -> None:
+        """Give a part its content type."""
         self._cut(_TYPES, "Override", "PartName", {f"/{part}"})
+        new = f'<@Override PartName="/{part}" ContentType="{content_type}"/>'
+        self.parts[_TYPES] = appended(self.read(_TYPES), "Types", new.encode())
 
     def _relations_in(self, part: str) -> list[Relation]:
         return self.relations(part) if _relations_of(part) in self.parts else []
