@@ -1,12 +1,20 @@
 """Excel in, tolerance-spread report out: torsional backlash of strain wave gear flexsplines.
 
-Data flows one way, and each stage is one folder or module:
+Data flow one way, and each room is one folder. It imports those before it alone:
 
-    template ─► (an engineer fills it) ─► submission ─► mechanics ─► tolerance ─► report
-                                          read, validate   numbers      spread       workbook
+    schema       columns, rules, units, findings: what every room shares
+    reading      a file ─► cells with addresses
+    validation   cells ─► variants and findings
+    mechanics    dimensions ─► wind-up, backlash, stress
+    tolerance    limits and a model ─► spread
+    analysis     variants ─► nominal numbers, spread, recommendations, results
+    feedback     findings ─► marked copy, fixed file; the template
+    report       the outcome ─► a workbook
+    comparison   two files ─► what differs
+    outputs      where files go, written whole
+    cli          the commands
 
-`pipeline` alone knows the order. `columns` is the one truth about every field, `findings` about every
-message. A submission goes through like this:
+`pipeline` alone knows the order of the stages. A submission goes through like this:
 
 >>> import flexlash, pathlib, tempfile
 >>> from flexlash.feedback.template.template_workbook import study, template_bytes
@@ -30,7 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Outcome", "__version__", "check", "mend", "run"]
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 
 
 def __getattr__(name: str) -> Any:

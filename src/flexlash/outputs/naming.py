@@ -28,9 +28,6 @@ REPORTS = (".xlsx", ".csv", ".parquet", ".json")
 
 FIXED = (".xlsx", ".xlsm", ".csv")
 WORKBOOK = (".xlsx", ".xlsm")
-_MACROS = ".xlsm"
-"""Ending of workbooks that may hold macros: Excel opens no other kind of workbook under it, nor those under another."""
-
 _ENDING = re.compile(r"\.[a-z][a-z0-9]{0,6}", re.IGNORECASE)
 """What ends the name of a kind of file; a point with a number, as in `study-2.1`, may be part of a folder's name."""
 
@@ -73,8 +70,7 @@ def marked_outputs(
     """
 
     def name(path: Path) -> str:
-        ending = _MACROS if path.suffix.lower() == _MACROS else ".xlsx"
-        return f"{made_of(path, CHECKED_NAME)}{CHECKED_NAME}{ending}"
+        return f"{made_of(path, CHECKED_NAME)}{CHECKED_NAME}.xlsx"
 
     if output is None or itself or _is_folder(output):
         return _outputs(plan, submissions, output, name, WORKBOOK)

@@ -956,8 +956,8 @@ CATALOGUE = _rules(
         "marked copy skipped",
         "{file} is a marked copy of a submission; it was skipped.",
         "Mend and submit your own file, or take the copy itself with --marked-copies.",
-        "Marked copies carry a mark by which they are recognised when a whole folder is submitted. What a copy could "
-        "not take over, such as charts, is only in your own file.",
+        "Marked copies carry a mark by which they are recognised when a whole folder is submitted. A copy is "
+        "never computed by mistake: mend your own file.",
     ),
     (
         "I514",
