@@ -7,6 +7,7 @@ import polars as pl
 import pytest
 from python_calamine import CalamineWorkbook
 
+import flexlash
 from flexlash.cli import cli
 from flexlash.feedback.splicing.sheet_spans import SheetSpans
 from flexlash.feedback.splicing.xml_spans import spliced
