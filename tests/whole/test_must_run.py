@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -46,3 +47,12 @@ def test_a_skipped_test_fails_where_nothing_may_be_missing(must, outcomes, tmp_p
     assert outcomes in done.stdout
     for reason in ("a mark", "a module", "a fixture"):
         assert (f"skipped although FLEXLASH_MUST_RUN=1: Skipped: lacks {reason}" in done.stdout) == (must == "1")
+
+
+@pytest.mark.parametrize(("worker", "processes"), [({}, "auto"), ({"workerinput": {}}, None)])
+def test_the_processes_of_a_run_start_no_others(worker, processes, pytestconfig):
+    """A run of everything takes all cores; each of its processes, which runs everything as well, takes none more."""
+    option = SimpleNamespace(numprocesses=None, usepdb=False)
+    config = SimpleNamespace(args_source=pytest.Config.ArgsSource.TESTPATHS, option=option, **worker)
+    pytestconfig.pluginmanager.getplugin(str(TESTS / "conftest.py")).pytest_cmdline_main(config)
+    assert option.numprocesses == processes
