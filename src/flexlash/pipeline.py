@@ -16,7 +16,7 @@ from flexlash.outputs.plan import Output
 from flexlash.reading.read import ReadReport, Source
 
 if TYPE_CHECKING:
-    from flexlash.feedback.fixing.fix import Repair
+    from flexlash.feedback.fixing.fix import Fix
 
 __all__ = ["Options", "Outcome", "check", "mend", "run"]
 
@@ -36,21 +36,21 @@ def check(submission: str | Path | Source | ReadReport, **options: Any) -> Outco
 
 def mend(
     submission: str | Path | Source | ReadReport, output: str | Path | Output, **options: Any
-) -> tuple[Outcome, list[Repair]]:
-    """Write a submission with the certain repairs made; return the outcome of checking that, and the repairs.
+) -> tuple[Outcome, list[Fix]]:
+    """Write a submission with the certain fixes made; return the outcome of checking that, and the fixes.
 
-    Nothing is written when there is no certain repair. Options and errors are those of `check`; OSError also says that
+    Nothing is written when there is no certain fix. Options and errors are those of `check`; OSError also says that
     the file cannot be written.
     """
-    from flexlash.feedback.returned_files import mended
+    from flexlash.feedback.returned_files import fixed
 
     chosen = Options.of("mend()", options)
     outputs = delivery(submission, chosen, output, FIXED)
     source = opened(submission, chosen)
     outputs.require()
-    found = mended(source, chosen)
-    outcome = outputs.written(found.outcome, found.data if found.repairs else None, found.role)
-    return outcome, list(found.repairs)
+    found = fixed(source, chosen)
+    outcome = outputs.written(found.outcome, found.data if found.fixes else None, found.role)
+    return outcome, list(found.fixes)
 
 
 def run(

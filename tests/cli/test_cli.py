@@ -330,7 +330,7 @@ def test_template_never_overwrites_a_filled_one(tmp_path, capsys, main_in):
 def test_template_upgrade_moves_an_old_file(table, sound, capsys, main_in):
     """--upgrade writes a filled template beside the old file, says how many rows moved, and ends with the next step."""
     old = table([{**sound, "day": "1"}, {**sound, "variant": "b", "torque_Nm": ""}])
-    new = old.with_name("submission-v2.xlsx")
+    new = old.with_name("submission-v3.xlsx")
     assert main_in("template", "--upgrade", old) == 0
     said = capsys.readouterr()
     assert said.out.splitlines() == [f"{old}: 2 rows of Variants carried over.", f"Template written: {new}"]
@@ -349,7 +349,7 @@ def test_template_upgrade_says_what_could_not_move(tmp_path, capsys, main_in):
     book.save(old)
     assert main_in("template", "--upgrade", old, "-o", tmp_path / "new.xlsx") == 0
     said = capsys.readouterr()
-    assert said.out.splitlines()[0] == f"{old}, made from template version 2: 11 rows of Variants carried over."
+    assert said.out.splitlines()[0] == f"{old}, made from template version 3: 11 rows of Variants carried over."
     assert said.err.splitlines()[:2] == [
         "  Variants!H5: formulas that never stored a result show #N/A until you enter their values.",
         "  The sheet Drawings with 1 row was left behind.",
@@ -361,7 +361,7 @@ def test_template_upgrade_overwrites_neither_old_nor_new(tmp_path, table, sound,
     """An existing file is replaced when told to, the old one never."""
     old = table([sound])
     before = old.read_bytes()
-    new = tmp_path / "submission-v2.xlsx"
+    new = tmp_path / "submission-v3.xlsx"
     new.write_bytes(b"filled")
     assert main_in("template", "--upgrade", old) == 2
     assert new.read_bytes() == b"filled"

@@ -209,16 +209,16 @@ def test_the_other_commands_take_such_names_too(table, sound, tmp_path):
     odd.write_bytes(table([{**sound, "wall_thickness_mm": "1,6 mm"}]).read_bytes())
     done = _flexlash("check", odd, "--annotate", "--apply-fixes")
     assert (done.returncode, done.stderr) == (0, b"")
-    mended = tmp_path / os.fsdecode(b"caf\xe9-mended.csv")
-    assert mended.exists()
+    fixed = tmp_path / os.fsdecode(b"caf\xe9-mended.csv")
+    assert fixed.exists()
     assert _flexlash("check", odd, "--annotate").returncode == 4
     assert (tmp_path / os.fsdecode(b"caf\xe9-checked.xlsx")).exists()
     assert _flexlash("template", "--upgrade", odd).returncode == 0
-    assert _flexlash("run", mended, "--samples", 64).returncode == 0
+    assert _flexlash("run", fixed, "--samples", 64).returncode == 0
     again = _flexlash("run", "--from-report", tmp_path / os.fsdecode(b"caf\xe9-mended-report.xlsx"))
     assert (again.returncode, again.stderr) == (0, b"")
-    assert _flexlash("diff", mended, odd).returncode == 0
-    missing = _flexlash("diff", mended, tmp_path / os.fsdecode(b"\xff.csv"), "--json")
+    assert _flexlash("diff", fixed, odd).returncode == 0
+    missing = _flexlash("diff", fixed, tmp_path / os.fsdecode(b"\xff.csv"), "--json")
     assert missing.returncode == 5
     assert "\\xff.csv could not be opened" in json.loads(missing.stdout.decode())["error"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from flexlash.feedback.fixing.certain_fixes import repair_of
+from flexlash.feedback.fixing.certain_fixes import certain_value_of
 from flexlash.pipeline import check
 
 FIXED = [
@@ -35,13 +35,13 @@ def _only(outcome, code):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("change", "code", "repair"), FIXED, ids=repr)
-def test_a_repair_is_right(table, sound, change, code, repair):
-    """The value of a repair, written into the cell, takes its finding away and the row is computed."""
+@pytest.mark.parametrize(("change", "code", "certain_value"), FIXED, ids=repr)
+def test_a_repair_is_right(table, sound, change, code, certain_value):
+    """The value of a fix, written into the cell, takes its finding away and the row is computed."""
     found = _only(check(table([sound | change])), code)
-    assert repair_of(found) == repair
-    assert type(repair_of(found)) is type(repair)
-    mended = check(table([sound | change | {found.column: repair}]))
+    assert certain_value_of(found) == certain_value
+    assert type(certain_value_of(found)) is type(certain_value)
+    mended = check(table([sound | change | {found.column: certain_value}]))
     assert code not in {one.code for one in mended.findings}
     assert mended.counts["computed"] == 1
 
@@ -49,7 +49,7 @@ def test_a_repair_is_right(table, sound, change, code, repair):
 @pytest.mark.parametrize(("change", "code"), LEFT, ids=repr)
 def test_what_a_person_must_decide(table, sound, change, code):
     """Where something else could be meant nothing is repaired."""
-    assert repair_of(_only(check(table([sound | change])), code)) is None
+    assert certain_value_of(_only(check(table([sound | change])), code)) is None
 
 
 def _renamed(path, old, new):
@@ -59,7 +59,7 @@ def _renamed(path, old, new):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("header", "repair"),
+    ("header", "certain_value"),
     [
         ("Wall thicknes Δ [mm]", "Wall thickness Δ [mm]"),
         ("Wal thickness [in]", "Wall thickness Δ [in]"),
@@ -67,17 +67,17 @@ def _renamed(path, old, new):
         ("Wall thicknes [furlong]", None),
     ],
 )
-def test_a_header_keeps_its_unit(table, sound, header, repair):
+def test_a_header_keeps_its_unit(table, sound, header, certain_value):
     """A misspelt header is repaired with the unit that its author gave, and not where the unit would be a guess."""
     found = _only(check(_renamed(table([sound]), "wall_thickness_mm", header)), "E112")
-    assert repair_of(found) == repair
+    assert certain_value_of(found) == certain_value
     assert found.fix.startswith(f"Write {found.suggestion},")
-    if repair:
-        mended = check(_renamed(table([sound]), "wall_thickness_mm", repair))
+    if certain_value:
+        mended = check(_renamed(table([sound]), "wall_thickness_mm", certain_value))
         assert "E112" not in {one.code for one in mended.findings}
 
 
 def test_a_repair_is_no_field_of_the_list_of_findings(table, sound):
     """The list of findings that other programs read has the fields of the contract and no other."""
     found = _only(check(table([sound | {"wall_thickness_mm": "1,6"}])), "E202")
-    assert "repair" not in found.as_dictionary()
+    assert "certain_value" not in found.as_dictionary()

@@ -8,9 +8,9 @@ import openpyxl
 import pytest
 from python_calamine import CalamineWorkbook
 
-from flexlash.feedback.fixing.fix import Repair
-from flexlash.feedback.fixing.fixed_table import mended_table
-from flexlash.feedback.fixing.fixed_workbook import FIXES_SHEET, mended_workbook
+from flexlash.feedback.fixing.fix import Fix
+from flexlash.feedback.fixing.fixed_table import fixed_table
+from flexlash.feedback.fixing.fixed_workbook import FIXES_SHEET, fixed_workbook
 from flexlash.feedback.splicing.sheet_spans import SheetSpans, cell_xml
 from flexlash.feedback.splicing.xml_spans import (
     appended,
@@ -35,7 +35,7 @@ SHEET = b"""<x:worksheet xmlns:x="m"><x:sheetData><x:row r="2"><x:c r="B2" s="7"
 
 
 def _repair(cell, value, sheet="Variants", found="1,6"):
-    return Repair(sheet=sheet, cell=cell, found=found, value=value, code="E202")
+    return Fix(sheet=sheet, cell=cell, found=found, value=value, code="E202")
 
 
 SPANS = {
@@ -186,7 +186,7 @@ def _parts(data):
 def test_cells_change_and_nothing_else(book):
     """The mended workbook holds the new values, the formula, and every other part byte for byte."""
     wanted = [_repair("B2", 1.6), _repair("A1", "IT7", sheet="It's", found="IT 7")]
-    data, made = mended_workbook(book, wanted, LIMITS)
+    data, made = fixed_workbook(book, wanted, LIMITS)
     assert made == wanted
     before, after = _parts(book), _parts(data)
     changed = {name for name in before if before[name] != after[name]}
@@ -206,8 +206,8 @@ def test_cells_change_and_nothing_else(book):
 
 
 def test_the_list_of_fixes(book):
-    """A sheet lists every repair with what stood there, what stands there now, its finding and a link."""
-    data, _ = mended_workbook(book, [_repair("B2", 1.6), _repair("A1", "IT7", sheet="It's", found="IT 7")], LIMITS)
+    """A sheet lists every fix with what stood there, what stands there now, its finding and a link."""
+    data, _ = fixed_workbook(book, [_repair("B2", 1.6), _repair("A1", "IT7", sheet="It's", found="IT 7")], LIMITS)
     sheet = openpyxl.load_workbook(io.BytesIO(data))[FIXES_SHEET]
     assert [[cell.value for cell in row] for row in sheet.iter_rows(min_row=3)] == [
         ["Variants!B2", "1,6", "1.6", "E202"],
@@ -219,28 +219,28 @@ def test_the_list_of_fixes(book):
 
 def test_formulas_and_absent_cells_are_left(book):
     """A formula is never replaced by a value, and a cell that is not there is not made."""
-    data, made = mended_workbook(book, [_repair("C2", 2.0), _repair("Z9", 1.0), _repair("A1", "x", sheet="no")], LIMITS)
+    data, made = fixed_workbook(book, [_repair("C2", 2.0), _repair("Z9", 1.0), _repair("A1", "x", sheet="no")], LIMITS)
     assert made == []
     assert _parts(data) == _parts(book)
 
 
 def test_two_repairs_of_one_cell(book):
-    """Of two repairs of one cell the first is made."""
-    _, made = mended_workbook(book, [_repair("B2", 1.6), _repair("B2", 16.0)], LIMITS)
+    """Of two fixes of one cell the first is made."""
+    _, made = fixed_workbook(book, [_repair("B2", 1.6), _repair("B2", 16.0)], LIMITS)
     assert [one.value for one in made] == [1.6]
 
 
 def test_the_same_bytes(book):
     """Mending twice gives the same bytes, and a mended workbook passes the gate."""
-    first, again = (mended_workbook(book, [_repair("B2", 1.6)], LIMITS)[0] for _ in range(2))
+    first, again = (fixed_workbook(book, [_repair("B2", 1.6)], LIMITS)[0] for _ in range(2))
     assert first == again
     assert read_workbook(first, LIMITS).sheets[0].rows[2][2] == 1.6
 
 
 def test_a_mended_workbook_can_be_mended_again(book):
     """A second mending leaves the first list as it is and makes one of its own."""
-    first, _ = mended_workbook(book, [_repair("B2", 1.6)], LIMITS)
-    second, made = mended_workbook(first, [_repair("A2", "C")], LIMITS)
+    first, _ = fixed_workbook(book, [_repair("B2", 1.6)], LIMITS)
+    second, made = fixed_workbook(first, [_repair("A2", "C")], LIMITS)
     assert len(made) == 1
     titles = openpyxl.load_workbook(io.BytesIO(second)).sheetnames
     assert titles == ["Variants", "It's", FIXES_SHEET, "flexlash Fixes 1"]
@@ -257,7 +257,7 @@ TABLES = {
 def test_tables_keep_their_manner(what):
     """A mended table keeps rows, delimiter and decimal sign."""
     data, expected = TABLES[what]
-    assert mended_table(read_table(data, "Variants"), [_repair("B2", 1.6)]).decode() == expected
+    assert fixed_table(read_table(data, "Variants"), [_repair("B2", 1.6)]).decode() == expected
 
 
 @pytest.mark.slow
@@ -265,7 +265,7 @@ def test_a_long_and_wide_table_is_written_soon():
     """A cell far down and one far to the right cost no more than their rows."""
     rows = {1: {1: "a", 256: "b"}, 2: {1: "1,6"}, 50_000: {1: "x"}}
     start = time.process_time()
-    data = mended_table(RawSheet(name="Variants", rows=rows), [_repair("A2", 1.6), _repair("C2", "new")])
+    data = fixed_table(RawSheet(name="Variants", rows=rows), [_repair("A2", 1.6), _repair("C2", "new")])
     assert time.process_time() - start < 6
     assert data.splitlines()[1] == b"1.6,,new" + b"," * 253
     assert data.count(b"\r\n") == 50_000
@@ -274,7 +274,7 @@ def test_a_long_and_wide_table_is_written_soon():
 def test_a_row_of_more_cells_than_headers_stays_one():
     """Mending one cell of a table never hides that a decimal comma may have split another."""
     sheet = read_table(b"variant,material,torque_Nm,notes\nA,s,1,6,\nB,s ,8,x\n", "Variants")
-    again = read_table(mended_table(sheet, [_repair("B3", "s")]), "Variants")
+    again = read_table(fixed_table(sheet, [_repair("B3", "s")]), "Variants")
     assert again.dialect.longer == sheet.dialect.longer == frozenset({2})
     assert again.rows[3][2] == "s"
 

@@ -124,9 +124,9 @@ def test_certain_repairs_are_made_and_listed(workbook, sound, tmp_path):
     ]
     path = workbook(rows)
     before = path.read_bytes()
-    outcome, repairs = mend(path, tmp_path / "new.xlsx")
+    outcome, fixes = mend(path, tmp_path / "new.xlsx")
     assert path.read_bytes() == before
-    assert [(one.place, one.value) for one in repairs] == [("Variants!H5", 1.6), ("Variants!V6", "standard")]
+    assert [(one.place, one.value) for one in fixes] == [("Variants!H5", 1.6), ("Variants!V6", "standard")]
     assert [(found.code, found.cell) for found in outcome.findings] == [("E202", "D7")]
     assert outcome.outputs == (tmp_path / "new.xlsx",)
     counts = check(tmp_path / "new.xlsx").counts
@@ -137,24 +137,24 @@ def test_certain_repairs_are_made_and_listed(workbook, sound, tmp_path):
 def test_one_repair_uncovers_another(table, sound, tmp_path):
     """When a header is mended, what stands under it is looked at and mended as well."""
     path = table([{**sound, "Tooth rim lenght [mm]": "20 mm", "rim_thickness_mm": 3.2}])
-    outcome, repairs = mend(path, tmp_path / "new.csv")
-    assert {one.code for one in repairs} == {"E112", "E202"}
+    outcome, fixes = mend(path, tmp_path / "new.csv")
+    assert {one.code for one in fixes} == {"E112", "E202"}
     assert outcome.exit_code == 0
     assert check(tmp_path / "new.csv").results["backlash_rad"][0] == outcome.results["backlash_rad"][0]
 
 
 def test_nothing_to_mend_writes_nothing(table, sound, tmp_path):
-    """Without a certain repair no file is written."""
-    outcome, repairs = mend(table([{**sound, "torque_Nm": None}]), tmp_path / "new.csv")
-    assert (repairs, outcome.outputs) == ([], ())
+    """Without a certain fix no file is written."""
+    outcome, fixes = mend(table([{**sound, "torque_Nm": None}]), tmp_path / "new.csv")
+    assert (fixes, outcome.outputs) == ([], ())
     assert not (tmp_path / "new.csv").exists()
 
 
 def test_a_refused_file_is_not_mended(tmp_path):
     """A file that is no submission is refused as ever."""
     (tmp_path / "a.xlsx").write_bytes(b"%PDF-1.7")
-    outcome, repairs = mend(tmp_path / "a.xlsx", tmp_path / "new.xlsx")
-    assert (outcome.exit_code, repairs) == (4, [])
+    outcome, fixes = mend(tmp_path / "a.xlsx", tmp_path / "new.xlsx")
+    assert (outcome.exit_code, fixes) == (4, [])
 
 
 def test_repairs_do_not_touch_parquet(sound, tmp_path):
@@ -168,8 +168,8 @@ def test_repairs_do_not_touch_parquet(sound, tmp_path):
 def test_marked_and_mended_by_the_limited_process(workbook, sound, tmp_path):
     """The process that reads also marks and mends, within its limits."""
     path = workbook([{**sound, "wall_thickness_mm": "1,6"}])
-    outcome, repairs = mend(path, tmp_path / "new.xlsx", marked_copy=tmp_path / "copy.xlsx", limits=ReadingLimits())
-    assert len(repairs) == 1
+    outcome, fixes = mend(path, tmp_path / "new.xlsx", marked_copy=tmp_path / "copy.xlsx", limits=ReadingLimits())
+    assert len(fixes) == 1
     assert outcome.exit_code == 0
     check(path, marked_copy=tmp_path / "copy.xlsx")
     assert _coloured(tmp_path / "copy.xlsx") == {"H5"}
@@ -272,9 +272,9 @@ def test_a_formula_is_left_to_its_author(workbook, sound, tmp_path):
     parts[part] = spliced(parts[part], [(span.start, span.end, cell)])
     path = tmp_path / "formula.xlsx"
     path.write_bytes(packed(parts))
-    outcome, repairs = mend(path, tmp_path / "new.xlsx")
+    outcome, fixes = mend(path, tmp_path / "new.xlsx")
     assert [(found.code, found.cell, found.suggestion) for found in outcome.findings] == [("E202", "H5", "1.6")]
-    assert (repairs, outcome.outputs) == ([], ())
+    assert (fixes, outcome.outputs) == ([], ())
 
 
 @pytest.mark.parametrize(("ending", "kind"), [("xlsx", b"sheet.main+xml"), ("xlsm", b"sheet.macroEnabled.main+xml")])

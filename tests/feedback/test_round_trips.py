@@ -188,7 +188,7 @@ def test_properties_are_kept(books):
     _, before, after = books
     properties = {one.name: one.value for one in after.custom_doc_props.props}
     assert properties == {one.name: one.value for one in before.custom_doc_props.props}
-    assert properties["flexlash_template_version"] == "2"
+    assert properties["flexlash_template_version"] == "3"
     assert after.properties.title == before.properties.title == "flexlash template"
     assert after.properties.description == before.properties.description
 

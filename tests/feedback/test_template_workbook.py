@@ -199,9 +199,9 @@ def test_nothing_is_merged_in_entry_tables(empty):
 def test_the_version_is_stamped_twice(empty):
     """The template's version stands in a visible cell and in a document property."""
     texts = [cell.value for row in empty["Variants"]["A1:W2"] for cell in row]
-    assert "Template version 2" in texts
+    assert "Template version 3" in texts
     properties = {one.name: one.value for one in empty.custom_doc_props.props}
-    assert properties == {"flexlash": "template", "flexlash_template_version": "2"}
+    assert properties == {"flexlash": "template", "flexlash_template_version": "3"}
 
 
 def test_two_thousand_rows_do_not_bloat_the_file():

@@ -25,6 +25,7 @@ from flexlash.reading.raw import ErrorCell, Unstored
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.columns import SETTINGS, VARIANTS
+from flexlash.validation.template_versions import TEMPLATE_VERSION
 
 SOUND = {
     "variant": "A",
@@ -95,7 +96,7 @@ def test_a_template_of_this_version_moves_unchanged(tmp_path, name):
     path.write_bytes(template_bytes(study() if name == "study" else getattr(regenerate, name)()))
     upgrade = upgraded(path)
     assert upgrade.data == path.read_bytes()
-    assert (upgrade.version, upgrade.remarks) == (2, (FORMATS,))
+    assert (upgrade.version, upgrade.remarks) == (TEMPLATE_VERSION, (FORMATS,))
 
 
 def test_an_empty_template_moves_unchanged(tmp_path):
@@ -107,7 +108,7 @@ def test_an_empty_template_moves_unchanged(tmp_path):
 
 
 def test_version_one_gains_its_columns_and_keeps_its_meaning(tmp_path):
-    """A filled version 1 becomes version 2: own materials, classes, settings and faults stay."""
+    """A filled version 1 becomes one of today: own materials, classes, settings and faults stay."""
     rows = [{**SOUND, "variant": "A"}, {**SOUND, "variant": "B", "wall_thickness_mm": "1,6"}]
     rows += [{**SOUND, "variant": "C", "material": "mine", "tolerance_class": "fine"}]
     book = old_workbook(
@@ -375,7 +376,7 @@ def _write(path, data):
 
 
 def _newer(path):
-    old_workbook(rows_of("Variants", [SOUND]), version=3).save(path)
+    old_workbook(rows_of("Variants", [SOUND]), version=TEMPLATE_VERSION + 1).save(path)
 
 
 def _without_header(path):

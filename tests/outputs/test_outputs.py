@@ -518,9 +518,9 @@ def test_a_mended_file_is_a_submission_without_its_original(tmp_path, workbook, 
     mend(original, tmp_path / "a-mended.xlsx")
     mend(table(rows, "t.csv"), tmp_path / "t-mended.csv")
     for name in ("a-mended.xlsx", "t-mended.csv"):
-        mended = tmp_path / name
-        assert run(mended, **FEW).exit_code == 0
-        assert run(mended, given=[mended, other], **FEW).exit_code == 0
+        fixed = tmp_path / name
+        assert run(fixed, **FEW).exit_code == 0
+        assert run(fixed, given=[fixed, other], **FEW).exit_code == 0
     _worked_in(tmp_path / "a-mended.xlsx")
     assert check(tmp_path / "a-mended.xlsx").counts["computed"] == 1
 
@@ -529,14 +529,14 @@ def test_a_mended_workbook_knows_its_original_by_content(tmp_path, workbook, sou
     """Under another name or in another folder it is skipped as well while its original is unchanged."""
     original = workbook([{**sound, "wall_thickness_mm": "1,6 mm"}], "a.xlsx")
     (tmp_path / "out").mkdir()
-    mended = tmp_path / "out" / "fixed.xlsx"
-    mend(original, mended)
-    given = [original, mended]
-    assert [found.code for found in check(mended, given=given).findings] == ["I526"]
-    _worked_in(mended)
-    assert check(mended, given=given).skipped
+    fixed = tmp_path / "out" / "fixed.xlsx"
+    mend(original, fixed)
+    given = [original, fixed]
+    assert [found.code for found in check(fixed, given=given).findings] == ["I526"]
+    _worked_in(fixed)
+    assert check(fixed, given=given).skipped
     _worked_in(original)
-    assert not check(mended, given=given).skipped
+    assert not check(fixed, given=given).skipped
 
 
 def test_results_are_no_submission(tmp_path, table, sound):

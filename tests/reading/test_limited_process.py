@@ -178,7 +178,9 @@ ask(obey, ReadingLimits(), "import time; time.sleep(3)")
 
 def _alone(tmp_path, **environment):
     script = tmp_path / "alone.py"
-    script.write_text(ALONE.format(paths=[str(regenerate.ROOT / one) for one in ("src", "tests")]), encoding="utf-8")
+    script.write_text(
+        ALONE.format(paths=[str(regenerate.ROOT / one) for one in ("src", "tests/support")]), encoding="utf-8"
+    )
     return subprocess.Popen(
         [sys.executable, str(script)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=tmp_path,
         env={**os.environ, **environment},
@@ -392,7 +394,7 @@ except Refusal as refusal:
 )
 def test_a_program_that_ends_after_a_lost_process_says_nothing(order, limit, told):
     """The process that is started in the place of a lost one does not complain where the program ends at once."""
-    paths = [str(regenerate.ROOT / one) for one in ("src", "tests")]
+    paths = [str(regenerate.ROOT / one) for one in ("src", "tests/support")]
     for _ in range(3):
         done = subprocess.run(
             [sys.executable, "-c", LOST.format(paths=paths, limit=limit, order=order)],

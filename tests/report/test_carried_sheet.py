@@ -130,7 +130,7 @@ def test_other_sheets_of_the_engineer_are_not_carried(outcome):
     rows = {number: {1: f"secret {number}"} for number in range(1, 40)}
     names = ("variants", "Prices", "Variants (2)")
     made = _outcome([RawSheet(name=name, rows=rows) for name in names], outcome)
-    made.findings = [finding("W428", sheet="Variants (2)", cell="A1", value="", other="Variants")]
+    made = replace(made, findings=(finding("W428", sheet="Variants (2)", cell="A1", value="", other="Variants"),))
     sheets = json.loads(carried_text(made))["cells"]["sheets"]
     assert {sheet["name"]: len(sheet["rows"]) for sheet in sheets} == {"variants": 39, "Variants (2)": 15}
 

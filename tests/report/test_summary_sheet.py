@@ -18,7 +18,7 @@ from flexlash.pipeline import run
 from flexlash.report.explorer.curves_sheet import stored_curves
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
-from flexlash.report.report_data import drawn_variants
+from flexlash.report.report_data import drawn_variants, report_data
 from flexlash.report.summary.summary_sheet import write_summary
 from flexlash.report.wording.verdict import RULES, light
 
@@ -269,9 +269,9 @@ def _alone(outcome, path, paper):
     """Write the Summary of an outcome, what it draws on and what it leads to, for paper of this number."""
     with xlsxwriter.Workbook(str(path)) as workbook:
         book = Book(workbook)
-        drawn = drawn_variants(outcome)
-        curves = stored_curves(drawn)
-        write_summary(book, outcome, drawn, curves)
+        data = report_data(outcome)
+        curves = stored_curves(data.drawn)
+        write_summary(book, outcome, data, curves)
         workbook.get_worksheet_by_name("Summary").set_paper(paper)
         curves.write(book, "")
         workbook.add_worksheet("Results")

@@ -252,8 +252,8 @@ def _elastic(folder: Path) -> Made:
 def _mended(folder: Path) -> Made:
     """Write a table and what was mended in it."""
     original = _file(folder, _text([CUP]))[0]
-    mended = _file(folder, _text([CUP]), "study-mended.csv")[0]
-    return mended, {"given": [original, mended]}
+    fixed = _file(folder, _text([CUP]), "study-mended.csv")[0]
+    return fixed, {"given": [original, fixed]}
 
 
 def _results(folder: Path) -> Made:

@@ -97,12 +97,12 @@ def test_a_number_too_large_to_hold():
 
 
 @pytest.mark.parametrize(
-    ("value", "suggestion", "repair"), [("1,6 mm", "1.6", 1.6), ("~1.6", "1.6", None), ("1.6 kg", "", None)]
+    ("value", "suggestion", "certain_value"), [("1,6 mm", "1.6", 1.6), ("~1.6", "1.6", None), ("1.6 kg", "", None)]
 )
-def test_a_text_in_a_column_gets_what_was_meant(value, suggestion, repair):
-    """What a text probably means comes with its fault, as a repair only where it can mean nothing else."""
+def test_a_text_in_a_column_gets_what_was_meant(value, suggestion, certain_value):
+    """What a text probably means comes with its fault, as a fix only where it can mean nothing else."""
     assert as_number(value, WALL, from_text=True) == Fault(
-        code="E202", value=value, suggestion=suggestion, repair=repair
+        code="E202", value=value, suggestion=suggestion, certain_value=certain_value
     )
 
 

@@ -101,7 +101,7 @@ def test_thousands_points_are_questioned_without_any_decimal_comma(tmp_path, del
     path = tmp_path / "thousands.txt"
     path.write_bytes((THOUSANDS + rows).replace(";", delimiter).encode(encoding))
     outcome = check(path)
-    told = [(found.code, found.cell, found.suggestion, found.repair) for found in outcome.findings if found.cell]
+    told = [(found.code, found.cell, found.suggestion, found.certain_value) for found in outcome.findings if found.cell]
     assert told == [
         ("E202", "C2", "1.05 or 1050", None),
         ("E202", "C3", "2.5 or 2500", None),
@@ -145,8 +145,8 @@ def test_a_doubtful_number_stays_in_doubt_in_the_mended_file(tmp_path, what):
     lines = [["variant", "material", *keys[: len(numbers)], "flexspline_type"], ["A", "20Cr2Ni4", *numbers, "cylindre"]]
     path, new = tmp_path / "a.csv", tmp_path / "new.csv"
     path.write_text("\n".join(map(";".join, lines)), encoding="utf-8")
-    outcome, repairs = mend(path, new)
-    assert "cylinder" in {repair.value for repair in repairs}
+    outcome, fixes = mend(path, new)
+    assert "cylinder" in {certain_value.value for certain_value in fixes}
     for found in (check(path).findings, outcome.findings, check(new).findings):
         assert doubtful <= {one.cell for one in found if one.code == "E202"}
 

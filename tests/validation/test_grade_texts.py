@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from grids import for_each
 
-from flexlash.feedback.fixing.certain_fixes import repair_of
+from flexlash.feedback.fixing.certain_fixes import certain_value_of
 from flexlash.pipeline import check
 from flexlash.validation.grade_texts import meant_grade
 
@@ -46,10 +46,12 @@ def test_the_grade_that_was_meant(entered, meant):
     assert meant_grade(entered) == meant
 
 
-@pytest.mark.parametrize(("entered", "repair"), [("IT 7", "IT7"), ("ISO 2768-mK", "2768-m"), ("7", None), ("g6", None)])
-def test_a_grade_is_repaired_unless_its_letters_are_missing(table, sound, entered, repair):
+@pytest.mark.parametrize(
+    ("entered", "certain_value"), [("IT 7", "IT7"), ("ISO 2768-mK", "2768-m"), ("7", None), ("g6", None)]
+)
+def test_a_grade_is_repaired_unless_its_letters_are_missing(table, sound, entered, certain_value):
     """A grade that is written otherwise can be mended without asking; a bare number cannot."""
     rows = [{"tolerance_class": "standard", "dimension": "wall_thickness", "grade": entered}]
     outcome = check(table([sound]), tolerances=table(rows, "tolerances.csv"))
     (found,) = [one for one in outcome.findings if one.code == "E210"]
-    assert repair_of(found) == repair
+    assert certain_value_of(found) == certain_value

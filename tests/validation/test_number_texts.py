@@ -144,7 +144,7 @@ NOTHING = [
 def test_what_can_mean_one_number_only(key, text, number):
     """Signs, digits, spaces and known units of all countries give the number in the column's unit, to be written."""
     meant = meant_number(text, COLUMNS[key])
-    assert meant.repair == number
+    assert meant.certain_value == number
     assert float(meant.words) == number
 
 
@@ -152,7 +152,7 @@ def test_what_can_mean_one_number_only(key, text, number):
 def test_what_is_guessed_is_never_written(key, text, words):
     """What may mean thousands, is said roughly, is out of bounds or needs halving is only suggested."""
     meant = meant_number(text, COLUMNS[key])
-    assert (meant.words, meant.repair) == (words, None)
+    assert (meant.words, meant.certain_value) == (words, None)
 
 
 @for_each("key, text", NOTHING)
@@ -167,14 +167,14 @@ def test_where_nothing_is_suggested(key, text):
 def test_the_number_is_in_the_unit_of_its_header(text, number):
     """Under a header in inches the number to write is one in inches."""
     column = COLUMNS[WALL]
-    assert meant_number(text, column, Measure.of(column, 25.4)).repair == pytest.approx(number, rel=1e-11)
+    assert meant_number(text, column, Measure.of(column, 25.4)).certain_value == pytest.approx(number, rel=1e-11)
 
 
 def test_a_deviation_takes_the_unit_beside_it():
     """A deviation of 0.02 mm beside the unit µm is 20; one beside a unit of another kind is nothing."""
     column = COLUMNS["lower_deviation"]
-    assert meant_number("-0.02 mm", column, Measure(quantity="length", si=1e-6)).repair == -20
-    assert meant_number("5 %", column, Measure(quantity="ratio", si=0.01)).repair == 5
+    assert meant_number("-0.02 mm", column, Measure(quantity="length", si=1e-6)).certain_value == -20
+    assert meant_number("5 %", column, Measure(quantity="ratio", si=0.01)).certain_value == 5
     assert meant_number("5 %", column, Measure(quantity="length", si=1e-3)).numbers == ()
 
 
@@ -197,7 +197,7 @@ def test_two_cells_are_suggested_where_one_entry_needs_them(text):
     measure = Measure(quantity="length", si=1e-3, unit_is_open=True)
     for key in ("lower_deviation", "upper_deviation"):
         meant = meant_number(text, COLUMNS[key], measure)
-        assert (meant.words if meant.entries else "", meant.repair) == (OPEN[text], None)
+        assert (meant.words if meant.entries else "", meant.certain_value) == (OPEN[text], None)
     assert is_both_ways(text) == ("±" in text)
 
 

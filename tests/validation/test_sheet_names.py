@@ -44,8 +44,8 @@ def test_report_links_and_recreates(renamed, tmp_path):
 
 def test_mended_marked_and_upgraded(renamed, tmp_path):
     """Mended files keep the names of their sheets; a new template takes everything over."""
-    outcome, repairs = mend(renamed, tmp_path / "mended.xlsx", marked_copy=tmp_path / "marked.xlsx")
-    assert [repair.sheet for repair in repairs] == [NAMES["Variants"]]
+    outcome, fixes = mend(renamed, tmp_path / "mended.xlsx", marked_copy=tmp_path / "marked.xlsx")
+    assert [certain_value.sheet for certain_value in fixes] == [NAMES["Variants"]]
     assert outcome.counts["computed"] == 2
     check(renamed, marked_copy=tmp_path / "checked.xlsx")
     assert NAMES["Variants"] in openpyxl.load_workbook(tmp_path / "checked.xlsx").sheetnames

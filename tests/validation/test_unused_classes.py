@@ -38,4 +38,4 @@ def test_an_unused_class_that_resembles_one_in_use(table, sound, classes, used, 
     outcome = check(table(variants), tolerances=table(rows, name="tolerances.csv"))
     found = [one for one in outcome.findings if one.code == "W429"]
     assert [(one.cell, one.suggestion) for one in found] == told
-    assert all(one.sheet == "Tolerances" and one.repair is None for one in found)
+    assert all(one.sheet == "Tolerances" and one.certain_value is None for one in found)

@@ -82,7 +82,7 @@ def _processes_of(group):
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_no_worker_stays(how, tmp_path):
     """Ctrl-C, a request to end and a kill of the program leave neither workers nor their helpers behind."""
-    paths = [str(regenerate.ROOT / one) for one in ("src", "tests")]
+    paths = [str(regenerate.ROOT / one) for one in ("src", "tests/support")]
     with subprocess.Popen(
         [sys.executable, "-c", SLEEPING.format(paths=paths)],
         stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True, cwd=tmp_path,

@@ -54,19 +54,19 @@ def check(
     options["marked_copies"] |= annotate and len(submissions) == 1
     beside = [path for path in (options["tolerances"], options["materials"]) if path]
     plan = Plan(inputs=[*submissions, *beside], submissions=submissions, marked_copies=options["marked_copies"])
-    mended = planned(fixed_outputs, plan, submissions, output) if apply_fixes else []
+    fixed = planned(fixed_outputs, plan, submissions, output) if apply_fixes else []
     copies = planned(marked_outputs, plan, submissions, output, itself=not apply_fixes) if annotate else []
     options["given"] = submissions
     # The process that reads loads its libraries while this one loads its own.
     begin()
     all_of_them = Submissions(len(submissions), as_json=as_json, quiet=quiet)
-    for path, target, copy in zip_longest(submissions, mended, copies):
+    for path, target, copy in zip_longest(submissions, fixed, copies):
         with all_of_them.one(path) as ended:
             from flexlash.pipeline import check as check_one
             from flexlash.pipeline import mend
 
             if target:
-                ended.outcome, ended.repairs = mend(path, target, marked_copy=copy, **options)
+                ended.outcome, ended.fixes = mend(path, target, marked_copy=copy, **options)
             else:
                 ended.outcome = check_one(path, marked_copy=copy, **options)
     sys.exit(all_of_them.end())

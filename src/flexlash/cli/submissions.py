@@ -22,7 +22,7 @@ from flexlash.schema.variant import Settings
 
 if TYPE_CHECKING:
     from flexlash.analysis.outcome import Outcome
-    from flexlash.feedback.fixing.fix import Repair
+    from flexlash.feedback.fixing.fix import Fix
 
 __all__ = ["Ended", "Submissions"]
 
@@ -39,7 +39,7 @@ _NOT_OURS = (click.ClickException, click.Abort, KeyboardInterrupt, SystemExit, G
 _KINDS = {ExitCode.FINE: "computed", ExitCode.OVER_LIMIT: "computed", ExitCode.SOME_ROWS: "partly"}
 """How much of a submission was computed, by its exit code; by any other, nothing."""
 
-_SHOWN_REPAIRS = 10
+_SHOWN_FIXES = 10
 _COLOURS = {"error": "red", "warning": "yellow", "info": "cyan"}
 
 
@@ -56,7 +56,7 @@ class Ended:
     """How a submission ended: its outcome, or why there is none.
 
     `error` is the sentence that says why nothing of it was computed, `refusal` the finding where it was no submission.
-    `repairs` were made in it; `further` are more fields for `--json`; `remarks` and `closing` are lines that follow on
+    `fixes` were made in it; `further` are more fields for `--json`; `remarks` and `closing` are lines that follow on
     standard error and standard output.
     """
 
@@ -66,7 +66,7 @@ class Ended:
     error: str | None = None
     refusal: Finding | None = None
     seconds: float = 0.0
-    repairs: list[Repair] | None = None
+    fixes: list[Fix] | None = None
     further: Mapping[str, Any] = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
     closing: list[str] = field(default_factory=list)
@@ -74,7 +74,7 @@ class Ended:
     @property
     def name(self) -> str:
         """The file that the closing lines speak of: the mended one, where there is one."""
-        return named(self.outcome.outputs[0] if self.repairs and self.outcome else self.path)
+        return named(self.outcome.outputs[0] if self.fixes and self.outcome else self.path)
 
     def as_dictionary(self) -> dict[str, Any]:
         """Return the object that `--json` prints."""
@@ -89,7 +89,7 @@ class Ended:
         known |= self.outcome.as_dictionary() if self.outcome else {}
         known |= {"path": readable(self.path), "seconds": round(self.seconds, 3)}
         known |= {"exit_code": self.code, "error": self.error}
-        fixes = {} if self.repairs is None else {"fixes": [repair.as_dictionary() for repair in self.repairs]}
+        fixes = {} if self.fixes is None else {"fixes": [fix.as_dictionary() for fix in self.fixes]}
         return {**known, **fixes, **self.further}
 
 
@@ -188,7 +188,7 @@ class Submissions:
         from flexlash.analysis.run_summary import finding_lines, summary_lines
 
         name = f"{named(ended.path)}: " if self.several else ""
-        yield from (_Line(text) for text in _repair_lines(ended.repairs)) if ended.repairs is not None else ()
+        yield from (_Line(text) for text in _fix_lines(ended.fixes)) if ended.fixes is not None else ()
         for level, text in finding_lines(outcome.findings):
             yield _Line(f"{name}{text}", _COLOURS.get(level), self.ran)
         yield from (_Line(text) for text in summary_lines(outcome, ended.name, ran=self.ran))
@@ -210,16 +210,14 @@ class Submissions:
             click.echo(f"{name if self.several else ''}Mend: {ended.refusal.fix}", err=True)
 
 
-def _repair_lines(repairs: Sequence[Repair]) -> Iterator[str]:
+def _fix_lines(fixes: Sequence[Fix]) -> Iterator[str]:
     """Yield what was changed in a mended submission, the first cells of it by name."""
     from flexlash.analysis.run_summary import counted
 
     yield (
-        f"{counted(len(repairs), 'cell')} mended:"
-        if repairs
-        else "There is nothing that could be mended with certainty."
+        f"{counted(len(fixes), 'cell')} mended:" if fixes else "There is nothing that could be mended with certainty."
     )
-    for repair in repairs[:_SHOWN_REPAIRS]:
-        yield f'    {shown(repair.place)}: "{shown(repair.found)}" → {shown(repair.written)} ({repair.code})'
-    if len(repairs) > _SHOWN_REPAIRS:
-        yield f"    … and {len(repairs) - _SHOWN_REPAIRS} more; a workbook lists them all on its sheet Fixes"
+    for fix in fixes[:_SHOWN_FIXES]:
+        yield f'    {shown(fix.place)}: "{shown(fix.found)}" → {shown(fix.written)} ({fix.code})'
+    if len(fixes) > _SHOWN_FIXES:
+        yield f"    … and {len(fixes) - _SHOWN_FIXES} more; a workbook lists them all on its sheet Fixes"

@@ -104,9 +104,9 @@ class Side:
         """Return what was entered for each variant: blank cells with their default, faulty ones as entered."""
         table = self.validated.table
         mends = {
-            (finding.address, finding.column): finding.repair
+            (finding.address, finding.column): finding.certain_value
             for finding in self._findings
-            if table and finding.sheet == table.sheet and finding.repair is not None
+            if table and finding.sheet == table.sheet and finding.certain_value is not None
         }
         return {name: _entered(record, table, mends) for name, record in self.records.items() if table}
 

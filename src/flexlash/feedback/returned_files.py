@@ -11,10 +11,10 @@ from flexlash.analysis.examination import examined
 from flexlash.analysis.options import Options
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_result import outcome_of
-from flexlash.feedback.fixing.certain_fixes import repair_of
-from flexlash.feedback.fixing.fix import Repair
-from flexlash.feedback.fixing.fixed_table import mended_table
-from flexlash.feedback.fixing.fixed_workbook import mended_workbook
+from flexlash.feedback.fixing.certain_fixes import certain_value_of
+from flexlash.feedback.fixing.fix import Fix
+from flexlash.feedback.fixing.fixed_table import fixed_table
+from flexlash.feedback.fixing.fixed_workbook import fixed_workbook
 from flexlash.reading.limited_process import ProcessFaultError, ask
 from flexlash.reading.products import fixed_role
 from flexlash.reading.raw import Submission
@@ -23,15 +23,15 @@ from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.findings import Finding
 
-__all__ = ["Mended", "certain_repairs", "marked", "mended", "worth_marking"]
+__all__ = ["Fixed", "certain_fixes", "fixed", "marked", "worth_marking"]
 
 _PASSES = 3
-"""Most times that a mended submission is looked at again, since one repair may uncover another fault."""
+"""Most times that a mended submission is looked at again, since one fix may uncover another fault."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mended:
-    """A submission with the certain repairs made, what came out of checking that, and the repairs.
+class Fixed:
+    """A submission with the certain fixes made, what came out of checking that, and the fixes.
 
     `role` is what a workbook says of itself: that it is mended, and of which submission.
     """
@@ -39,24 +39,24 @@ class Mended:
     data: bytes
     role: str
     outcome: Outcome
-    repairs: tuple[Repair, ...]
+    fixes: tuple[Fix, ...]
 
 
-def mended(source: Source | ReadReport | Refusal, options: Options) -> Mended:
-    """Return a submission with the certain repairs made, until there are no more of them."""
+def fixed(source: Source | ReadReport | Refusal, options: Options) -> Fixed:
+    """Return a submission with the certain fixes made, until there are no more of them."""
     outcome = outcome_of(examined(source, options))
     original = outcome.submission
-    data, repairs = original.data, dict[str, Repair]()
+    data, fixes = original.data, dict[str, Fix]()
     for _ in range(_PASSES):
-        wanted = {repair.place: repair for repair in certain_repairs(outcome.findings)}
-        if not wanted.keys() - repairs.keys():
+        wanted = {fix.place: fix for fix in certain_fixes(outcome.findings)}
+        if not wanted.keys() - fixes.keys():
             break
-        data, made = _with_fixes(original, [*(wanted | repairs).values()], options.limits)
-        repairs |= {repair.place: repair for repair in made}
+        data, made = _with_fixes(original, [*(wanted | fixes).values()], options.limits)
+        fixes |= {fix.place: fix for fix in made}
         if not made:
             break
         outcome = outcome_of(examined(Source(name=original.name, data=data), options))
-    return Mended(data=data, role=fixed_role(original.data), outcome=outcome, repairs=tuple(repairs.values()))
+    return Fixed(data=data, role=fixed_role(original.data), outcome=outcome, fixes=tuple(fixes.values()))
 
 
 def worth_marking(outcome: Outcome) -> bool:
@@ -92,24 +92,24 @@ def _rest(limits: ReadingLimits, used: float) -> ReadingLimits:
     return replace(limits, processor_seconds=max(math.ceil(seconds / 5), math.floor(seconds * 5 / 4 - used)))
 
 
-def certain_repairs(findings: Iterable[Finding]) -> list[Repair]:
+def certain_fixes(findings: Iterable[Finding]) -> list[Fix]:
     """Return what to write into which cell, for the findings that leave no doubt."""
     return [
-        Repair(sheet=found.sheet, cell=found.cell, found=found.value, value=value, code=found.code)
+        Fix(sheet=found.sheet, cell=found.cell, found=found.value, value=value, code=found.code)
         for found in findings
-        if found.cell and (value := repair_of(found)) is not None
+        if found.cell and (value := certain_value_of(found)) is not None
     ]
 
 
-def _with_fixes(submission: Submission, repairs: list[Repair], limits: ReadingLimits) -> tuple[bytes, list[Repair]]:
-    """Return the submission with these cells replaced, and the repairs that could be made.
+def _with_fixes(submission: Submission, fixes: list[Fix], limits: ReadingLimits) -> tuple[bytes, list[Fix]]:
+    """Return the submission with these cells replaced, and the fixes that could be made.
 
     Raises Refusal when the submission cannot be written anew.
     """
-    if not repairs or submission.kind not in {"csv", "workbook"}:
+    if not fixes or submission.kind not in {"csv", "workbook"}:
         return submission.data, []
     if submission.kind == "workbook":
-        return ask(mended_workbook, limits, submission.data, repairs, limits)
-    own = [repair for repair in repairs if repair.sheet in submission.sheets]
+        return ask(fixed_workbook, limits, submission.data, fixes, limits)
+    own = [fix for fix in fixes if fix.sheet in submission.sheets]
     (sheet,) = (sheet for sheet in submission.sheets.values() if sheet.dialect == submission.dialect)
-    return ask(mended_table, limits, sheet, own), own
+    return ask(fixed_table, limits, sheet, own), own

@@ -17,7 +17,7 @@ __all__ = ["CATALOGUE", "Finding", "finding", "readable", "shown", "spelled_out"
 class Finding:
     """One thing found in a submission, at the address that its user sees.
 
-    `suggestion` is what was probably meant, in words; `repair` what to write where nothing else can be meant.
+    `suggestion` is what was probably meant, in words; `certain_value` what to write where nothing else can be meant.
     """
 
     level: Level
@@ -30,11 +30,11 @@ class Finding:
     message: str
     fix: str
     suggestion: str = ""
-    repair: str | float | None = None
+    certain_value: str | float | None = None
 
     def as_dictionary(self) -> dict[str, str]:
         """Return the fields in the order of the Findings sheet."""
-        return {key: value for key, value in vars(self).items() if key != "repair"}
+        return {key: value for key, value in vars(self).items() if key != "certain_value"}
 
     @property
     def place(self) -> str:
@@ -59,8 +59,8 @@ _LONGEST = 400
 def finding(code: str, *, sheet: str = "", cell: CellAddress | str = "", column: str = "", **facts: Any) -> Finding:
     """Return a finding with the catalogue's words filled in.
 
-    `facts` are what the message names; `variant`, `value`, `suggestion` and `repair` also become fields. `entered` is
-    the value as entered, where the message names another.
+    `facts` are what the message names; `variant`, `value`, `suggestion` and `certain_value` also become fields.
+    `entered` is the value as entered, where the message names another.
     """
     rule = CATALOGUE[code]
     place = f"{sheet}!{cell}" if sheet and cell else sheet or str(facts.get("file", ""))
@@ -83,7 +83,7 @@ def finding(code: str, *, sheet: str = "", cell: CellAddress | str = "", column:
         message=message,
         fix=rule.fix.format(**words),
         suggestion=suggestion,
-        repair=facts.get("repair"),
+        certain_value=facts.get("certain_value"),
     )
 
 

@@ -32,7 +32,7 @@ class Fault:
     code: str
     value: object
     suggestion: str = ""
-    repair: str | float | None = None
+    certain_value: str | float | None = None
     facts: Mapping[str, object] = field(default_factory=dict)
 
 
@@ -118,8 +118,10 @@ def _from_text(value: RawValue, column: Column | None, measure: Measure | None, 
     if doubtful:
         words = f"{text.replace('.', ',')} with this table's decimal comma" if meant.words == text else meant.words
         return Fault(code="E202", value=value, suggestion=words)
-    is_number = _NUMBER.fullmatch(text) and meant.repair is not None
-    return Fault(code="E220" if is_number else "E202", value=value, suggestion=meant.words, repair=meant.repair)
+    is_number = _NUMBER.fullmatch(text) and meant.certain_value is not None
+    return Fault(
+        code="E220" if is_number else "E202", value=value, suggestion=meant.words, certain_value=meant.certain_value
+    )
 
 
 def _percentage(value: Percentage, column: Column | None, measure: Measure | None) -> float | Fault:

@@ -184,7 +184,9 @@ class _Recogniser:
         sure = misspelt(name, self.spellings) == keys[0] and is_known and len(labels) == 1
         meant = {"label": " or ".join(labels), "name": " or ".join(column.name for column in columns)}
         code = self._error_if_filled("E112", index, columns[0])
-        self.ledger.add(code, suggestion=meant["label"], repair=labels[0] if sure else None, **{**facts, **meant})
+        self.ledger.add(
+            code, suggestion=meant["label"], certain_value=labels[0] if sure else None, **{**facts, **meant}
+        )
 
     def _report_twice(self, heading: Heading, index: int, facts: Mapping[str, Any]) -> None:
         """Tell that a column stands twice; an empty second one does no harm."""

@@ -215,8 +215,8 @@ def _check_grade(table: Table, ledger: Ledger, record: Mapping[str, Any], column
         _report(table, ledger, "E221", row, "grade", value=grade, **no_value_facts(_TOLERANCE["grade"]))
     elif not is_grade(grade):
         meant = meant_grade(grade)
-        repair = None if grade.isdecimal() else meant or None
-        _report(table, ledger, "E210", row, "grade", value=grade, suggestion=meant, repair=repair)
+        certain_value = None if grade.isdecimal() else meant or None
+        _report(table, ledger, "E210", row, "grade", value=grade, suggestion=meant, certain_value=certain_value)
     elif column and (column.quantity != "length" or column.grade_at == "none"):
         _report(table, ledger, "E320", row, "grade", value=grade, other=column.dimension)
 

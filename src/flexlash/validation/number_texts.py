@@ -86,7 +86,7 @@ class Meant:
         return self.entries or " or ".join(self.numbers)
 
     @property
-    def repair(self) -> float | None:
+    def certain_value(self) -> float | None:
         """The number to write where nothing else can be meant."""
         return float(self.numbers[0]) if self.certain and len(self.numbers) == 1 else None
 
@@ -96,8 +96,10 @@ def meant_number(text: str, column: Column, measure: Measure | None = None) -> M
 
     >>> from flexlash.schema.columns import columns_of
     >>> wall = columns_of("Variants")["wall_thickness_mm"]
-    >>> meant_number("0.0016 m", wall).repair, meant_number("1,600", wall).words, meant_number("1.6 kg", wall).words
-    (1.6, '1.6 or 1600', '')
+    >>> meant_number("0.0016 m", wall).certain_value
+    1.6
+    >>> meant_number("1,600", wall).words, meant_number("1.6 kg", wall).words
+    ('1.6 or 1600', '')
     """
     measure = measure or Measure.of(column)
     if column.key in _DEVIATIONS and (entries := _deviations(_plain(text), measure)):

@@ -54,7 +54,7 @@ def check_cells(table: Table, ledger: Ledger) -> None:
             choices=", ".join(column.choices),
             value=table.entered(row, key),
             suggestion=suggested(value, column.choices) if rule == "choices" and not is_none else "",
-            repair=misspelt(value, spelt_alike(column.choices)) if rule == "choices" else None,
+            certain_value=misspelt(value, spelt_alike(column.choices)) if rule == "choices" else None,
             **no_value_facts(column),
             rows=[row] if table.schema == "Variants" else [],
         )

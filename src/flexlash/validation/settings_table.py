@@ -39,7 +39,7 @@ def settings_of(table: Table, ledger: Ledger) -> Settings:
                 told = {"value": f"{value:.10g}", "detail": usual, "name": name}
                 ledger.add("W440", sheet=table.sheet, cell=cell, column=name, **told)
             continue
-        facts: dict[str, Any] = {"suggestion": value.suggestion, "repair": value.repair}
+        facts: dict[str, Any] = {"suggestion": value.suggestion, "certain_value": value.certain_value}
         facts |= {"requirement": column.requirement, "choices": ", ".join(column.choices), **value.facts}
         cell = table.address(row, "value")
         ledger.add(value.code, sheet=table.sheet, cell=cell, column=name, name=name, value=value.value, **facts)
@@ -59,8 +59,8 @@ def _setting_value(column: Column, raw: RawValue, *, from_text: bool) -> str | f
         return text if isinstance(text, Fault) else text.casefold()
     if is_no_value(text):
         return Fault(code="E221", value=text, facts=no_value_facts(column))
-    repair = misspelt(text, spelt_alike(column.choices))
-    return Fault(code="E209", value=text, suggestion=suggested(text, column.choices), repair=repair)
+    certain_value = misspelt(text, spelt_alike(column.choices))
+    return Fault(code="E209", value=text, suggestion=suggested(text, column.choices), certain_value=certain_value)
 
 
 def _number_fault(column: Column, value: float) -> Fault | None:

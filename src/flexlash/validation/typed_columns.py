@@ -205,7 +205,7 @@ def _typed(cell: _Cell, ledger: Ledger) -> str | float | None:
     if isinstance(typed, Fault):
         cell.table.faulty.add((cell.row, column.key))
         rows = [cell.row] if cell.table.schema == "Variants" else []
-        meant = {"suggestion": typed.suggestion, "repair": typed.repair}
+        meant = {"suggestion": typed.suggestion, "certain_value": typed.certain_value}
         facts = {**meant, "requirement": column.requirement, **typed.facts, **cell.facts}
         ledger.add(typed.code, value=typed.value, rows=rows, **facts)
         return None
@@ -215,7 +215,7 @@ def _typed(cell: _Cell, ledger: Ledger) -> str | float | None:
         return typed
     entry = _choice(column, typed)
     if entry != typed or (isinstance(value, str) and typed != value):
-        ledger.add("I504", value=value, suggestion=entry, repair=entry, **cell.facts)
+        ledger.add("I504", value=value, suggestion=entry, certain_value=entry, **cell.facts)
     return entry or None
 
 

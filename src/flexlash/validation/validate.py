@@ -144,7 +144,7 @@ def _check_references(table: Table, ledger: Ledger, key: str, code: str, names: 
             ledger.rows.add(row)
         elif value != known[spelling]:
             name = known[spelling]
-            _blame(table, ledger, "I504", row, key, value=value, suggestion=name, repair=name)
+            _blame(table, ledger, "I504", row, key, value=value, suggestion=name, certain_value=name)
 
 
 def _unknown(key: str, code: str, value: str, meant: Mapping[str, Mapping[str, str | None]]) -> dict[str, Any]:
@@ -166,7 +166,7 @@ class _Meant(dict[str, dict[str, str | None]]):
     def __missing__(self, value: str) -> dict[str, str | None]:
         """Look a name up."""
         self[value] = (
-            {"suggestion": suggested(value, self.names, _NEAR), "repair": misspelt(value, self.known)}
+            {"suggestion": suggested(value, self.names, _NEAR), "certain_value": misspelt(value, self.known)}
             if len(self) < self.most
             else {}
         )

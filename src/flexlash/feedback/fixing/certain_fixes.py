@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from flexlash.schema.findings import Finding
 
-__all__ = ["repair_of"]
+__all__ = ["certain_value_of"]
 
 
-def repair_of(finding: Finding) -> str | float | None:
+def certain_value_of(finding: Finding) -> str | float | None:
     """Return what to write into the cell of a finding, numbers as float; None where a person must decide.
 
-    The stage that finds a fault knows what else could be meant and records the repair; this is its rule:
+    The stage that finds a fault knows what else could be meant and records the fix; this is its rule:
 
     | code | entered | written |
     |---|---|---|
@@ -27,7 +27,7 @@ def repair_of(finding: Finding) -> str | float | None:
     | I504 | other letter case or spaces in a name | name |
 
     >>> from flexlash.schema.findings import finding
-    >>> repair_of(finding("E203", name="Torque", value="2026-04-01", requirement="a number in N·m")) is None
+    >>> certain_value_of(finding("E203", name="Torque", value="2026-04-01", requirement="a number in N·m")) is None
     True
     """
-    return finding.repair
+    return finding.certain_value

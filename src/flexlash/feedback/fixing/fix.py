@@ -1,15 +1,15 @@
-"""The record of one repair."""
+"""The record of one fix."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from typing import Any
 
-__all__ = ["Repair"]
+__all__ = ["Fix"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Repair:
+class Fix:
     """One cell, what stood there, what is to stand there, and the code of the finding that says so."""
 
     sheet: str

@@ -1,4 +1,4 @@
-"""A delimited text and its repairs → the same table with these cells replaced."""
+"""A delimited text and its fixes → the same table with these cells replaced."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ import io
 from collections import defaultdict
 from collections.abc import Sequence
 
-from flexlash.feedback.fixing.fix import Repair
+from flexlash.feedback.fixing.fix import Fix
 from flexlash.reading.raw import ErrorCell, RawSheet, RawValue
 from flexlash.schema.cell_addresses import cell_address
 
-__all__ = ["mended_table"]
+__all__ = ["fixed_table"]
 
 
-def mended_table(sheet: RawSheet, repairs: Sequence[Repair]) -> bytes:
-    """Return a table as text that every Excel opens (UTF-8 with its mark), the repairs made.
+def fixed_table(sheet: RawSheet, fixes: Sequence[Fix]) -> bytes:
+    """Return a table as text that every Excel opens (UTF-8 with its mark), the fixes made.
 
     Rows, columns, delimiter and decimal sign are those of the submission.
     """
     comma = bool(sheet.dialect and sheet.dialect.comma_number)
     now: dict[int, dict[int, str]] = defaultdict(dict)
-    for repair in repairs:
-        if address := cell_address(repair.cell):
-            now[address.row][address.column] = _written(repair.value, comma=comma)
+    for fix in fixes:
+        if address := cell_address(fix.cell):
+            now[address.row][address.column] = _written(fix.value, comma=comma)
     width = max((max(cells) for cells in sheet.rows.values()), default=0)
     buffer = io.StringIO(newline="")
     writer = csv.writer(buffer, delimiter=sheet.dialect.delimiter if sheet.dialect else ",", lineterminator="\r\n")

@@ -1,11 +1,11 @@
-"""A workbook and its repairs → the same workbook with these cells replaced and a sheet that lists them."""
+"""A workbook and its fixes → the same workbook with these cells replaced and a sheet that lists them."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
 
-from flexlash.feedback.fixing.fix import Repair
+from flexlash.feedback.fixing.fix import Fix
 from flexlash.feedback.splicing.sheet_spans import SheetSpans, cell_xml
 from flexlash.feedback.splicing.workbook_parts import WorkbookParts
 from flexlash.feedback.splicing.xml_spans import spliced, xml_text
@@ -16,7 +16,7 @@ from flexlash.reading.xlsx import PROPERTY
 from flexlash.schema.cell_addresses import cell_address
 from flexlash.schema.unused_names import numbered_names
 
-__all__ = ["FIXES_SHEET", "mended_workbook"]
+__all__ = ["FIXES_SHEET", "fixed_workbook"]
 
 FIXES_SHEET = "Fixes"
 """Sheet of a mended submission that lists what was changed."""
@@ -24,17 +24,17 @@ FIXES_SHEET = "Fixes"
 _HEADINGS = ("Cell", "Found", "Now", "Finding")
 
 
-def mended_workbook(data: bytes, repairs: Sequence[Repair], limits: ReadingLimits) -> tuple[bytes, list[Repair]]:
-    """Return the workbook with the repairs made, and the repairs that were made.
+def fixed_workbook(data: bytes, fixes: Sequence[Fix], limits: ReadingLimits) -> tuple[bytes, list[Fix]]:
+    """Return the workbook with the fixes made, and the fixes that were made.
 
     A cell that holds a formula is left as it is. Nothing else changes but a document property, which says what the
     workbook was made of: every other byte of every part is the submission's own.
     """
     book = WorkbookParts(data, limits)
-    by_sheet: dict[str, list[Repair]] = defaultdict(list)
-    for repair in repairs:
-        by_sheet[repair.sheet].append(repair)
-    made: list[Repair] = []
+    by_sheet: dict[str, list[Fix]] = defaultdict(list)
+    for fix in fixes:
+        by_sheet[fix.sheet].append(fix)
+    made: list[Fix] = []
     for title, sheet in book.worksheets.items():
         if wanted := by_sheet.get(title):
             content, done = _with_cells(book.read(sheet), wanted)
@@ -51,22 +51,22 @@ def mended_workbook(data: bytes, repairs: Sequence[Repair], limits: ReadingLimit
     return book.data(), made
 
 
-def _with_cells(part: bytes, repairs: list[Repair]) -> tuple[bytes, list[Repair]]:
-    """Return a sheet with cells replaced, and the repairs that were made."""
-    addressed = [(cell, repair) for repair in repairs if (cell := cell_address(repair.cell))]
+def _with_cells(part: bytes, fixes: list[Fix]) -> tuple[bytes, list[Fix]]:
+    """Return a sheet with cells replaced, and the fixes that were made."""
+    addressed = [(cell, fix) for fix in fixes if (cell := cell_address(fix.cell))]
     cells = SheetSpans(part, [cell for cell, _ in addressed]).cells
     changes = []
     made = []
-    for cell, repair in addressed:
+    for cell, fix in addressed:
         span = cells.pop(cell, None)
         if span and not span.is_formula:
-            changes.append((span.start, span.end, cell_xml(repair.cell, repair.value, span.prefix, span.style)))
-            made.append(repair)
+            changes.append((span.start, span.end, cell_xml(fix.cell, fix.value, span.prefix, span.style)))
+            made.append(fix)
     return spliced(part, changes), made
 
 
-def _sheet(made: Sequence[Repair]) -> bytes:
-    """Return the list of repairs as a worksheet, each linked to its cell."""
+def _sheet(made: Sequence[Fix]) -> bytes:
+    """Return the list of fixes as a worksheet, each linked to its cell."""
     title = f"flexlash mended {len(made)} cell{'s' if len(made) != 1 else ''}; check each of them."
     table = [(title,), _HEADINGS, *((one.place, one.found, one.written, one.code) for one in made)]
     rows = b"".join(

@@ -44,6 +44,8 @@ _CONTENT_TYPES = {
     "vmlDrawing": "application/vnd.openxmlformats-officedocument.vmlDrawing",
     "custom-properties": "application/vnd.openxmlformats-officedocument.custom-properties+xml",
 }
+_SINGLE = frozenset({"styles"})
+"""Kinds of which a workbook has one part: a relation to one that is not there goes when it is made."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,9 +111,12 @@ class WorkbookParts:
 
     def add(self, owner: str, kind: str, part: str, content: bytes) -> str:
         """Add a part that another one refers to; return the relation's id."""
+        name = _relations_of(owner)
+        lost = {one.id for one in self.relations(owner) if one.kind == kind and one.part not in self.parts}
+        if lost and kind in _SINGLE:
+            self._cut(name, "Relationship", "Id", lost)
         self.parts[part] = self.dialect(content)
         self._announce(part, _CONTENT_TYPES[kind])
-        name = _relations_of(owner)
         if name not in self.parts:
             self.parts[name] = _HEAD + f'<Relationships xmlns="{_PACKAGE}/relationships"></Relationships>'.encode()
             # Some programs give no type to all parts of relations, but one to each.
