@@ -54,7 +54,7 @@ def assess(validated: Validated, settings: Settings) -> Nominal:
         kinds = {problem.dimension: problem.kind for problem in (*untabulated, *misshapen) if problem.kind != "overlap"}
         _judge_widths(ledger, variant, rows, found, kinds)
         limits[variant.row] = kept
-    _warn_exact(validated, ledger)
+    _report_exact(validated, ledger)
     sound = [variant for variant in validated.variants if variant.row not in ledger.rows]
     numbers = nominal_numbers(sound, settings.lost_motion_percent / 100)
     mistakes = _by_owner(validated.unit_mistakes.values())
@@ -63,11 +63,11 @@ def assess(validated: Validated, settings: Settings) -> Nominal:
         if not _LEAST < nominal.backlash < _GREATEST:
             _report_backlash(ledger, variant, nominal, mistaken)
             continue
-        _warn_calibration(ledger, variant)
+        _report_calibration(ledger, variant)
         if not mistaken:
-            _warn_strength(ledger, variant, nominal)
-            _warn_stiffness(ledger, variant, nominal)
-            _warn_limit(ledger, variant, nominal)
+            _report_strength(ledger, variant, nominal)
+            _report_stiffness(ledger, variant, nominal)
+            _report_limit(ledger, variant, nominal)
     computed = {
         variant.row: Computed(variant=variant, limits=limits[variant.row], nominal=nominal)
         for variant, nominal in zip(sound, numbers, strict=True)
@@ -143,7 +143,7 @@ def _width_code(share: float, *, coarse: bool, meant: bool) -> str:
     return "W441" if meant and share < _EXACT else ""
 
 
-def _warn_exact(validated: Validated, ledger: Ledger) -> None:
+def _report_exact(validated: Validated, ledger: Ledger) -> None:
     """Warn once of each class that has no row for dimensions which `standard` scatters and one of its variants has."""
     table, standard = validated.tolerances, validated.classes.get("standard", [])
     if table is None:
@@ -178,7 +178,7 @@ def _report_backlash(
         ledger.spoil("material", cause.material, cause.sheet, cause.row)
 
 
-def _warn_strength(ledger: Ledger, variant: Variant, nominal: NominalNumbers) -> None:
+def _report_strength(ledger: Ledger, variant: Variant, nominal: NominalNumbers) -> None:
     """Warn when the part yields or buckles, or else when its torque is above what drives of its size may bear."""
     stress, strength = nominal.von_mises, variant.yield_strength
     shear, buckling = nominal.wall_shear, nominal.buckling_shear
@@ -194,7 +194,7 @@ def _warn_strength(ledger: Ledger, variant: Variant, nominal: NominalNumbers) ->
         ledger.add_at("W424", variant, "torque_Nm", name=_name("torque_Nm"), **facts)
 
 
-def _warn_stiffness(ledger: Ledger, variant: Variant, nominal: NominalNumbers) -> None:
+def _report_stiffness(ledger: Ledger, variant: Variant, nominal: NominalNumbers) -> None:
     """Warn when the flexspline is softer than drives that contain one, or resonates within usual speeds."""
     stiffness, least = nominal.stiffness, nominal.least_stiffness
     if least is not None and least > stiffness:
@@ -208,7 +208,7 @@ def _warn_stiffness(ledger: Ledger, variant: Variant, nominal: NominalNumbers) -
         ledger.add_at("W415", variant, "load_inertia_kg_m2", value=spelled_out(frequency, 2), other=span)
 
 
-def _warn_limit(ledger: Ledger, variant: Variant, nominal: NominalNumbers) -> None:
+def _report_limit(ledger: Ledger, variant: Variant, nominal: NominalNumbers) -> None:
     """Warn when the nominal backlash is over the limit already."""
     limit, key = variant.backlash_limit, "backlash_limit_arcmin"
     if limit is not None and nominal.backlash > limit:
@@ -225,7 +225,7 @@ def _megapascals(stress: float) -> str:
     return spelled_out(stress / 1e6)
 
 
-def _warn_calibration(ledger: Ledger, variant: Variant) -> None:
+def _report_calibration(ledger: Ledger, variant: Variant) -> None:
     """Warn when a calibration meets refinement columns, which it contains already."""
     used = [key for name, key in _REFINEMENTS.items() if name in variant.dimensions]
     factors = (variant.dimensions["cylinder_calibration"], variant.dimensions["disk_calibration"])

@@ -284,5 +284,11 @@ PART_RULES = (
 
 def said_before(rule: PartRule) -> list[PartRule]:
     """Return the rules that say what a rule says when they are broken: those it stands after, and theirs in turn."""
-    named = [one for one in PART_RULES if one.code in rule.after]
-    return [one for one in PART_RULES if any(one in (before, *said_before(before)) for before in named)]
+    said: set[str] = set()
+    waiting = [rule]
+    while waiting:
+        after = waiting.pop().after
+        named = [one for one in PART_RULES if one.code in after and one.id not in said]
+        said |= {one.id for one in named}
+        waiting += named
+    return [one for one in PART_RULES if one.id in said]

@@ -81,7 +81,7 @@ def shape_problems(
             problems.append(LimitsProblem(kind="cut", dimension=name, detail="0"))
         else:
             kept[name] = limit
-    every = list(gaps(variant))
+    every = gaps(variant)
     for gap in every:
         if gap.reached.kind == "impossible":
             problems.extend(_keep_open(variant, kept, gap))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 from flexlash.schema.part_row import PartRow, PartRule, Reached
 from flexlash.schema.part_rules import PART_RULES
@@ -90,16 +91,16 @@ class _SumRow(PartRow):
 
     edge = _Sum({})
 
-    def __init__(self, variant: Variant) -> None:
-        self._variant = variant
+    def __init__(self, flexspline_type: str, names: frozenset[str]) -> None:
+        self._type, self._names = flexspline_type, names
 
     def given(self, name: str) -> bool:
         """Return whether the variant has a dimension."""
-        return name in self._variant.dimensions
+        return name in self._names
 
     def blank(self, name: str) -> bool:
         """Return whether the variant has not a dimension."""
-        return name not in self._variant.dimensions
+        return name not in self._names
 
     def entered(self, name: str) -> _Sum:
         """Return a dimension."""
@@ -107,7 +108,7 @@ class _SumRow(PartRow):
 
     def is_type(self, *types: str) -> bool:
         """Return whether the flexspline is of one of these types."""
-        return self._variant.flexspline_type in types
+        return self._type in types
 
     def when(self, condition: bool, then: _Sum | float, otherwise: _Sum | float) -> _Sum | float:  # noqa: FBT001
         """Return one of two operands."""
@@ -124,9 +125,18 @@ class _SumRow(PartRow):
         return True if True in conditions else open_ones[0] if open_ones else False
 
 
-def gaps(variant: Variant) -> Iterator[Gap]:
-    """Yield what the rules let stand open in a part, of several dimensions; one alone is kept by its own bounds."""
-    row = _SumRow(variant)
+def gaps(variant: Variant) -> Sequence[Gap]:
+    """Return what the rules let stand open in a part, of several dimensions; one alone is kept by its own bounds."""
+    return _gaps(variant.flexspline_type, frozenset(variant.dimensions))
+
+
+@cache
+def _gaps(flexspline_type: str, names: frozenset[str]) -> Sequence[Gap]:
+    """Return the gaps of all parts of one type that have the same dimensions."""
+    return tuple(_open_gaps(_SumRow(flexspline_type, names)))
+
+
+def _open_gaps(row: _SumRow) -> Iterator[Gap]:
     for rule in PART_RULES:
         if rule.reached and isinstance(comparison := row.all_of(*rule.broken(row)), _Comparison):
             gap = comparison.gap(rule, rule.reached)

@@ -139,12 +139,12 @@ def _check_references(table: Table, ledger: Ledger, key: str, code: str, names: 
             continue
         spelling = plain(value)
         if spelling not in known:
-            _blame(table, ledger, row=row, key=key, value=value, **_unknown(key, code, value, meant))
+            _report(table, ledger, row=row, key=key, value=value, **_unknown(key, code, value, meant))
         elif spelling in faulty:
             ledger.rows.add(row)
         elif value != known[spelling]:
             name = known[spelling]
-            _blame(table, ledger, "I504", row, key, value=value, suggestion=name, certain_value=name)
+            _report(table, ledger, "I504", row, key, value=value, suggestion=name, certain_value=name)
 
 
 def _unknown(key: str, code: str, value: str, meant: Mapping[str, Mapping[str, str | None]]) -> dict[str, Any]:
@@ -181,10 +181,10 @@ def _check_duplicates(table: Table, ledger: Ledger) -> None:
             partners[name.casefold()].append(row)
     for rows in partners.values():
         for row, others in table.partners(rows, "variant"):
-            _blame(table, ledger, "E308", row, "variant", value=table.entered(row, "variant"), other=others)
+            _report(table, ledger, "E308", row, "variant", value=table.entered(row, "variant"), other=others)
 
 
-def _blame(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts: Any) -> None:
+def _report(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts: Any) -> None:
     """Record a finding at a cell of Variants."""
     name = columns_of("Variants")[key].name
     cell = table.address(row, key)
