@@ -365,7 +365,7 @@ def _header_twice(random: Random) -> Corruption:
 def _header_missing(random: Random) -> Corruption:
     sheet = random.choice(("Variants", "Materials", "Tolerances"))
     column = random.choice([one for one in ENTRY_SHEETS[sheet] if one.required])
-    # SummaryFacts at the first free header cell; that of the row status is the last one on Variants.
+    # Told at the first free header cell; that of the row status is the last one on Variants.
     free = column_letters(len(ENTRY_SHEETS[sheet]) + (2 if sheet == "Variants" else 1))
     needs = _MORE_HEADERS.union(*(_row_of(sheet, row) for row in records(sheet)))
     return Corruption(

@@ -59,7 +59,7 @@ def prepare() -> None:
     try:
         _warm_up()
     except BaseException as fault:  # noqa: BLE001
-        # SummaryFacts by the first answer: a process that ends here could not say why.
+        # Told by the first answer: a process that ends here could not say why.
         _State.fault = _why(fault)
     sys.addaudithook(_judge)
 
