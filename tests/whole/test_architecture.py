@@ -27,6 +27,7 @@ ROOMS = (
     "comparison",
     "outputs",
     "pipeline",
+    "batch",
     "cli",
 )
 """The order of the rooms: each imports those before it alone."""
@@ -99,6 +100,7 @@ STAGES = (
     "report.report_data",
     "outputs.delivery",
     "pipeline",
+    "batch",
 )
 """The stages of a submission in their order, by the module that returns each one's record."""
 
