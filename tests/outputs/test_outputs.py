@@ -661,6 +661,51 @@ def test_a_report_open_in_excel_is_left_alone(tmp_path, monkeypatch):
 # Whole or not at all
 
 
+def _piece_by_piece(data):
+    """Return a function that writes these bytes in small pieces."""
+
+    def fill(file):
+        for start in range(0, len(data), 7):
+            file.write(data[start : start + 7])
+
+    return fill
+
+
+def test_a_file_in_pieces_is_stamped_like_bytes(tmp_path):
+    """A file that is written piece by piece has the bytes and the stamp of the same file written as a whole."""
+    empty = json.dumps({"results": ["x" * 50] * 50_000, "stamp": placeholder("results")}).encode()
+    Plan(inputs=[]).claim(tmp_path / "pieces.json").write(_piece_by_piece(empty), "results")
+    Plan(inputs=[]).claim(tmp_path / "whole.json").write(empty, "results")
+    assert (tmp_path / "pieces.json").read_bytes() == (tmp_path / "whole.json").read_bytes() != empty
+    assert stamp_at(tmp_path / "pieces.json") == "results"
+
+
+def test_a_file_in_pieces_replaces_nothing_of_the_users(tmp_path):
+    """What is written in pieces leaves a file of the user's alone, and a table of ours with other rows as well."""
+    (tmp_path / "out.json").write_bytes(FOREIGN)
+    (tmp_path / "out.csv").write_bytes(b"a,b\n1,2\n")
+    for name, again in (("out.json", "out (2).json"), ("out.csv", "out (2).csv")):
+        written = Plan(inputs=[]).claim(tmp_path / name).write(_piece_by_piece(b"a,b\n1,3\n"))
+        assert written.path == tmp_path / again
+        assert "was left alone" in written.remark
+    same = Plan(inputs=[]).claim(tmp_path / "out.csv").write(_piece_by_piece(b"a,b\n1,2\n"))
+    assert (same.path, same.remark) == (tmp_path / "out.csv", "")
+
+
+def test_a_file_in_pieces_is_whole_or_absent(tmp_path):
+    """A fault in the middle of the pieces leaves the earlier file and no scrap."""
+    (tmp_path / "out.json").write_bytes(OURS)
+
+    def fill(file):
+        file.write(b"half")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with pytest.raises(OSError, match="the disk is full") as caught:
+        Plan(inputs=[]).claim(tmp_path / "out.json").write(fill)
+    assert caught.value.filename == str(tmp_path / "out.json")
+    assert _contents(tmp_path) == {"out.json": OURS}
+
+
 @pytest.mark.skipif(os.name == "nt", reason="POSIX permission bits")
 def test_files_have_the_users_permissions(tmp_path):
     """A written file has the permissions that any new file of the user has."""
@@ -793,7 +838,8 @@ def test_a_report_without_its_marked_copy(tmp_path, table, sound, capsys):
 
 _WRITER = (
     "import sys, time; from pathlib import Path; from flexlash.outputs.writing import temporary\n"
-    "with temporary(Path(sys.argv[1]), b'half'):\n    print('here', flush=True); time.sleep(600)\n"
+    "with temporary(Path(sys.argv[1]), lambda file: file.write(b'half')):\n"
+    "    print('here', flush=True); time.sleep(600)\n"
 )
 _STUCK = (
     "import os, sys, time; from flexlash.outputs import writing\n"

@@ -11,17 +11,19 @@ from __future__ import annotations
 import contextlib
 import csv
 import errno
+import filecmp
 import os
 import stat
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import chain, islice
 from pathlib import Path
+from typing import BinaryIO
 
-from flexlash.outputs.writing import put_new, remove_leftovers, replace, temporary
+from flexlash.outputs.writing import Filling, put_new, remove_leftovers, replace, temporary
 from flexlash.reading.products import is_replaced, results_header
 from flexlash.schema.findings import shown
-from flexlash.schema.stamps import stamp_at, stamped
+from flexlash.schema.stamps import stamp, stamp_at
 from flexlash.schema.unused_names import numbered_names
 
 __all__ = ["Output", "Plan", "WrittenFile"]
@@ -109,10 +111,10 @@ class Plan:
         yield from (path for path in paths if _full(path) not in self.claimed)
         raise FileExistsError(errno.EEXIST, "too many files of this name", str(wanted))
 
-    def obstacle(self, path: Path, *, named: bool, forced: bool = False, data: bytes | None = None) -> str:
+    def obstacle(self, path: Path, *, named: bool, forced: bool = False, file: Path | None = None) -> str:
         """Return why what has a path is left alone, an empty text where nothing has it or flexlash may replace it.
 
-        `data` is what is to be written there; without it, a table that may be the same is no obstacle yet.
+        `file` holds what is to be written there; without it, a table that may be the same is no obstacle yet.
         """
         if self._is_input(path):
             return _INPUT
@@ -125,7 +127,7 @@ class Plan:
         if (status.st_dev, status.st_ino) in self.written:
             return "it was written a moment ago"
         try:
-            may_go = forced or _is_ours(path, data, named=named)
+            may_go = forced or _is_ours(path, file, named=named)
         except OSError:
             return "it cannot be read"
         return "" if may_go else "flexlash did not write it, or somebody has changed it"
@@ -168,29 +170,38 @@ class Output:
         if self.fault is not None:
             raise self.fault
 
-    def write(self, data: bytes, role: str = "") -> WrittenFile:
+    def write(self, content: bytes | Filling, role: str = "") -> WrittenFile:
         """Write the file and return where; with a role it is stamped, where its kind has room for that.
 
+        What does not fit in memory is given as a function that writes it, and that may be called again.
         The plan is looked at again: what another program has put there meanwhile is left alone as well. Raises OSError,
         with the output's name, when the file cannot be written.
         """
         self.require()
-        data = stamped(data, role) if role else data
+
+        def fill(file: BinaryIO) -> None:
+            if isinstance(content, bytes):
+                file.write(content)
+            else:
+                content(file)
+            if role:
+                stamp(file, role)
+
         for tries_left in reversed(range(_TRIES)):
             try:
-                return self._write(data)
+                return self._write(fill)
             except OSError as fault:
                 # Where files cannot be locked, another run may have taken the temporary file for a leftover.
                 if not (isinstance(fault, FileNotFoundError) and tries_left):
                     raise _of_output(fault, self.path) from fault
         raise AssertionError
 
-    def _write(self, data: bytes) -> WrittenFile:
+    def _write(self, fill: Filling) -> WrittenFile:
         reason = self._known_obstacle()
-        with temporary(self.path.parent, data) as file:
+        with temporary(self.path.parent, fill) as file:
             # The planned path first, then those that are free should something have come in its way.
             paths = chain([self.path], self.plan.unclaimed(self.wanted))
-            while obstacle := self._put(file, path := next(paths), data):
+            while obstacle := self._put(file, path := next(paths)):
                 reason = reason or obstacle
             status = path.stat()
         self.plan.written.add((status.st_dev, status.st_ino))
@@ -202,13 +213,13 @@ class Output:
             return ""
         return self.plan.obstacle(self.wanted, named=self.named)
 
-    def _put(self, file: Path, path: Path, data: bytes) -> str:
+    def _put(self, file: Path, path: Path) -> str:
         """Give a temporary file its path; return what is in the way, an empty text when it was put there."""
         if put_new(file, path):
             return ""
         before = path.lstat()
         named = self.named and path == self.wanted
-        if obstacle := self.plan.obstacle(path, named=named, forced=self.forced, data=data):
+        if obstacle := self.plan.obstacle(path, named=named, forced=self.forced, file=file):
             return obstacle
         return "" if replace(file, path, before) else "another program holds it open"
 
@@ -267,19 +278,17 @@ def _of_output(fault: OSError, path: Path) -> OSError:
     return OSError(fault.errno or errno.EIO, words, str(path))
 
 
-def _is_ours(path: Path, data: bytes | None, *, named: bool) -> bool:
+def _is_ours(path: Path, file: Path | None, *, named: bool) -> bool:
     """Whether flexlash wrote a file and nobody has changed it; of a table, whether it is of our making or the same.
 
     Raises OSError when it cannot be read.
     """
     if path.suffix.lower() != ".csv":
         return bool(stamp_at(path))
-    if data is None:
+    if file is None or filecmp.cmp(path, file, shallow=False):
         return True
-    with path.open("rb") as file:
-        beginning = file.read(_LONGEST_HEADER)
-        same = path.lstat().st_size == len(data) and beginning + file.read() == data
-    return same or (named and _has_our_header(beginning))
+    with path.open("rb") as table:
+        return named and _has_our_header(table.read(_LONGEST_HEADER))
 
 
 def _has_our_header(beginning: bytes) -> bool:

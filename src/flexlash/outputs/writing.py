@@ -1,4 +1,4 @@
-"""Bytes → a file, whole or not at all, by way of a temporary file beside it; and what killed runs left is removed.
+"""What is to be written → a file, whole or not at all, by way of a temporary file beside it; leftovers are removed.
 
 While its writer lives, a temporary file is locked (`flock`); a later run removes those that nobody holds. Windows has
 no such lock, but does not let go of a file that is open.
@@ -11,15 +11,19 @@ import errno
 import os
 import secrets
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import BinaryIO, TypeAlias
 
 try:
     import fcntl
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["put_new", "remove_leftovers", "replace", "temporary"]
+__all__ = ["Filling", "put_new", "remove_leftovers", "replace", "temporary"]
+
+Filling: TypeAlias = Callable[[BinaryIO], object]
+"""Writes the content of a file, piece by piece, into an empty one that is open for writing and reading."""
 
 _PREFIX, _SUFFIX = ".flexlash-", ".tmp"
 _OPENED = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -33,12 +37,12 @@ _TRIES = 100
 
 
 @contextlib.contextmanager
-def temporary(folder: Path, data: bytes) -> Iterator[Path]:
-    """Yield a temporary file with these bytes, safe on the disk, to be given its path; what is left is removed."""
+def temporary(folder: Path, fill: Filling) -> Iterator[Path]:
+    """Yield a temporary file with this content, safe on the disk, to be given its path; what is left is removed."""
     path, handle = _created(folder)
     try:
-        with os.fdopen(handle, "wb", closefd=False) as file:
-            file.write(data)
+        with os.fdopen(handle, "w+b", closefd=False) as file:
+            fill(file)
             file.flush()
             os.fsync(handle)
         if _HOLDS_OPEN_FILES:
@@ -54,7 +58,7 @@ def _created(folder: Path) -> tuple[Path, int]:
     """Create a temporary file, with the permissions that any new file of the user has, and lock it."""
     for _ in range(_TRIES):
         path = folder / f"{_PREFIX}{secrets.token_hex(8)}{_SUFFIX}"
-        handle = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY | _OPENED, 0o666)
+        handle = os.open(path, os.O_CREAT | os.O_EXCL | os.O_RDWR | _OPENED, 0o666)
         _lock(handle, wait=True)
         # Another run may have taken it for a leftover before it was locked.
         if _is_still(path, handle):

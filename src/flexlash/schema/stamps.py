@@ -13,13 +13,14 @@ A .csv has no such place.
 from __future__ import annotations
 
 import hashlib
+import io
 import os
 import re
 import stat
 from pathlib import Path
 from typing import BinaryIO
 
-__all__ = ["has_stamp", "placeholder", "stamp_at", "stamped"]
+__all__ = ["has_stamp", "placeholder", "stamp", "stamp_at", "stamped"]
 
 _DIGITS = 64
 _STAMP = re.compile(rb"flexlash stamp (?P<role>[a-z]+(?: [0-9a-f]{64})?) (?P<sum>[0-9a-f]{64})")
@@ -41,14 +42,49 @@ def stamped(data: bytes, role: str) -> bytes:
     `role` says what the file is: `report`, `results`, `checked`, `recreated`, or `mended` and the SHA-256 of the
     submission that was mended.
     """
+    file = io.BytesIO(data)
+    stamp(file, role)
+    return file.getvalue()
+
+
+def stamp(file: BinaryIO, role: str) -> None:
+    """Put its stamp into a file that is open for reading and writing, as `stamped` puts it into bytes."""
     empty = placeholder(role).encode()
-    if data.startswith(_ARCHIVE) and data.endswith(b"\0\0"):
-        data = data[:-2] + len(empty).to_bytes(2, "little") + empty
-    start = data.rfind(empty)
-    if start < 0:
-        return data
-    end = start + len(empty)
-    return data[: end - _DIGITS] + hashlib.sha256(data).hexdigest().encode() + data[end:]
+    size = file.seek(0, os.SEEK_END)
+    start = file.seek(max(0, size - _TAIL))
+    tail = file.read()
+    if tail.endswith(b"\0\0") and _begins(file, _ARCHIVE):
+        file.seek(size - 2)
+        file.write(len(empty).to_bytes(2, "little") + empty)
+        place = size
+    elif (found := tail.rfind(empty)) >= 0:
+        place = start + found
+    else:
+        return
+    place += len(empty) - _DIGITS
+    digits = _sum(file, place).encode()
+    file.seek(place)
+    file.write(digits)
+
+
+def _begins(file: BinaryIO, start: bytes) -> bool:
+    file.seek(0)
+    return file.read(len(start)) == start
+
+
+def _sum(file: BinaryIO, digits: int) -> str:
+    """Return the SHA-256 of a file with 0 in place of the digits that stand at a place of it."""
+    file.seek(0)
+    digest = hashlib.sha256()
+    left = digits
+    while left > 0 and (piece := file.read(min(left, _TAIL))):
+        digest.update(piece)
+        left -= len(piece)
+    file.seek(_DIGITS, os.SEEK_CUR)
+    digest.update(b"0" * _DIGITS)
+    while piece := file.read(_TAIL):
+        digest.update(piece)
+    return digest.hexdigest()
 
 
 def has_stamp(data: bytes) -> bool:
@@ -72,15 +108,5 @@ def _stamp_of(file: BinaryIO) -> str:
     stamps = list(_STAMP.finditer(file.read()))
     if not stamps:
         return ""
-    stamp = stamps[-1]
-    file.seek(0)
-    digest = hashlib.sha256()
-    left = start + stamp.start("sum")
-    while left > 0 and (piece := file.read(min(left, _TAIL))):
-        digest.update(piece)
-        left -= len(piece)
-    file.seek(_DIGITS, os.SEEK_CUR)
-    digest.update(b"0" * _DIGITS)
-    while piece := file.read(_TAIL):
-        digest.update(piece)
-    return stamp["role"].decode() if digest.hexdigest().encode() == stamp["sum"] else ""
+    last = stamps[-1]
+    return last["role"].decode() if _sum(file, start + last.start("sum")).encode() == last["sum"] else ""
