@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 from flexlash import __version__
 from flexlash.analysis.computed import Computed
 from flexlash.analysis.options import Options
+from flexlash.analysis.whole_batch import WholeBatch, verdicts_of
 from flexlash.reading.raw import Submission
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.findings import Finding, readable
-from flexlash.schema.limit_verdict import VERDICTS, limit_verdict
+from flexlash.schema.limit_verdict import VERDICTS
 from flexlash.schema.variant import Settings
 from flexlash.validation.validated import Blocked, Validated
 
@@ -47,6 +48,7 @@ class Outcome:
     beside the settings. `computed` holds, by row number, what the report draws on, `blocked` what
     could not be computed. `skipped` says that flexlash itself
     wrote the file, or that it is a lock file. `processor_seconds` is how much computing reading and validation took.
+    `whole` is the submission of which this outcome holds the worst rows alone, None where it holds all.
     """
 
     submission: Submission
@@ -60,6 +62,7 @@ class Outcome:
     skipped: bool = False
     processor_seconds: float = 0.0
     written: Written = field(default_factory=Written)
+    whole: WholeBatch | None = None
 
     @property
     def outputs(self) -> tuple[Path, ...]:
@@ -78,12 +81,20 @@ class Outcome:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Submitted and computed rows, error and warning findings, variants with a limit by their verdict."""
-        levels = Counter(found.level for found in self.findings)
-        verdicts = Counter(map(limit_verdict, self.results["probability_over_limit"]))
+        """Submitted and computed rows, error and warning findings, variants with a limit by their verdict.
+
+        They are those of the whole submission.
+        """
+        if self.whole is not None:
+            rows, computed, levels = self.whole.rows, self.whole.computed, self.whole.levels
+            verdicts = Counter(self.whole.verdicts)
+        else:
+            rows, computed = len(self.validated.submitted) if self.validated else 0, len(self.computed)
+            levels = Counter(found.level for found in self.findings)
+            verdicts = Counter(verdicts_of(self.results)[0])
         return {
-            "rows": len(self.validated.submitted) if self.validated else 0,
-            "computed": len(self.computed),
+            "rows": rows,
+            "computed": computed,
             "errors": levels["error"],
             "warnings": levels["warning"],
             **{verdict: verdicts[verdict] for verdict in VERDICTS},
