@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,11 +15,12 @@ from flexlash.outputs.delivery import delivery
 from flexlash.outputs.naming import FIXED, REPORTS
 from flexlash.outputs.plan import Output
 from flexlash.reading.read import ReadReport, Source
+from flexlash.reading.refusal import Refusal
 
 if TYPE_CHECKING:
     from flexlash.feedback.fixing.fix import Fix
 
-__all__ = ["Options", "Outcome", "check", "mend", "run"]
+__all__ = ["Options", "Outcome", "check", "computed", "mend", "run"]
 
 
 def check(submission: str | Path | Source | ReadReport, **options: Any) -> Outcome:
@@ -72,17 +74,24 @@ def run(
     outputs = delivery(submission, chosen, output, REPORTS)
     source = opened(submission, chosen)
     outputs.require()
-    found = examined(source, chosen)
-    chosen = chosen.completed(found.submission.run_with)
-    if chosen.elasticity:
+    return outputs.reported(computed(source, chosen))
+
+
+def computed(
+    source: Source | ReadReport | Refusal, options: Options, tables: Mapping[str, Source] | None = None
+) -> Outcome:
+    """Return the outcome of a submission with the spread of its rows; `tables` as for `examined`."""
+    found = examined(source, options, tables)
+    options = options.completed(found.submission.run_with)
+    if options.elasticity:
         require_libraries()
     spread = verified = None
     if found.nominal.computed:
         from flexlash.analysis.tolerance_spread import spread_of
 
-        spread = spread_of(found.nominal.computed, found.settings, chosen)
-    if found.nominal.computed and chosen.elasticity:
+        spread = spread_of(found.nominal.computed, found.settings, options)
+    if found.nominal.computed and options.elasticity:
         from flexlash.analysis.verification import verified_by_elasticity
 
-        verified = verified_by_elasticity(found, chosen)
-    return outputs.reported(outcome_of(found, spread, verified))
+        verified = verified_by_elasticity(found, options)
+    return outcome_of(found, spread, verified)

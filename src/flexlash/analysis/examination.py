@@ -15,7 +15,7 @@ from pathlib import Path
 from flexlash.analysis.computed import Nominal
 from flexlash.analysis.options import Options
 from flexlash.reading.limited_process import ask
-from flexlash.reading.products import require_submission
+from flexlash.reading.products import Companions, require_submission
 from flexlash.reading.raw import Submission
 from flexlash.reading.read import ReadReport, Source, limits_of_reports, of_table, report_of, submission_of, table_of
 from flexlash.reading.refusal import Refusal
@@ -23,7 +23,7 @@ from flexlash.schema.findings import Finding, finding, readable
 from flexlash.schema.variant import Settings
 from flexlash.validation.validated import Validated
 
-__all__ = ["Examined", "examined", "opened"]
+__all__ = ["Examined", "examined", "opened", "tables_beside"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,25 +48,32 @@ def opened(given: str | Path | Source | ReadReport, options: Options) -> Source 
     if isinstance(given, Source | ReadReport):
         return given
     try:
-        return Source.at(Path(given), options.limits)
+        path = Path(given)
+        return replace(Source.at(path, options.limits), companions=Companions.of(path, [*map(Path, options.given)]))
     except Refusal as refusal:
         return Refusal(refusal.code, **{"file": readable(Path(given).name), **refusal.facts})
 
 
-def examined(source: Source | ReadReport | Refusal, options: Options) -> Examined:
-    """Return what the limited process finds in a submission, with its bytes."""
+def examined(
+    source: Source | ReadReport | Refusal, options: Options, tables: Mapping[str, Source] | None = None
+) -> Examined:
+    """Return what the limited process finds in a submission, with its bytes.
+
+    `tables` are those beside it, by the sheet that each replaces; those that the options name where they are None.
+    """
     if isinstance(source, Refusal):
         return _refused(str(source.facts["file"]), b"", source)
     limits = limits_of_reports(options.limits) if options.from_report else options.limits
     try:
         asked = replace(options, progress=None, marked_copy=None)
-        found = ask(_validated, limits, source, _tables(options), asked, then=_with_numbers)
+        beside = tables_beside(options) if tables is None else tables
+        found = ask(_validated, limits, source, beside, asked, then=_with_numbers)
     except Refusal as refusal:
         return _refused(source.name, source.data, refusal)
     return replace(found, submission=replace(found.submission, data=source.data))
 
 
-def _tables(options: Options) -> dict[str, Source]:
+def tables_beside(options: Options) -> dict[str, Source]:
     """Return the tables given beside a submission by the sheet that each replaces."""
     found = {}
     for name, path in (("Tolerances", options.tolerances), ("Materials", options.materials)):
@@ -88,8 +95,8 @@ def _validated(given: Source | ReadReport, tables: Mapping[str, Source], options
     start = time.process_time()
     submission = _submission(given, options)
     options = options.completed(submission.run_with)
-    if isinstance(given, Source) and given.path:
-        require_submission(submission, given.path, options.given, marked_copies=options.marked_copies)
+    if isinstance(given, Source) and given.companions is not None:
+        require_submission(submission, given.companions, marked_copies=options.marked_copies)
     beside = {name: table_of(table, name, options.limits) for name, table in tables.items()}
     submission = replace(submission, sheets=submission.sheets | beside)
     validated = validate(submission, options.limits)

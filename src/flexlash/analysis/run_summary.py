@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.outcome import Outcome, Written
 from flexlash.schema.cell_addresses import cell_ranges
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import CATALOGUE, Finding, shown
@@ -18,7 +18,9 @@ from flexlash.validation.blocking_errors import waiting_rows
 __all__ = [
     "angle_words",
     "are",
+    "closing_lines",
     "counted",
+    "detail_lines",
     "dimension_words",
     "finding_lines",
     "limit_lines",
@@ -29,6 +31,7 @@ __all__ = [
     "rounded",
     "share_words",
     "spread_notes",
+    "state_words",
     "summary_lines",
     "to_fix_words",
     "worst_first",
@@ -75,24 +78,38 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[tuple[str, str]]:
 
 def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
     """Yield the closing lines of the terminal: what was computed, what it says, what to do next."""
+    if not outcome.skipped:
+        words, details = state_words(outcome, ran=ran), detail_lines(outcome, ran=ran)
+        yield from closing_lines(name, words, details, outcome.counts, outcome.written, ran=ran)
+
+
+def state_words(outcome: Outcome, *, ran: bool) -> str:
+    """Return how much of a submission was computed, or is ready to be, and what is to mend."""
     counts = outcome.counts
-    if outcome.skipped:
-        return
     rows, computed = counts["rows"], counts["computed"]
     ready = f"{computed} of {rows} rows {'computed' if ran else 'ready'}" if rows else "nothing to compute"
-    fixes = to_fix_words(outcome.findings)
     warned = counted(counts["warnings"], "warning") if counts["warnings"] else ""
-    yield f"{name}: {'; '.join(filter(None, [ready, fixes, *_waiting_words(outcome), warned]))}."
-    if ran and rows:
-        yield from limit_lines(outcome)
-        yield from spread_notes(outcome)
-    if ran and not computed:
+    return "; ".join(filter(None, [ready, to_fix_words(outcome.findings), *_waiting_words(outcome), warned]))
+
+
+def detail_lines(outcome: Outcome, *, ran: bool) -> list[str]:
+    """Return what a run says of the limits and of how the spread was found."""
+    return [*limit_lines(outcome), *spread_notes(outcome)] if ran and outcome.counts["rows"] else []
+
+
+def closing_lines(
+    name: str, words: str, details: Iterable[str], counts: Mapping[str, int], written: Written, *, ran: bool
+) -> Iterator[str]:
+    """Yield the closing lines of a submission of this name, with what was written for it."""
+    yield f"{name}: {words}."
+    yield from details
+    if ran and not counts["computed"]:
         yield "No report was written: there is no computed row."
-    for path in outcome.outputs:
-        yield _written(outcome, path)
+    for path in written.paths:
+        yield _written_line(written, path)
     if not ran:
-        quoted = f'"{name}"' if " " in name else name
-        yield f"Next: {_next_step(counts, quoted)}"
+        quoted_name = f'"{name}"' if " " in name else name
+        yield f"Next: {_next_step(counts, quoted_name)}"
 
 
 def _waiting_words(outcome: Outcome) -> Iterator[str]:
@@ -103,14 +120,14 @@ def _waiting_words(outcome: Outcome) -> Iterator[str]:
         yield f"{rows} wait{'s' if len(one.rows) == 1 else ''} for {one.kind} {shown(one.name, longest=_NAME)}"
 
 
-def _written(outcome: Outcome, path: Path) -> str:
+def _written_line(written: Written, path: Path) -> str:
     """Return the sentence about a file that was written."""
     named = shown(path, longest=4096)
-    if path != outcome.written.marked_copy:
+    if path != written.marked_copy:
         return f"Written: {named}"
-    if outcome.written.not_carried is None:
+    if written.not_carried is None:
         return f"Findings alone, since your file itself could not be marked: {named}"
-    without = f", without its {', '.join(outcome.written.not_carried)}" if outcome.written.not_carried else ""
+    without = f", without its {', '.join(written.not_carried)}" if written.not_carried else ""
     return f"Marked copy of your file{without}: {named}"
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -42,9 +42,9 @@ class Fixed:
     fixes: tuple[Fix, ...]
 
 
-def fixed(source: Source | ReadReport | Refusal, options: Options) -> Fixed:
-    """Return a submission with the certain fixes made, until there are no more of them."""
-    outcome = outcome_of(examined(source, options))
+def fixed(source: Source | ReadReport | Refusal, options: Options, tables: Mapping[str, Source] | None = None) -> Fixed:
+    """Return a submission with the certain fixes made, until there are no more of them; `tables` stand beside it."""
+    outcome = outcome_of(examined(source, options, tables))
     original = outcome.submission
     data, fixes = original.data, dict[str, Fix]()
     for _ in range(_PASSES):
@@ -55,7 +55,7 @@ def fixed(source: Source | ReadReport | Refusal, options: Options) -> Fixed:
         fixes |= {fix.place: fix for fix in made}
         if not made:
             break
-        outcome = outcome_of(examined(Source(name=original.name, data=data), options))
+        outcome = outcome_of(examined(Source(name=original.name, data=data), options, tables))
     return Fixed(data=data, role=fixed_role(original.data), outcome=outcome, fixes=tuple(fixes.values()))
 
 

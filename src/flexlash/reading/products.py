@@ -10,7 +10,8 @@ import contextlib
 import hashlib
 import re
 import stat
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
@@ -22,6 +23,8 @@ __all__ = [
     "CHECKED_NAME",
     "FIXED_NAME",
     "REPORT_NAME",
+    "Companions",
+    "digests_of",
     "fixed_role",
     "is_made_by_name",
     "is_replaced",
@@ -70,37 +73,60 @@ def made_of(path: Path, what: str) -> str:
     return match["stem"] if match and match["what"] == what else path.stem
 
 
-def require_submission(submission: Submission, path: Path, given: Iterable[Path], *, marked_copies: bool) -> None:
+@dataclass(frozen=True, kw_only=True)
+class Companions:
+    """The other files that are given together with one, of which it may be a fixed copy.
+
+    `original` says that the one of which it is a copy by its name is among them, `digests` are those of all of them.
+    """
+
+    original: bool = False
+    digests: frozenset[str] = frozenset()
+
+    @classmethod
+    def of(cls, path: Path, given: Collection[Path], digests: frozenset[str] | None = None) -> Companions:
+        """Return what is given together with a file; `digests` may be taken once for all of them."""
+        digests = digests_of(other for other in given if other != path) if digests is None else digests
+        return cls(original=_original_beside(path, given), digests=digests)
+
+
+def digests_of(paths: Iterable[Path]) -> frozenset[str]:
+    """Return the digests of files, of those that are ordinary and of ordinary size."""
+    return frozenset(map(_digest, paths)) - {""}
+
+
+def require_submission(submission: Submission, companions: Companions, *, marked_copies: bool) -> None:
     """Raise Refusal, with the code of an info, for a file that flexlash itself wrote and that is therefore skipped.
 
-    `given` are all files given with it: a fixed file is skipped when its original is among them.
+    A fixed file is skipped when its original is given with it.
     """
-    if code := _product(submission, path, [Path(path) for path in given], marked_copies=marked_copies):
+    if code := _product(submission, companions, marked_copies=marked_copies):
         raise Refusal(code)
 
 
-def _product(submission: Submission, path: Path, given: Iterable[Path], *, marked_copies: bool) -> str:
+def _product(submission: Submission, companions: Companions, *, marked_copies: bool) -> str:
     if submission.run_with is not None:
         return ""
     if submission.kind == "workbook":
-        return _code(submission.role, path, given, marked_copies=marked_copies)
+        return _code(submission.role, companions, marked_copies=marked_copies)
     rows = [sheet.rows for sheet in submission.sheets.values()]
     if any(results_header(sheet.get(1, {}).values()) for sheet in rows):
         return "I527"
-    return "I526" if submission.kind == "csv" and _original_beside(path, given) else ""
+    return "I526" if submission.kind == "csv" and companions.original else ""
 
 
-def is_replaced(role: str, path: Path, given: Iterable[Path], *, marked_copies: bool) -> bool:
+def is_replaced(role: str, path: Path, given: Collection[Path], *, marked_copies: bool) -> bool:
     """Whether a given file with this role in its stamp will be skipped, so that its successor may take its place.
 
     A table that was fixed has no stamp, but a name.
     """
     if path.suffix.lower() == ".csv":
         return _original_beside(path, given)
-    return bool(_code(role, path, given, marked_copies=marked_copies))
+    companions = Companions.of(path, given) if role.startswith(_FIXED) else Companions()
+    return bool(_code(role, companions, marked_copies=marked_copies))
 
 
-def _code(role: str, path: Path, given: Iterable[Path], *, marked_copies: bool) -> str:
+def _code(role: str, companions: Companions, *, marked_copies: bool) -> str:
     kind, _, original = role.partition(" ")
     if kind == "report":
         return "I508"
@@ -108,10 +134,8 @@ def _code(role: str, path: Path, given: Iterable[Path], *, marked_copies: bool) 
         return "I527"
     if kind == "checked" and not marked_copies:
         return "I513"
-    given = list(given)
-    if kind == _FIXED and (_original_beside(path, given) or _is_among(original, path, given)):
-        return "I526"
-    return ""
+    is_copy = kind == _FIXED and (companions.original or original in companions.digests)
+    return "I526" if is_copy else ""
 
 
 def _original_beside(path: Path, given: Iterable[Path]) -> bool:
@@ -126,11 +150,6 @@ def _is_same(path: Path, other: Path) -> bool:
     with contextlib.suppress(OSError, ValueError):
         return path.samefile(other)
     return False
-
-
-def _is_among(digest: str, path: Path, given: Iterable[Path]) -> bool:
-    """Whether one of the other files given has this digest."""
-    return bool(digest) and any(_digest(other) == digest for other in given if not _is_same(path, other))
 
 
 def _digest(path: Path) -> str:

@@ -16,6 +16,7 @@ from flexlash.reading.delimited import read_table
 from flexlash.reading.gate import kind_of, read_bytes
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.reading.parquet import read_parquet
+from flexlash.reading.products import Companions
 from flexlash.reading.raw import RawSheet, Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
@@ -38,11 +39,15 @@ _MORE = 4
 
 @dataclass(frozen=True, kw_only=True)
 class Source:
-    """A file to be read: its name as it may be printed, its bytes, and where it stands, if anywhere."""
+    """A file to be read: its name as it may be printed, its bytes, and where it stands, if anywhere.
+
+    `companions` are the files that were given with it, None where nothing is skipped.
+    """
 
     name: str
     data: bytes
     path: Path | None = None
+    companions: Companions | None = None
 
     @classmethod
     def at(cls, path: Path, limits: ReadingLimits) -> Source:

@@ -1,0 +1,95 @@
+"""What travels: a submission with what is to be done with it, and what came of it. An answer loads nothing heavy."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, Self
+
+from flexlash.analysis.options import Options
+from flexlash.feedback.fixing.fix import Fix
+from flexlash.reading.inside_limits import Fault
+from flexlash.reading.read import Source
+from flexlash.schema.exit_codes import ExitCode
+
+__all__ = ["Answer", "Command", "FileBytes", "Task", "WorstVariant"]
+
+Command = Literal["check", "mend", "run"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Travelling:
+    """A record that goes from process to process as bytes."""
+
+    def as_bytes(self) -> bytes:
+        """Return the record as bytes."""
+        return pickle.dumps(self, protocol=5)
+
+    @classmethod
+    def of(cls, data: bytes) -> Self:
+        """Return the record that these bytes are; they come from a process of ours alone."""
+        return pickle.loads(data)  # type: ignore[no-any-return]  # noqa: S301
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task(_Travelling):
+    """A submission and what is to be done with it.
+
+    `tables` stand beside it, by the sheet that each replaces. `report` is how the report's name ends, `copy` how the
+    marked copy's does, each empty where none is wanted.
+    """
+
+    command: Command
+    source: Source
+    options: Options
+    tables: Mapping[str, Source] = field(default_factory=dict)
+    report: str = ""
+    copy: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FileBytes:
+    """A file that is to be written: its bytes and what its stamp says it is.
+
+    `not_carried` is what of the submission a marked copy could not take over, None where it holds the findings alone.
+    """
+
+    data: bytes
+    role: str
+    not_carried: tuple[str, ...] | None = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class WorstVariant:
+    """A computed variant that is among the worst of its submission; angles in arcmin, None without a limit."""
+
+    variant: str
+    p99_865_arcmin: float
+    backlash_limit_arcmin: float | None
+    probability_over_limit: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer(_Travelling):
+    """What came of a submission.
+
+    `told` is what `--json` prints of it but its outputs, `finding_lines` and `details` are lines for the screen,
+    `words` how much was computed, `by_rule` the number of findings of each code. `file` is the report or the mended
+    submission. `refused` says that it is no readable submission, `skipped` that flexlash wrote it, `fault` that the
+    program failed. `exit_code` is that of a command for this submission alone whose files could all be written.
+    """
+
+    exit_code: ExitCode
+    told: Mapping[str, Any] = field(default_factory=dict)
+    finding_lines: tuple[tuple[str, str], ...] = ()
+    words: str = ""
+    details: tuple[str, ...] = ()
+    by_rule: Mapping[str, int] = field(default_factory=dict)
+    worst: tuple[WorstVariant, ...] = ()
+    file: FileBytes | None = None
+    copy: FileBytes | None = None
+    fixes: tuple[Fix, ...] | None = None
+    refused: bool = False
+    skipped: bool = False
+    fault: Fault | None = None

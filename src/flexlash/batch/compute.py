@@ -1,0 +1,107 @@
+"""The one function that a worker carries out: a submission's bytes and options → report, marked copy, outcome."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from flexlash.analysis.examination import examined
+from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.run_result import outcome_of
+from flexlash.analysis.run_summary import detail_lines, finding_lines, state_words, worst_first
+from flexlash.batch.answer import Answer, FileBytes, Task, WorstVariant
+from flexlash.feedback.fixing.fix import Fix
+from flexlash.feedback.returned_files import fixed, marked, worth_marking
+from flexlash.pipeline import computed
+from flexlash.reading.inside_limits import Fault
+from flexlash.reading.libraries import ChangedLibrary
+from flexlash.schema.exit_codes import ExitCode
+
+__all__ = ["answer_of", "compute"]
+
+_WORST = 3
+"""Most variants that an answer names."""
+
+
+def compute(task: bytes) -> bytes:
+    """Return the answer to a task, both as bytes; the same bytes for the same bytes, whoever asks, and nothing written.
+
+    A fault of the program is an answer as well.
+    """
+    try:
+        return _answered(Task.of(task)).as_bytes()
+    except ChangedLibrary as changed:
+        fault = Fault(kind=str(changed), trace=Fault.of(changed).trace)
+    except BaseException as failed:  # noqa: BLE001
+        # A panic of polars is no Exception.
+        fault = Fault.of(failed)
+    return Answer(exit_code=ExitCode.INTERNAL, fault=fault).as_bytes()
+
+
+def _answered(task: Task) -> Answer:
+    if task.command == "mend":
+        found = fixed(task.source, task.options, task.tables)
+        file = FileBytes(data=found.data, role=found.role) if found.fixes else None
+        return answer_of(found.outcome, ran=False, file=file, copy=_copy(found.outcome, task), fixes=found.fixes)
+    if task.command == "check":
+        outcome = outcome_of(examined(task.source, task.options, task.tables))
+        return answer_of(outcome, ran=False, copy=_copy(outcome, task))
+    outcome = computed(task.source, task.options, task.tables)
+    return answer_of(outcome, ran=True, file=_report(outcome, task), copy=_copy(outcome, task))
+
+
+def answer_of(
+    outcome: Outcome,
+    *,
+    ran: bool,
+    file: FileBytes | None = None,
+    copy: FileBytes | None = None,
+    fixes: tuple[Fix, ...] | None = None,
+) -> Answer:
+    """Return an outcome as an answer, with the files that are to be written; `ran` says that it was computed."""
+    told = outcome.as_dictionary()
+    del told["outputs"]
+    return Answer(
+        exit_code=outcome.exit_code,
+        told=told,
+        finding_lines=tuple(finding_lines(outcome.findings)),
+        words=state_words(outcome, ran=ran),
+        details=tuple(detail_lines(outcome, ran=ran)),
+        by_rule=Counter(found.code for found in outcome.findings),
+        worst=tuple(_worst(outcome)) if ran else (),
+        file=file,
+        copy=copy,
+        fixes=fixes,
+        refused=outcome.submission.kind == "refused",
+        skipped=outcome.skipped,
+    )
+
+
+def _report(outcome: Outcome, task: Task) -> FileBytes | None:
+    """Return the report in the form that is wanted, if a row was computed."""
+    if not task.report or not outcome.computed:
+        return None
+    from flexlash.report.output import outcome_bytes
+
+    data, role = outcome_bytes(outcome, task.report)
+    return FileBytes(data=data, role=role)
+
+
+def _copy(outcome: Outcome, task: Task) -> FileBytes | None:
+    """Return the marked copy, when there is something to mark."""
+    if not task.copy or not worth_marking(outcome):
+        return None
+    data, not_carried = marked(outcome, task.options.limits, macros=task.copy == ".xlsm")
+    return FileBytes(data=data, role="checked", not_carried=not_carried)
+
+
+def _worst(outcome: Outcome) -> Iterator[WorstVariant]:
+    """Yield the worst of the computed variants."""
+    for row in worst_first(outcome)[:_WORST]:
+        limit = row["backlash_limit_arcmin"]
+        yield WorstVariant(
+            variant=row["variant"],
+            p99_865_arcmin=row["p99_865_arcmin"],
+            backlash_limit_arcmin=limit,
+            probability_over_limit=None if limit is None else row["probability_over_limit"],
+        )
