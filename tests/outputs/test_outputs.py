@@ -24,7 +24,14 @@ from flexlash.cli import cli
 from flexlash.cli.recreation import recreate
 from flexlash.outputs import plan as plan_module
 from flexlash.outputs import writing
-from flexlash.outputs.naming import fixed_outputs, marked_outputs, recreated_outputs, report_outputs, template_output
+from flexlash.outputs.naming import (
+    fixed_outputs,
+    marked_outputs,
+    recreated_outputs,
+    report_outputs,
+    summary_outputs,
+    template_output,
+)
 from flexlash.outputs.plan import Plan
 from flexlash.pipeline import check, mend, run
 from flexlash.schema.stamps import placeholder, stamp_at, stamped
@@ -115,6 +122,21 @@ def test_where_outputs_go(what, tmp_path):
     for plans, wanted in zip((report_outputs, fixed_outputs, marked_outputs), expected, strict=True):
         plan = Plan(inputs=paths, submissions=paths)
         assert _names(plans(plan, paths, out), tmp_path) == wanted
+
+
+def test_sub_folders_are_kept_in_the_folder_of_outputs(tmp_path):
+    """What lay below the given folder keeps its sub-folder in OUT, made if absent; names are numbered in each alone."""
+    paths = [tmp_path / "in" / name for name in ("a.xlsx", "a.csv", "sub/a.xlsx", "sub/deep/a.xlsx")]
+    below = {paths[2]: Path("sub"), paths[3]: Path("sub/deep")}
+    plan = Plan(inputs=paths, submissions=paths)
+    reports = report_outputs(plan, paths, tmp_path / "out", below=below)
+    assert _names(reports, tmp_path / "out") == [
+        "a-report.xlsx", "a-report (2).xlsx", "sub/a-report.xlsx", "sub/deep/a-report.xlsx",
+    ]  # fmt: skip
+    assert (tmp_path / "out/sub/deep").is_dir()
+    summary = summary_outputs(plan, tmp_path / "out")
+    assert [output.path.name for output in summary] == ["flexlash-summary.xlsx", "flexlash-summary.jsonl"]
+    assert summary_outputs(plan, tmp_path / "out.xlsx") is summary_outputs(plan, None) is None
 
 
 WRONG = {

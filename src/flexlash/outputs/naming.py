@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from flexlash.outputs.plan import Output, Plan
-from flexlash.reading.products import CHECKED_NAME, FIXED_NAME, REPORT_NAME, is_made_by_name, made_of
+from flexlash.reading.products import CHECKED_NAME, FIXED_NAME, REPORT_NAME, SUMMARY_NAME, is_made_by_name, made_of
 from flexlash.schema.argument_checks import file_path
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "named_output",
     "recreated_outputs",
     "report_outputs",
+    "summary_outputs",
     "template_output",
 ]
 
@@ -31,6 +33,10 @@ WORKBOOK = (".xlsx", ".xlsm")
 _ENDING = re.compile(r"\.[a-z][a-z0-9]{0,6}", re.IGNORECASE)
 """What ends the name of a kind of file; a point with a number, as in `study-2.1`, may be part of a folder's name."""
 
+Below = Mapping[Path, Path]
+"""Submissions that lie below the folder that was given, with their sub-folders."""
+
+_NOWHERE_BELOW: Below = {}
 _RECREATED = "-recreated"
 _FORBIDDEN = re.compile(r'[<>:"/\\|?*\x00-\x1f\x7f]')
 """What no name of a file can hold on every system."""
@@ -46,22 +52,42 @@ def named_output(plan: Plan, path: str | os.PathLike[str], endings: Sequence[str
     return plan.claim(path, named=True)
 
 
-def report_outputs(plan: Plan, submissions: Sequence[Path], output: Path | None) -> list[Output]:
-    """Return where each submission's report goes; raise ValueError for an output that cannot be meant."""
-    return _outputs(plan, submissions, output, lambda path: f"{path.stem}{REPORT_NAME}.xlsx", REPORTS)
+def report_outputs(
+    plan: Plan, submissions: Sequence[Path], output: Path | None, *, below: Below = _NOWHERE_BELOW
+) -> list[Output]:
+    """Return where each submission's report goes; raise ValueError for an output that cannot be meant.
+
+    `below` gives the sub-folder of an output folder that a submission's files go to, here and in the other functions.
+    """
+    return _outputs(plan, submissions, output, lambda path: f"{path.stem}{REPORT_NAME}.xlsx", REPORTS, below)
 
 
-def fixed_outputs(plan: Plan, submissions: Sequence[Path], output: Path | None) -> list[Output]:
+def summary_outputs(plan: Plan, output: Path | None) -> tuple[Output, Output] | None:
+    """Return where the summary of all submissions goes, as a workbook and as lines; None where OUT is no folder."""
+    if output is None or not _is_folder(output):
+        return None
+    _make_folder(output, REPORTS)
+    return plan.claim(output / f"{SUMMARY_NAME}.xlsx"), plan.claim(output / f"{SUMMARY_NAME}.jsonl")
+
+
+def fixed_outputs(
+    plan: Plan, submissions: Sequence[Path], output: Path | None, *, below: Below = _NOWHERE_BELOW
+) -> list[Output]:
     """Return where each fixed submission goes; raise ValueError for an output that cannot be meant."""
 
     def name(path: Path) -> str:
         return f"{made_of(path, FIXED_NAME)}{FIXED_NAME}{path.suffix}"
 
-    return _outputs(plan, submissions, output, name, FIXED)
+    return _outputs(plan, submissions, output, name, FIXED, below)
 
 
 def marked_outputs(
-    plan: Plan, submissions: Sequence[Path], output: Path | None, *, itself: bool = False
+    plan: Plan,
+    submissions: Sequence[Path],
+    output: Path | None,
+    *,
+    itself: bool = False,
+    below: Below = _NOWHERE_BELOW,
 ) -> list[Output]:
     """Return where each submission's marked copy goes; raise ValueError for an output that cannot be meant.
 
@@ -73,8 +99,8 @@ def marked_outputs(
         return f"{made_of(path, CHECKED_NAME)}{CHECKED_NAME}.xlsx"
 
     if output is None or itself or _is_folder(output):
-        return _outputs(plan, submissions, output, name, WORKBOOK)
-    return _claims(plan, submissions, output.parent, name)
+        return _outputs(plan, submissions, output, name, WORKBOOK, below)
+    return _claims(plan, submissions, output.parent, name, below)
 
 
 def recreated_outputs(plan: Plan, report: Path, output: Path | None, name: str) -> tuple[Output, Output]:
@@ -107,12 +133,13 @@ def template_output(output: Path | None, old: Path | None, *, force: bool) -> Ou
     return claimed
 
 
-def _outputs(
+def _outputs(  # noqa: PLR0917
     plan: Plan,
     submissions: Sequence[Path],
     output: Path | None,
     name: Callable[[Path], str],
     endings: Sequence[str],
+    below: Below,
 ) -> list[Output]:
     """Return the output of each submission: in its own folder, in the folder that was named, or the one file named."""
     if output is not None:
@@ -125,10 +152,12 @@ def _outputs(
         return [plan.claim(output, named=True)]
     if output is not None:
         _make_folder(output, endings)
-    return _claims(plan, submissions, output, name)
+    return _claims(plan, submissions, output, name, below)
 
 
-def _claims(plan: Plan, submissions: Sequence[Path], folder: Path | None, name: Callable[[Path], str]) -> list[Output]:
+def _claims(
+    plan: Plan, submissions: Sequence[Path], folder: Path | None, name: Callable[[Path], str], below: Below
+) -> list[Output]:
     """Return the output of each submission in a folder, or in its own.
 
     What seems to be of our own making comes last: as a rule it is skipped, and it takes no name from a submission.
@@ -136,8 +165,13 @@ def _claims(plan: Plan, submissions: Sequence[Path], folder: Path | None, name: 
     claimed: dict[int, Output] = {}
     for index in sorted(range(len(submissions)), key=lambda index: is_made_by_name(submissions[index])):
         path = submissions[index]
+        place = path.parent if folder is None else folder / below.get(path, "")
+        if folder is not None and path in below:
+            # What cannot be made is known to its output, and raised when it is needed.
+            with contextlib.suppress(OSError):
+                place.mkdir(parents=True, exist_ok=True)
         # Not with_name: `.` and `/` have no name; reading them says that they are folders.
-        claimed[index] = plan.claim((path.parent if folder is None else folder) / name(path))
+        claimed[index] = plan.claim(place / name(path))
     return [claimed[index] for index in range(len(submissions))]
 
 

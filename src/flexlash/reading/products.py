@@ -23,6 +23,7 @@ __all__ = [
     "CHECKED_NAME",
     "FIXED_NAME",
     "REPORT_NAME",
+    "SUMMARY_NAME",
     "Companions",
     "digests_of",
     "fixed_role",
@@ -31,13 +32,20 @@ __all__ = [
     "made_of",
     "require_submission",
     "results_header",
+    "stamped_product",
 ]
 
 REPORT_NAME, CHECKED_NAME, FIXED_NAME = "-report", "-checked", "-mended"
 """What flexlash puts behind the name of a submission."""
 
+SUMMARY_NAME = "flexlash-summary"
+"""How the summary of all submissions is called in the folder of their reports."""
+
 _MADE = re.compile(rf"(?P<stem>.+)(?P<what>{REPORT_NAME}|{CHECKED_NAME}|{FIXED_NAME})(?: \(\d+\))?")
 _FIXED = "mended"
+_PRODUCTS = {"report": "I508", "summary": "I508", "results": "I527", "checked": "I513"}
+"""By its role, the finding that says why a file that flexlash wrote is skipped."""
+
 _RESULTS = tuple(column.key for column in result_columns(cross_check=False, elasticity=False))
 _LARGEST = 2**27
 """Largest file whose digest is taken to find out whether it is the original of a fixed one [bytes]."""
@@ -126,14 +134,19 @@ def is_replaced(role: str, path: Path, given: Collection[Path], *, marked_copies
     return bool(_code(role, companions, marked_copies=marked_copies))
 
 
+def stamped_product(role: str, *, marked_copies: bool) -> str:
+    """Return why a file with this role in its stamp is skipped, whatever else is given; else an empty text.
+
+    >>> stamped_product("report", marked_copies=False), stamped_product("checked", marked_copies=True)
+    ('I508', '')
+    """
+    return "" if role == "checked" and marked_copies else _PRODUCTS.get(role, "")
+
+
 def _code(role: str, companions: Companions, *, marked_copies: bool) -> str:
     kind, _, original = role.partition(" ")
-    if kind == "report":
-        return "I508"
-    if kind == "results":
-        return "I527"
-    if kind == "checked" and not marked_copies:
-        return "I513"
+    if code := stamped_product(kind, marked_copies=marked_copies):
+        return code
     is_copy = kind == _FIXED and (companions.original or original in companions.digests)
     return "I526" if is_copy else ""
 

@@ -5,7 +5,7 @@ with that word's digits as 0. It stands where other programs do not look, and ar
 
 - .xlsx, .xlsm: the comment at the end of the archive, which every program drops that saves the workbook;
 - .parquet: the metadata of the footer, under the key `flexlash`;
-- .json: the key `stamp`, the last of the file.
+- .json: the key `stamp`, the last of the file; .jsonl: the same key, of the last line.
 
 A .csv has no such place.
 """
@@ -39,8 +39,8 @@ def placeholder(role: str) -> str:
 def stamped(data: bytes, role: str) -> bytes:
     """Return a file's bytes with its stamp, where they have room for one; the same bytes for the same bytes.
 
-    `role` says what the file is: `report`, `results`, `checked`, `recreated`, or `mended` and the SHA-256 of the
-    submission that was mended.
+    `role` says what the file is: `report`, `results`, `checked`, `recreated`, `summary`, or `mended` and the SHA-256 of
+    the submission that was mended.
     """
     file = io.BytesIO(data)
     stamp(file, role)
