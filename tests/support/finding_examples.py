@@ -24,8 +24,8 @@ from flexlash.schema.findings import Finding
 
 __all__ = ["PENDING", "SUBMISSIONS", "examples"]
 
-PENDING = frozenset({"E118"})
-"""Codes that may stand in the catalogue without an example; E118 needs a fault of the program itself."""
+PENDING = frozenset({"E118", "E334"})
+"""Codes that may stand in the catalogue without an example; both need a fault of the program itself."""
 
 CUP: dict[str, Any] = {
     "variant": "C-1",

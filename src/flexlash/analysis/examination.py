@@ -55,9 +55,13 @@ def opened(given: str | Path | Source | ReadReport, options: Options) -> Source 
 
 
 def examined(
-    source: Source | ReadReport | Refusal, options: Options, tables: Mapping[str, Source] | None = None
+    source: Source | ReadReport | Refusal,
+    options: Options,
+    tables: Mapping[str, Source] | None = None,
+    *,
+    numbers: bool = True,
 ) -> Examined:
-    """Return what the limited process finds in a submission, with its bytes.
+    """Return what the limited process finds in a submission, with its bytes; `numbers` says whether it is computed.
 
     `tables` are those beside it, by the sheet that each replaces; those that the options name where they are None.
     """
@@ -67,7 +71,7 @@ def examined(
     try:
         asked = replace(options, progress=None, marked_copy=None)
         beside = tables_beside(options) if tables is None else tables
-        found = ask(_validated, limits, source, beside, asked, then=_with_numbers)
+        found = ask(_validated, limits, source, beside, asked, then=_with_numbers if numbers else None)
     except Refusal as refusal:
         return _refused(source.name, source.data, refusal)
     return replace(found, submission=replace(found.submission, data=source.data))

@@ -22,7 +22,7 @@ from flexlash.validation.validated import Blocked, Validated
 if TYPE_CHECKING:
     import polars as pl
 
-__all__ = ["Outcome", "Written"]
+__all__ = ["Outcome", "Written", "exit_code_of"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,13 +116,17 @@ class Outcome:
     @property
     def exit_code(self) -> ExitCode:
         """With which code a command ends that computes this submission alone."""
-        counts = self.counts
         if self.fault is not None:
             return ExitCode.NO_FILE
-        if not self.computed:
-            return ExitCode.NOTHING
-        if counts["computed"] < counts["rows"] or counts["errors"]:
-            return ExitCode.SOME_ROWS
-        if self.options.fail_over_limit and counts["marginal"] + counts["fails"]:
-            return ExitCode.OVER_LIMIT
-        return ExitCode.FINE
+        return exit_code_of(self.counts, fail_over_limit=self.options.fail_over_limit)
+
+
+def exit_code_of(counts: Mapping[str, int], *, fail_over_limit: bool) -> ExitCode:
+    """Return with which code a command ends for a submission of these counts whose files could all be written."""
+    if not counts["computed"]:
+        return ExitCode.NOTHING
+    if counts["computed"] < counts["rows"] or counts["errors"]:
+        return ExitCode.SOME_ROWS
+    if fail_over_limit and counts["marginal"] + counts["fails"]:
+        return ExitCode.OVER_LIMIT
+    return ExitCode.FINE

@@ -4,26 +4,36 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flexlash.analysis.outcome import Outcome, Written
 from flexlash.schema.cell_addresses import cell_ranges
 from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.finding_catalogue import Level
 from flexlash.schema.findings import CATALOGUE, Finding, shown
 from flexlash.schema.limit_verdict import BOUNDS, VERDICTS, misses_limit
 from flexlash.schema.number_words import ALL_UNITS, angle_words, rounded, share_words
 from flexlash.validation.blocking_errors import waiting_rows
 
+if TYPE_CHECKING:
+    import polars as pl
+
 __all__ = [
+    "FindingGroup",
+    "SpreadNotes",
     "angle_words",
     "are",
+    "by_rule",
     "closing_lines",
     "counted",
     "detail_lines",
     "dimension_words",
     "finding_lines",
+    "group_lines",
     "limit_lines",
+    "lines_of_limits",
     "listed",
     "points_range",
     "points_words",
@@ -33,7 +43,10 @@ __all__ = [
     "spread_notes",
     "state_words",
     "summary_lines",
+    "to_fix",
     "to_fix_words",
+    "words_of_fixes",
+    "words_of_state",
     "worst_first",
 ]
 
@@ -56,22 +69,56 @@ def dimension_words(name: str) -> str:
     return text if text.startswith(("Young", "Poisson")) else text[0].lower() + text[1:]
 
 
-def finding_lines(findings: Sequence[Finding]) -> Iterator[tuple[str, str]]:
-    """Yield level (empty for details) and line: findings grouped by rule, worst first, with count and ranges."""
+@dataclass(frozen=True, kw_only=True)
+class FindingGroup:
+    """Findings of one rule in one sheet: how many, at how many cells, the first of these and the first of them."""
+
+    level: Level
+    code: str
+    sheet: str
+    count: int
+    cells: int
+    ranges: str
+    first: tuple[Finding, ...]
+
+
+def by_rule(findings: Iterable[Finding]) -> list[FindingGroup]:
+    """Return findings by rule and sheet, worst first."""
     groups: dict[tuple[int, str, str], list[Finding]] = defaultdict(list)
     for found in findings:
         groups[_LEVELS.index(found.level), found.code, found.sheet].append(found)
-    for (_, code, sheet), group in sorted(groups.items()):
-        level = group[0].level
-        cells = {found.address for found in group if found.address}
-        where = f", {counted(len(cells), 'cell')}: {shown(sheet)}!{cell_ranges(cells)}" if cells else ""
-        yield level, f"{level} {code} {CATALOGUE[code].title}{where}"
-        for found in group[:_SHOWN_MESSAGES]:
+    return [_group(group) for _, group in sorted(groups.items())]
+
+
+def _group(findings: Sequence[Finding]) -> FindingGroup:
+    cells = {found.address for found in findings if found.address}
+    return FindingGroup(
+        level=findings[0].level,
+        code=findings[0].code,
+        sheet=findings[0].sheet,
+        count=len(findings),
+        cells=len(cells),
+        ranges=cell_ranges(cells),
+        first=tuple(findings[:_SHOWN_MESSAGES]),
+    )
+
+
+def finding_lines(findings: Iterable[Finding]) -> Iterator[tuple[str, str]]:
+    """Yield level (empty for details) and line: findings by_rule by rule, worst first, with count and ranges."""
+    return group_lines(by_rule(findings), "the marked copy (check --annotate) lists them all")
+
+
+def group_lines(groups: Iterable[FindingGroup], all_listed: str) -> Iterator[tuple[str, str]]:
+    """Yield the same of findings that are by_rule already; `all_listed` says what lists all of them."""
+    for group in groups:
+        where = f", {counted(group.cells, 'cell')}: {shown(group.sheet)}!{group.ranges}" if group.cells else ""
+        yield group.level, f"{group.level} {group.code} {CATALOGUE[group.code].title}{where}"
+        for found in group.first:
             yield "", f"    {found.message}"
-        if len(group) > _SHOWN_MESSAGES:
-            whole = "" if level == "info" else "; the marked copy (check --annotate) lists them all"
-            yield "", f"    … and {len(group) - _SHOWN_MESSAGES} more of the same kind{whole}"
-        for fix in dict.fromkeys(found.fix for found in group[:_SHOWN_MESSAGES]):
+        if group.count > len(group.first):
+            whole = "" if group.level == "info" else f"; {all_listed}"
+            yield "", f"    … and {group.count - len(group.first)} more of the same kind{whole}"
+        for fix in dict.fromkeys(found.fix for found in group.first):
             if not fix.startswith(_NO_MEND):
                 yield "", f"    Mend: {fix}"
 
@@ -85,11 +132,15 @@ def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
 
 def state_words(outcome: Outcome, *, ran: bool) -> str:
     """Return how much of a submission was computed, or is ready to be, and what is to mend."""
-    counts = outcome.counts
+    return words_of_state(outcome.counts, to_fix_words(outcome.findings), _waiting_words(outcome), ran=ran)
+
+
+def words_of_state(counts: Mapping[str, int], to_fix: str, waiting: Iterable[str], *, ran: bool) -> str:
+    """Return the same of counts, and of how much there is to fix and what waits for what in words."""
     rows, computed = counts["rows"], counts["computed"]
     ready = f"{computed} of {rows} rows {'computed' if ran else 'ready'}" if rows else "nothing to compute"
     warned = counted(counts["warnings"], "warning") if counts["warnings"] else ""
-    return "; ".join(filter(None, [ready, to_fix_words(outcome.findings), *_waiting_words(outcome), warned]))
+    return "; ".join(filter(None, [ready, to_fix, *waiting, warned]))
 
 
 def detail_lines(outcome: Outcome, *, ran: bool) -> list[str]:
@@ -141,13 +192,25 @@ def _next_step(counts: Mapping[str, int], name: str) -> str:
     return f"flexlash run {name}"
 
 
-def to_fix_words(findings: Sequence[Finding]) -> str:
+def to_fix_words(findings: Iterable[Finding]) -> str:
     """Return how much there is to fix: `5 cells to fix`, an empty text where there is nothing."""
+    return words_of_fixes(*to_fix(findings))
+
+
+def to_fix(findings: Iterable[Finding]) -> tuple[int, int]:
+    """Return at how many cells there are errors, and how many have no cell."""
     errors = [found for found in findings if found.level == "error"]
-    cells = len({(found.sheet, found.cell) for found in errors if found.cell})
-    others = sum(not found.cell for found in errors)
+    return len({(found.sheet, found.cell) for found in errors if found.cell}), sum(not found.cell for found in errors)
+
+
+def words_of_fixes(cells: int, others: int) -> str:
+    """Return in words how many cells and other problems there are to fix.
+
+    >>> words_of_fixes(5, 0), words_of_fixes(0, 0)
+    ('5 cells to fix', '')
+    """
     words = [counted(cells, "cell") if cells else "", f"{counted(others, 'problem')} of the file" if others else ""]
-    return f"{' and '.join(filter(None, words))} to fix" if errors else ""
+    return f"{' and '.join(filter(None, words))} to fix" if cells or others else ""
 
 
 def counted(count: int, what: str) -> str:
@@ -179,7 +242,11 @@ def listed(words: Sequence[str], most: int) -> str:
 
 def limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
     """Yield how many variants meet their limits, and by name the worst of those that do not."""
-    counts = outcome.counts
+    yield from lines_of_limits(outcome.counts, worst_first(outcome), most)
+
+
+def lines_of_limits(counts: Mapping[str, int], worst: Iterable[Mapping[str, Any]], most: int = 3) -> Iterator[str]:
+    """Yield the same of counts and of the worst rows of Results, worst first."""
     judged = sum(counts[verdict] for verdict in VERDICTS)
     if not judged:
         return
@@ -188,7 +255,7 @@ def limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
         f"{BOUNDS['meets']:.3%} of units over it); marginal: {counts['marginal']} (at most {BOUNDS['marginal']:.1%}); "
         f"not met: {counts['fails']}."
     ).replace("%", " %")
-    over = [row for row in worst_first(outcome) if misses_limit(row["probability_over_limit"])]
+    over = [row for row in worst if misses_limit(row["probability_over_limit"])]
     for row in over[:most]:
         words = share_words(row)
         units = f"{words} units" if words in ALL_UNITS else f"{words} of units"
@@ -211,24 +278,67 @@ def points_range(counts: Sequence[float], what: str) -> str:
     return f"{least} {what}" if least == most else f"{least} to {most} {what}"
 
 
-def spread_notes(outcome: Outcome) -> Iterator[str]:
-    """Yield what a reader must know of how the spread was found: other methods, precision missed, cross-check."""
-    results = outcome.results
-    noted = results.filter(results["spread_note"].is_not_null())
-    if noted.height:
-        first = noted.row(0, named=True)
-        more = f" and {noted.height - 1} more, see Results" if noted.height > 1 else ""
-        yield f"Spread of {quoted(shown(first['variant'], longest=_NAME))}: {first['spread_note']}{more}."
-    if "cross_check" in results.columns:
+@dataclass(frozen=True, kw_only=True)
+class SpreadNotes:
+    """What is to be said of how the spread of some rows was found.
+
+    So many rows have a note, of which `variant` and `note` are the first; so many were cross-checked and agree, with
+    the `greatest` difference in combined standard errors.
+    """
+
+    noted: int = 0
+    variant: str = ""
+    note: str = ""
+    checked: int = 0
+    agreeing: int = 0
+    greatest: float = 0.0
+
+    @classmethod
+    def of(cls, results: pl.DataFrame) -> SpreadNotes:
+        """Return what is to be said of the rows of Results."""
+        noted = results.filter(results["spread_note"].is_not_null())
+        first = noted.row(0, named=True) if noted.height else {"variant": "", "spread_note": ""}
+        notes = cls(noted=noted.height, variant=first["variant"], note=first["spread_note"])
+        if "cross_check" not in results.columns:
+            return notes
         checked = results.filter(results["cross_check"].is_not_null())
-        agreeing = (checked["cross_check"] == "agrees").sum()
-        if outcome.settings.method == "random":
+        return replace(
+            notes,
+            checked=checked.height,
+            agreeing=int((checked["cross_check"] == "agrees").sum()),
+            greatest=max(checked["cross_check_deviation"].to_list(), default=0.0),
+        )
+
+    def __add__(self, later: SpreadNotes) -> SpreadNotes:
+        """Return what is to be said of these rows and of later ones together."""
+        first = self if self.noted else later
+        return SpreadNotes(
+            noted=self.noted + later.noted,
+            variant=first.variant,
+            note=first.note,
+            checked=self.checked + later.checked,
+            agreeing=self.agreeing + later.agreeing,
+            greatest=max(self.greatest, later.greatest),
+        )
+
+    def lines(self, *, cross_check: bool, method: str) -> Iterator[str]:
+        """Yield what a reader must know of how the spread was found: other methods, precision missed, cross-check."""
+        if self.noted:
+            more = f" and {self.noted - 1} more, see Results" if self.noted > 1 else ""
+            yield f"Spread of {quoted(shown(self.variant, longest=_NAME))}: {self.note}{more}."
+        if cross_check and method == "random":
             yield "The spread is plain Monte Carlo itself: there is nothing to cross-check it with."
-        elif checked.height:
+        elif self.checked:
             yield (
-                f"Plain Monte Carlo agrees for {agreeing} of {checked.height} variants; the greatest difference is "
-                f"{max(checked['cross_check_deviation'].to_list()):.1f} combined standard errors."
+                f"Plain Monte Carlo agrees for {self.agreeing} of {self.checked} variants; the greatest difference is "
+                f"{self.greatest:.1f} combined standard errors."
             )
+
+
+def spread_notes(outcome: Outcome) -> Iterator[str]:
+    """Yield what a reader must know of how the spread of an outcome was found."""
+    notes, cross_check = SpreadNotes.of(outcome.results), "cross_check" in outcome.results.columns
+    return notes.lines(cross_check=cross_check, method=outcome.settings.method)
 
 
 def worst_first(outcome: Outcome) -> list[dict[str, Any]]:

@@ -13,13 +13,13 @@ from flexlash.reading.inside_limits import Fault
 from flexlash.reading.read import Source
 from flexlash.schema.exit_codes import ExitCode
 
-__all__ = ["Answer", "Command", "FileBytes", "Task", "WorstVariant"]
+__all__ = ["Answer", "Command", "FileBytes", "Task", "Travelling", "WorstVariant"]
 
 Command = Literal["check", "mend", "run"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Travelling:
+class Travelling:
     """A record that goes from process to process as bytes."""
 
     def as_bytes(self) -> bytes:
@@ -33,7 +33,7 @@ class _Travelling:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Task(_Travelling):
+class Task(Travelling):
     """A submission and what is to be done with it.
 
     `tables` stand beside it, by the sheet that each replaces. `report` is how the report's name ends, `copy` how the
@@ -71,7 +71,7 @@ class WorstVariant:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(_Travelling):
+class Answer(Travelling):
     """What came of a submission.
 
     `told` is what `--json` prints of it but its outputs, `finding_lines` and `details` are lines for the screen,

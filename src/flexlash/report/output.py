@@ -9,9 +9,13 @@ from flexlash.analysis.outcome import Outcome
 from flexlash.report.results_table import csv_text, results_table
 from flexlash.schema.stamps import placeholder
 
-__all__ = ["outcome_bytes"]
+__all__ = ["ROLE", "ROWS_TOGETHER", "outcome_bytes"]
 
-_ROLE = "results"
+ROLE = "results"
+"""What the stamp of a table of Results says that it is."""
+
+ROWS_TOGETHER = 2**17
+"""Rows of a row group of Parquet: so many have to be held at once, however many there are."""
 
 
 def outcome_bytes(outcome: Outcome, ending: str) -> tuple[bytes, str]:
@@ -20,7 +24,7 @@ def outcome_bytes(outcome: Outcome, ending: str) -> tuple[bytes, str]:
         from flexlash.report.workbook import report_bytes
 
         return report_bytes(outcome), "report"
-    return _TABLES[ending](outcome), _ROLE
+    return _TABLES[ending](outcome), ROLE
 
 
 def _as_csv(outcome: Outcome) -> bytes:
@@ -31,7 +35,7 @@ def _as_csv(outcome: Outcome) -> bytes:
 def _as_parquet(outcome: Outcome) -> bytes:
     """Return the Results as Parquet, with room for the stamp in the metadata."""
     buffer = io.BytesIO()
-    results_table(outcome).write_parquet(buffer, metadata={"flexlash": placeholder(_ROLE)})
+    results_table(outcome).write_parquet(buffer, row_group_size=ROWS_TOGETHER, metadata={"flexlash": placeholder(ROLE)})
     return buffer.getvalue()
 
 
@@ -40,7 +44,7 @@ def _as_json(outcome: Outcome) -> bytes:
     content = {
         "results": results_table(outcome).to_dicts(),
         "findings": [content.as_dictionary() for content in outcome.findings],
-        "stamp": placeholder(_ROLE),
+        "stamp": placeholder(ROLE),
     }
     return (json.dumps(content, ensure_ascii=False, indent=1) + "\n").encode()
 

@@ -14,7 +14,7 @@ from flexlash.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Percent
 from flexlash.schema.result_columns import result_columns
 from flexlash.schema.unused_names import unused_name
 
-__all__ = ["csv_text", "results_table"]
+__all__ = ["csv_header", "csv_rows", "csv_text", "results_table"]
 
 _NUMBER = re.compile(r"-?(?:0|[1-9]\d*)(?:\.\d+)?(?:[eE][+-]\d{1,3})?", re.ASCII)
 """A text of a CSV file that is a number and no part number such as 007 or 12E5."""
@@ -115,10 +115,18 @@ def _clean(text: str) -> str:
 
 def csv_text(table: pl.DataFrame) -> str:
     """Return a table as CSV in which every text is quoted and none can act as a formula, whatever separates cells."""
-    header = pl.select(_inert(pl.lit(pl.Series(table.columns)))).to_series()
-    first = ",".join('"' + name.replace('"', '""') + '"' for name in header)
-    rows = table.with_columns(_inert(pl.col(pl.String))).write_csv(quote_style="non_numeric", include_header=False)
-    return f"{first}\n{rows}"
+    return csv_header(table.columns) + csv_rows(table)
+
+
+def csv_header(columns: Sequence[str]) -> str:
+    """Return the header line of a table as `csv_text` writes it."""
+    header = pl.select(_inert(pl.lit(pl.Series(columns, dtype=pl.String)))).to_series()
+    return ",".join('"' + name.replace('"', '""') + '"' for name in header) + "\n"
+
+
+def csv_rows(table: pl.DataFrame) -> str:
+    """Return the rows of a table as `csv_text` writes them."""
+    return table.with_columns(_inert(pl.col(pl.String))).write_csv(quote_style="non_numeric", include_header=False)
 
 
 def _inert(texts: pl.Expr) -> pl.Expr:

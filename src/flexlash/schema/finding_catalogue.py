@@ -587,6 +587,15 @@ CATALOGUE = _rules(
         "meant: micrometres entered as millimetres, for instance.",
     ),
     (
+        "E334",
+        "row that stops its process",
+        "{place}: computing this row stopped its process three times, so that nothing of it was computed.",
+        "Look for a value that cannot be meant; if the row is in order, compute it alone and report the fault.",
+        "A large table is computed in chunks. A chunk that loses its process three times is halved until the row is "
+        "found; all other rows are computed. This is a fault of the program or of the machine, such as too little "
+        "memory, not of the file.",
+    ),
+    (
         "W401",
         "disk does not meet the wall",
         "{place} {name} = {value} mm differs from the mean radius {other} mm.",

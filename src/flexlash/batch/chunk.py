@@ -1,0 +1,131 @@
+"""A chunk of a large table: what goes to a worker and what comes back; what it takes to compute is loaded there."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from flexlash.analysis.options import Options
+from flexlash.analysis.run_summary import FindingGroup, SpreadNotes
+from flexlash.batch.answer import Travelling
+from flexlash.reading.inside_limits import Fault
+from flexlash.reading.read import Source
+from flexlash.schema.findings import Finding
+from flexlash.schema.limit_verdict import Verdict
+
+__all__ = ["FIRST_FINDINGS", "ChunkAnswer", "ChunkSummary", "ChunkTask", "WorstRow", "compute_chunk"]
+
+FIRST_FINDINGS = 1000
+"""Most findings of a large table that are told one by one; a table beside its Results holds all of them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChunkTask(Travelling):
+    """Rows of a large table, as a table of their own under their true row numbers, and what is to be done with them.
+
+    `tables` stand beside it, by the sheet that each replaces. `spread` says whether it is sampled; `ending` is that of
+    the file of which the chunk's Results will be a part, empty where none is wanted. `passed_over` says that the rows
+    stopped their process and are read, but not computed.
+    """
+
+    source: Source
+    options: Options
+    tables: Mapping[str, Source] = field(default_factory=dict)
+    spread: bool = True
+    ending: str = ""
+    passed_over: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class WorstRow:
+    """A computed row by its number in the table, with what it is ordered by; what is told of it where it is named."""
+
+    share: float
+    reach: float
+    row: int
+    told: Mapping[str, Any] | None = None
+
+    @property
+    def order(self) -> tuple[float, float, int]:
+        """What sorts rows worst first, as `worst_rows` does."""
+        return -self.share, -self.reach, self.row
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChunkSummary:
+    """What is counted and told of a chunk.
+
+    `refusal` says why it is no readable submission, or is skipped; then there is nothing else. `columns` are those of
+    its Results. `own` are the first findings at its rows, by `rules` and `groups` there are more; `before` and `after`
+    are the findings of the whole file that come before and after those. `to_fix` is at how many cells of its rows there
+    are errors; `waiting` says how many of its rows wait for which material or class, by kind and name. `worst` are its
+    worst rows.
+    """
+
+    rows: int = 0
+    computed: int = 0
+    refusal: Finding | None = None
+    skipped: bool = False
+    seed: int = 0
+    method: str = ""
+    columns: tuple[str, ...] = ()
+    verdicts: Mapping[Verdict, int] = field(default_factory=dict)
+    unsettled: Mapping[Verdict, int] = field(default_factory=dict)
+    rules: Mapping[str, int] = field(default_factory=dict)
+    groups: tuple[FindingGroup, ...] = ()
+    before: tuple[Finding, ...] = ()
+    own: tuple[Finding, ...] = ()
+    after: tuple[Finding, ...] = ()
+    to_fix: int = 0
+    waiting: tuple[tuple[str, str, int], ...] = ()
+    worst: tuple[WorstRow, ...] = ()
+    notes: SpreadNotes = field(default_factory=SpreadNotes)
+    cross_checked: bool = False
+
+    def as_bytes(self) -> bytes:
+        """Return the summary as JSON: it is kept on the disk, where anybody may change it."""
+        return json.dumps(asdict(self), ensure_ascii=False).encode()
+
+    @classmethod
+    def of(cls, data: bytes) -> ChunkSummary:
+        """Return the summary that `as_bytes` returned."""
+        known = json.loads(data)
+        known |= {key: tuple(Finding(**one) for one in known[key]) for key in ("before", "own", "after")}
+        known["groups"] = tuple(
+            FindingGroup(**{**one, "first": tuple(Finding(**found) for found in one["first"])})
+            for one in known["groups"]
+        )
+        known["waiting"] = tuple((kind, name, rows) for kind, name, rows in known["waiting"])
+        known["worst"] = tuple(WorstRow(**one) for one in known["worst"])
+        known["columns"], known["notes"] = tuple(known["columns"]), SpreadNotes(**known["notes"])
+        known["refusal"] = known["refusal"] and Finding(**known["refusal"])
+        return cls(**known)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChunkAnswer(Travelling):
+    """What came of a chunk: its summary, its part of Results in the form that is wanted, its part of the findings.
+
+    `fault` says that the program failed; then there is nothing else.
+    """
+
+    summary: bytes = b""
+    results: bytes = b""
+    findings: bytes = b""
+    fault: Fault | None = None
+
+
+def compute_chunk(task: bytes) -> bytes:
+    """Return what came of a chunk, both as bytes; the same bytes for the same bytes, and nothing is written.
+
+    A fault of the program is an answer as well.
+    """
+    try:
+        from flexlash.batch.chunk_computing import answered
+
+        return answered(ChunkTask.of(task)).as_bytes()
+    except BaseException as failed:  # noqa: BLE001
+        # A panic of polars is no Exception.
+        return ChunkAnswer(fault=Fault.of(failed)).as_bytes()

@@ -1,0 +1,138 @@
+"""Inside a worker: the rows of a chunk → their part of Results and of the findings, and what is counted of them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+import polars as pl
+
+from flexlash.analysis.computed import Nominal
+from flexlash.analysis.examination import Examined, examined
+from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.run_result import outcome_of
+from flexlash.analysis.run_summary import SpreadNotes, by_rule, to_fix
+from flexlash.analysis.whole_batch import DRAWN, verdicts_of, worst_rows
+from flexlash.batch.chunk import FIRST_FINDINGS, ChunkAnswer, ChunkSummary, ChunkTask, WorstRow
+from flexlash.pipeline import computed
+from flexlash.report.results_pieces import piece
+from flexlash.report.results_table import csv_rows, results_table
+from flexlash.schema.findings import Finding, finding
+from flexlash.validation.blocking_errors import waiting_rows
+from flexlash.validation.validated import Table
+
+__all__ = ["answered", "findings_text"]
+
+_NAMED = 3
+"""Worst variants that are told by name."""
+
+_TOLD = (
+    "variant", "p99_865_arcmin", "backlash_limit_arcmin", "probability_over_limit", "probability_over_limit_low",
+    "probability_over_limit_high",
+)  # fmt: skip
+"""What is told of a variant that is among the worst."""
+
+
+def answered(task: ChunkTask) -> ChunkAnswer:
+    """Return what came of a chunk."""
+    outcome = _outcome(task)
+    validated = outcome.validated
+    table = validated.table if validated else None
+    if validated is None or outcome.submission.kind == "refused":
+        refused = ChunkSummary(refusal=outcome.findings[0], skipped=outcome.skipped)
+        return ChunkAnswer(summary=refused.as_bytes())
+    before, own, after = _by_place(outcome, table)
+    summary = ChunkSummary(
+        rows=len(validated.submitted),
+        computed=len(outcome.computed),
+        seed=outcome.settings.seed,
+        method=outcome.settings.method,
+        rules=Counter(found.code for found in own),
+        groups=tuple(by_rule(own)),
+        before=before,
+        own=own[:FIRST_FINDINGS],
+        after=after,
+        to_fix=to_fix(own)[0],
+        waiting=tuple(
+            (one.kind, one.name, len(one.rows)) for one in (waiting_rows(table, outcome.blocked) if table else ())
+        ),
+    )
+    results = b""
+    if task.spread:
+        summary = _with_spread(summary, outcome, table)
+    if task.ending and table:
+        rows = results_table(outcome)
+        results, summary = piece(rows, task.ending), replace(summary, columns=tuple(rows.columns))
+    return ChunkAnswer(summary=summary.as_bytes(), results=results, findings=findings_text(own))
+
+
+def _outcome(task: ChunkTask) -> Outcome:
+    """Return what came of the rows of a chunk."""
+    if task.passed_over:
+        return outcome_of(_passed_over(examined(task.source, task.options, task.tables, numbers=False)))
+    if task.spread:
+        return computed(task.source, task.options, task.tables)
+    return outcome_of(examined(task.source, task.options, task.tables))
+
+
+def _passed_over(found: Examined) -> Examined:
+    """Return rows that were read, with the finding that says why nothing of them is computed."""
+    table = found.validated.table if found.validated else None
+    if table is None:
+        return found
+    findings = tuple(
+        finding("E334", sheet=table.sheet, cell=table.address(row, "variant"), column="variant")
+        for row in table.frame["row"]
+    )
+    return replace(found, nominal=Nominal(findings=findings))
+
+
+def _by_place(outcome: Outcome, table: Table | None) -> tuple[tuple[Finding, ...], ...]:
+    """Return the findings of the file that come before those at the rows of a chunk, these, and those that follow."""
+    if table is None:
+        return outcome.findings, (), ()
+    sheets = [*outcome.submission.sheets]
+    later = {*sheets[sheets.index(table.sheet) + 1 :]}
+    places: dict[int, list[Finding]] = {-1: [], 0: [], 1: []}
+    for found in outcome.findings:
+        is_own = found.sheet == table.sheet and found.row > table.heading.row
+        places[0 if is_own else 1 if found.sheet in later else -1].append(found)
+    return tuple(places[-1]), tuple(places[0]), tuple(places[1])
+
+
+def _with_spread(summary: ChunkSummary, outcome: Outcome, table: Table | None) -> ChunkSummary:
+    """Return a summary with what the spread says."""
+    verdicts, unsettled = verdicts_of(outcome.results)
+    return replace(
+        summary,
+        verdicts=verdicts,
+        unsettled=unsettled,
+        worst=_worst(outcome.results, table) if table else (),
+        notes=SpreadNotes.of(outcome.results),
+        cross_checked="cross_check" in outcome.results.columns,
+    )
+
+
+def _worst(results: pl.DataFrame, table: Table) -> tuple[WorstRow, ...]:
+    """Return the worst rows of a chunk, worst first, the first few with what is told of them."""
+    rows = worst_rows(results.with_columns(table.frame["row"].alias("row")), DRAWN)
+    found = []
+    for place, row in enumerate(rows.select("row", *_TOLD).iter_rows(named=True)):
+        limit = row["backlash_limit_arcmin"]
+        found.append(
+            WorstRow(
+                share=-1.0 if limit is None else row["probability_over_limit"],
+                reach=row["p99_865_arcmin"] / (limit or 1.0),
+                row=row["row"],
+                told={key: row[key] for key in _TOLD} if place < _NAMED else None,
+            )
+        )
+    return tuple(found)
+
+
+def findings_text(findings: Sequence[Finding]) -> bytes:
+    """Return findings as lines of CSV, in which no text can act as a formula."""
+    if not findings:
+        return b""
+    return csv_rows(pl.DataFrame([found.as_dictionary() for found in findings])).encode()
