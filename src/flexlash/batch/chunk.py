@@ -8,14 +8,27 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from flexlash.analysis.options import Options
-from flexlash.analysis.run_summary import FindingGroup, SpreadNotes
+from flexlash.analysis.run_summary import FindingGroup, SpreadNotes, by_rule
+from flexlash.analysis.whole_batch import WholeBatch
 from flexlash.batch.answer import Travelling
-from flexlash.reading.inside_limits import Fault
 from flexlash.reading.read import Source
-from flexlash.schema.findings import Finding
+from flexlash.schema.cell_addresses import CellAddress
+from flexlash.schema.findings import Finding, finding
 from flexlash.schema.limit_verdict import Verdict
 
-__all__ = ["FIRST_FINDINGS", "ChunkAnswer", "ChunkSummary", "ChunkTask", "WorstRow", "compute_chunk"]
+__all__ = [
+    "FIRST_FINDINGS",
+    "ChunkAnswer",
+    "ChunkSummary",
+    "ChunkTask",
+    "FindingsTask",
+    "ReportTask",
+    "WorstRow",
+    "blank_row",
+    "compute_chunk",
+    "list_findings",
+    "report_worst",
+]
 
 FIRST_FINDINGS = 1000
 """Most findings of a large table that are told one by one; a table beside its Results holds all of them."""
@@ -106,26 +119,62 @@ class ChunkSummary:
 
 @dataclass(frozen=True, kw_only=True)
 class ChunkAnswer(Travelling):
-    """What came of a chunk: its summary, its part of Results in the form that is wanted, its part of the findings.
+    """What came of a chunk: its summary, its part of Results in the form that is wanted, its part of the findings."""
 
-    `fault` says that the program failed; then there is nothing else.
-    """
-
-    summary: bytes = b""
+    summary: bytes
     results: bytes = b""
     findings: bytes = b""
-    fault: Fault | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportTask(Travelling):
+    """The worst rows of a large table, as a table of their own, for the report that stands for the whole."""
+
+    source: Source
+    options: Options
+    tables: Mapping[str, Source]
+    whole: WholeBatch
+
+
+@dataclass(frozen=True, kw_only=True)
+class FindingsTask(Travelling):
+    """The first findings of a large table of this name, for a workbook that lists them.
+
+    `counted` says in words how many there are, `findings_file` names the table that holds all of them.
+    """
+
+    name: str
+    findings: tuple[Finding, ...]
+    counted: str
+    findings_file: str
+    macros: bool
 
 
 def compute_chunk(task: bytes) -> bytes:
-    """Return what came of a chunk, both as bytes; the same bytes for the same bytes, and nothing is written.
+    """Return what came of a chunk, both as bytes; the same bytes for the same bytes, and nothing is written."""
+    from flexlash.batch.chunk_computing import answered
 
-    A fault of the program is an answer as well.
-    """
-    try:
-        from flexlash.batch.chunk_computing import answered
+    return answered(ChunkTask.of(task)).as_bytes()
 
-        return answered(ChunkTask.of(task)).as_bytes()
-    except BaseException as failed:  # noqa: BLE001
-        # A panic of polars is no Exception.
-        return ChunkAnswer(fault=Fault.of(failed)).as_bytes()
+
+def report_worst(task: bytes) -> bytes:
+    """Return the report of the worst rows of a large table."""
+    from flexlash.batch.chunk_computing import report_of_worst
+
+    return report_of_worst(ReportTask.of(task))
+
+
+def list_findings(task: bytes) -> bytes:
+    """Return the workbook of the first findings of a large table."""
+    from flexlash.batch.chunk_computing import findings_listed
+
+    return findings_listed(FindingsTask.of(task))
+
+
+def blank_row(row: int) -> tuple[ChunkSummary, bytes, bytes]:
+    """Return what is said of a row that cannot even be read: a summary, its finding as in Results and as in a table."""
+    from flexlash.report.findings_table import findings_rows
+
+    found = finding("E334", sheet="Variants", cell=CellAddress(row=row, column=1))
+    summary = ChunkSummary(rows=1, rules={found.code: 1}, groups=tuple(by_rule([found])), own=(found,), to_fix=1)
+    return summary, f"{found.code} {found.cell}".encode(), findings_rows([found])

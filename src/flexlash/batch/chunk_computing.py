@@ -3,26 +3,38 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import replace
 
 import polars as pl
 
 from flexlash.analysis.computed import Nominal
 from flexlash.analysis.examination import Examined, examined
+from flexlash.analysis.options import Options
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_result import outcome_of
 from flexlash.analysis.run_summary import SpreadNotes, by_rule, to_fix
 from flexlash.analysis.whole_batch import DRAWN, verdicts_of, worst_rows
-from flexlash.batch.chunk import FIRST_FINDINGS, ChunkAnswer, ChunkSummary, ChunkTask, WorstRow
+from flexlash.batch.chunk import (
+    FIRST_FINDINGS,
+    ChunkAnswer,
+    ChunkSummary,
+    ChunkTask,
+    FindingsTask,
+    ReportTask,
+    WorstRow,
+)
+from flexlash.feedback.annotation.marked_copy import findings_workbook
 from flexlash.pipeline import computed
+from flexlash.report.findings_table import findings_rows
 from flexlash.report.results_pieces import piece
-from flexlash.report.results_table import csv_rows, results_table
+from flexlash.report.results_table import results_table
+from flexlash.report.workbook import report_bytes
 from flexlash.schema.findings import Finding, finding
+from flexlash.schema.result_columns import result_columns
 from flexlash.validation.blocking_errors import waiting_rows
 from flexlash.validation.validated import Table
 
-__all__ = ["answered", "findings_text"]
+__all__ = ["answered", "findings_listed", "report_of_worst"]
 
 _NAMED = 3
 """Worst variants that are told by name."""
@@ -62,9 +74,9 @@ def answered(task: ChunkTask) -> ChunkAnswer:
     if task.spread:
         summary = _with_spread(summary, outcome, table)
     if task.ending and table:
-        rows = results_table(outcome)
+        rows = _of_all_columns(results_table(outcome), task.options)
         results, summary = piece(rows, task.ending), replace(summary, columns=tuple(rows.columns))
-    return ChunkAnswer(summary=summary.as_bytes(), results=results, findings=findings_text(own))
+    return ChunkAnswer(summary=summary.as_bytes(), results=results, findings=findings_rows(own))
 
 
 def _outcome(task: ChunkTask) -> Outcome:
@@ -101,6 +113,15 @@ def _by_place(outcome: Outcome, table: Table | None) -> tuple[tuple[Finding, ...
     return tuple(places[-1]), tuple(places[0]), tuple(places[1])
 
 
+def _of_all_columns(rows: pl.DataFrame, options: Options) -> pl.DataFrame:
+    """Return Results with all columns of the run, of which rows without a spread lack some."""
+    columns = result_columns(cross_check=bool(options.cross_check), elasticity=bool(options.elasticity))
+    types = {column.key: pl.Float64 if column.is_number else pl.String for column in columns}
+    lacking = [pl.lit(None, dtype=kind).alias(key) for key, kind in types.items() if key not in rows.columns]
+    own = [name for name in rows.columns if name not in types]
+    return rows.with_columns(lacking).select(*types, *own)
+
+
 def _with_spread(summary: ChunkSummary, outcome: Outcome, table: Table | None) -> ChunkSummary:
     """Return a summary with what the spread says."""
     verdicts, unsettled = verdicts_of(outcome.results)
@@ -131,8 +152,13 @@ def _worst(results: pl.DataFrame, table: Table) -> tuple[WorstRow, ...]:
     return tuple(found)
 
 
-def findings_text(findings: Sequence[Finding]) -> bytes:
-    """Return findings as lines of CSV, in which no text can act as a formula."""
-    if not findings:
-        return b""
-    return csv_rows(pl.DataFrame([found.as_dictionary() for found in findings])).encode()
+def report_of_worst(task: ReportTask) -> bytes:
+    """Return the report of the worst rows, which says that it stands for the whole table."""
+    return report_bytes(replace(computed(task.source, task.options, task.tables), whole=task.whole))
+
+
+def findings_listed(task: FindingsTask) -> bytes:
+    """Return the first findings as a workbook, which says how many there are and where the others are."""
+    more = f"; all of them are in {task.findings_file}" if task.findings_file else ""
+    why = f"The first {len(task.findings):,} findings of {task.name} are listed here{more}"
+    return findings_workbook(task.findings, task.name, why, number=task.counted, macros=task.macros)

@@ -20,7 +20,7 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["Filling", "put_new", "remove_leftovers", "replace", "temporary"]
+__all__ = ["Filling", "held", "put_new", "remove_leftovers", "replace", "sync_folder", "temporary"]
 
 Filling: TypeAlias = Callable[[BinaryIO], object]
 """Writes the content of a file, piece by piece, into an empty one that is open for writing and reading."""
@@ -78,6 +78,29 @@ def _lock(handle: int, *, wait: bool) -> bool:
     return True
 
 
+def held(path: Path) -> int | None:
+    """Return a file that is open, made where there is none, and locked until it is closed; None where another has it.
+
+    Raises OSError when it can be neither made nor opened.
+    """
+    for _ in range(_TRIES):
+        handle = os.open(path, os.O_CREAT | os.O_RDWR | _OPENED, 0o666)
+        if fcntl is not None:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                os.close(handle)
+                return None
+            except OSError:
+                # A file system without locks locks nothing.
+                pass
+        # The one that held it may have removed it before it was locked here.
+        if _is_still(path, handle):
+            return handle
+        os.close(handle)
+    return None
+
+
 def _is_still(path: Path, handle: int) -> bool:
     """Whether a path leads to the file that is open."""
     with contextlib.suppress(FileNotFoundError):
@@ -117,7 +140,7 @@ def put_new(temporary_file: Path, path: Path) -> bool:
             _link(temporary_file, path)
     except FileExistsError:
         return False
-    _sync_folder(path.parent)
+    sync_folder(path.parent)
     return True
 
 
@@ -148,11 +171,11 @@ def replace(temporary_file: Path, path: Path, known: os.stat_result) -> bool:
         if not _HOLDS_OPEN_FILES:
             raise
         return False
-    _sync_folder(path.parent)
+    sync_folder(path.parent)
     return True
 
 
-def _sync_folder(folder: Path) -> None:
+def sync_folder(folder: Path) -> None:
     """Make a new name durable where folders can be synchronised."""
     if _HOLDS_OPEN_FILES:
         return

@@ -25,8 +25,8 @@ _BEFORE_ROWS, _AFTER_ROWS = '{\n "results": [\n', "\n ]\n}"
 
 
 def piece(table: pl.DataFrame, ending: str) -> bytes:
-    """Return what some rows of Results add to the file of all: Parquet, or lines of CSV or JSON."""
-    return PIECES[ending](table)
+    """Return what some rows of Results add to the file of all: Parquet, or lines of CSV or JSON; nothing for none."""
+    return PIECES[ending](table) if table.height else b""
 
 
 def blank_piece(known: Mapping[str, str], columns: Sequence[str], ending: str) -> bytes:

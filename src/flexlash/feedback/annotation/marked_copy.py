@@ -76,12 +76,20 @@ def marked_table(
     return marked_copy(table_workbook(sheets), findings, name, _UNLIMITED, macros=macros).data
 
 
-def findings_workbook(findings: Sequence[Finding], name: str, why: str, *, macros: bool = False) -> bytes:
-    """Return the findings alone, for a submission that cannot be marked; `why` is the first line."""
+def findings_workbook(
+    findings: Sequence[Finding], name: str, why: str, *, number: str = "", macros: bool = False
+) -> bytes:
+    """Return the findings alone, for a submission that cannot be marked; `why` is the first line.
+
+    `number` says how many errors and warnings there are, where these are the first of them.
+    """
     book = WorkbookParts(table_workbook({RECORD: RawSheet(name=RECORD, rows={})}), _UNLIMITED)
     book.set_kind(macros=macros)
     styles = _stylesheet(book)
-    lines = [f"{name} has {counted(findings)}.", "Mend the cells listed here in your own file and submit it again."]
+    lines = [
+        f"{name} has {number or counted(findings)}.",
+        "Mend the cells listed here in your own file and submit it again.",
+    ]
     _add_findings(book, styles, findings, [why, *lines], None)
     book.remove_sheet(RECORD)
     book.remove("", "docProps/app.xml")

@@ -1,0 +1,185 @@
+"""The chunks of a large table, one after another in order → what is counted and told of the whole table."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import chain, islice
+from typing import Any
+
+from flexlash.analysis.outcome import exit_code_of
+from flexlash.analysis.run_summary import (
+    FindingGroup,
+    SpreadNotes,
+    by_rule,
+    counted,
+    group_lines,
+    lines_of_limits,
+    to_fix,
+    words_of_fixes,
+    words_of_state,
+)
+from flexlash.analysis.whole_batch import DRAWN, WholeBatch
+from flexlash.batch.answer import Answer, WorstVariant
+from flexlash.batch.chunk import FIRST_FINDINGS, ChunkSummary, WorstRow
+from flexlash.schema.findings import Finding, shown
+from flexlash.schema.limit_verdict import VERDICTS, Verdict
+
+__all__ = ["Totals"]
+
+_NAMED = 3
+"""Worst variants that are named."""
+
+_LEVELS = ("error", "warning", "info")
+_NAME = 30
+"""Most characters of a name in a sentence."""
+
+
+class Totals:
+    """What is counted and told of the chunks that were added so far."""
+
+    def __init__(self) -> None:
+        self.rows = self.computed = self.seed = 0
+        self.method = ""
+        self.columns: tuple[str, ...] = ()
+        self.worst: list[WorstRow] = []
+        self.before: dict[Finding, None] = {}
+        self.after: dict[Finding, None] = {}
+        self._own: list[Finding] = []
+        self._groups: dict[tuple[int, str, str], FindingGroup] = {}
+        self._verdicts, self._unsettled = Counter[Verdict](), Counter[Verdict]()
+        self._notes, self._cross_checked = SpreadNotes(), False
+        self._to_fix = 0
+        self._waiting = Counter[tuple[str, str]]()
+
+    def add(self, chunk: ChunkSummary) -> None:
+        """Add the chunk that follows."""
+        self.rows += chunk.rows
+        self.computed += chunk.computed
+        self.seed, self.method = chunk.seed, chunk.method or self.method
+        self.columns = self.columns or chunk.columns
+        self._verdicts.update(chunk.verdicts)
+        self._unsettled.update(chunk.unsettled)
+        self._notes += chunk.notes
+        self._cross_checked |= chunk.cross_checked
+        self.worst = sorted((*self.worst, *chunk.worst), key=lambda one: one.order)[:DRAWN]
+        # Findings of the whole file come with every chunk.
+        self.before |= dict.fromkeys(chunk.before)
+        self.after |= dict.fromkeys(chunk.after)
+        self._own += chunk.own[: FIRST_FINDINGS - len(self._own)]
+        self._to_fix += chunk.to_fix
+        self._waiting.update({(kind, name): rows for kind, name, rows in chunk.waiting})
+        for group in chunk.groups:
+            self._add_group(group)
+
+    def hold_back(self) -> None:
+        """Count no row as computed."""
+        self.computed = 0
+
+    def _add_group(self, group: FindingGroup) -> None:
+        key = (_LEVELS.index(group.level), group.code, group.sheet)
+        known = self._groups.get(key)
+        self._groups[key] = group if known is None else _joined(known, group)
+
+    @property
+    def findings(self) -> list[Finding]:
+        """The first of all findings, in the order of the submission."""
+        return list(islice(chain(self.before, self._own, self.after), FIRST_FINDINGS))
+
+    @property
+    def rules(self) -> Counter[str]:
+        """How many findings there are of each code."""
+        rules = Counter(found.code for found in chain(self.before, self.after))
+        for group in self._groups.values():
+            rules[group.code] += group.count
+        return rules
+
+    def whole(self, results_file: str = "", findings_file: str = "") -> WholeBatch:
+        """Return the whole table as the report of its worst rows names it, with the names of the files beside it."""
+        return WholeBatch(
+            rows=self.rows,
+            computed=self.computed,
+            verdicts={verdict: self._verdicts[verdict] for verdict in VERDICTS},
+            unsettled={verdict: self._unsettled[verdict] for verdict in VERDICTS},
+            rules=dict(sorted(self.rules.items())),
+            results_file=results_file,
+            findings_file=findings_file,
+        )
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """What `Outcome.counts` says of a submission that is held as a whole."""
+        whole = self.whole()
+        levels = whole.levels
+        counts = {
+            "rows": self.rows,
+            "computed": self.computed,
+            "errors": levels["error"],
+            "warnings": levels["warning"],
+        }
+        return counts | {str(verdict): number for verdict, number in whole.verdicts.items()}
+
+    def answer(self, told: dict[str, Any], *, ran: bool, fail_over_limit: bool, findings_file: str) -> Answer:
+        """Return what came of the whole table; `told` is what is known of the submission itself."""
+        counts = self.counts
+        listed = f"{findings_file} lists them all" if findings_file else "a marked copy (--annotate) lists more of them"
+        details = [*lines_of_limits(counts, self._named()), *self._note_lines()] if ran else []
+        cells, others = to_fix(chain(self.before, self.after))
+        fixes = words_of_fixes(cells + self._to_fix, others)
+        return Answer(
+            exit_code=exit_code_of(counts, fail_over_limit=fail_over_limit),
+            told={
+                **told,
+                "seed": self.seed,
+                "method": self.method,
+                "counts": counts,
+                "findings": [found.as_dictionary() for found in self.findings],
+                "findings_by_rule": dict(sorted(self.rules.items())),
+            },
+            finding_lines=tuple(group_lines(self._all_groups(), listed)),
+            words=words_of_state(counts, fixes, self._waiting_words(), ran=ran),
+            details=tuple(details),
+            by_rule=self.rules,
+            worst=tuple(
+                WorstVariant(
+                    variant=row["variant"],
+                    p99_865_arcmin=row["p99_865_arcmin"],
+                    backlash_limit_arcmin=row["backlash_limit_arcmin"],
+                    probability_over_limit=None
+                    if row["backlash_limit_arcmin"] is None
+                    else row["probability_over_limit"],
+                )
+                for row in self._named()
+            ),
+        )
+
+    def _named(self) -> list[dict[str, Any]]:
+        return [dict(one.told) for one in self.worst[:_NAMED] if one.told is not None]
+
+    def _note_lines(self) -> Iterator[str]:
+        return self._notes.lines(cross_check=self._cross_checked, method=self.method)
+
+    def _all_groups(self) -> list[FindingGroup]:
+        """Return all findings by rule and sheet, worst first."""
+        groups = dict(self._groups)
+        for group in by_rule(chain(self.before, self.after)):
+            key = (_LEVELS.index(group.level), group.code, group.sheet)
+            groups[key] = _joined(group, groups[key]) if key in groups else group
+        return [group for _, group in sorted(groups.items())]
+
+    def _waiting_words(self) -> Iterator[str]:
+        for (kind, name), rows in self._waiting.items():
+            yield f"{counted(rows, 'row')} wait{'s' if rows == 1 else ''} for {kind} {shown(name, longest=_NAME)}"
+
+
+def _joined(group: FindingGroup, later: FindingGroup) -> FindingGroup:
+    """Return findings of one rule in one sheet and those that follow as one group."""
+    more = f"{group.ranges.partition(' and ')[0]} and more" if group.cells and later.cells else ""
+    return replace(
+        group,
+        count=group.count + later.count,
+        cells=group.cells + later.cells,
+        ranges=more or group.ranges or later.ranges,
+        first=(*group.first, *later.first)[: max(len(group.first), len(later.first))],
+    )
