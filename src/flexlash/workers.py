@@ -1,19 +1,32 @@
-"""Work in worker processes, which end with this one; one that dies costs its own piece of work, which is repeated."""
+"""Work in worker processes, which end with this one; one that dies costs its own piece of work, which is repeated.
+
+Each worker answers through a pipe of its own, whose other end no other process holds: whenever it dies, also in the
+middle of a long answer, the pipe ends at once, and no answer of another worker passes through it.
+"""
 
 from __future__ import annotations
 
+import itertools
 import os
+import pickle
+import signal
 import sys
+import threading
+import traceback
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
-from multiprocessing.context import SpawnContext, SpawnProcess
+from concurrent.futures import CancelledError, Future
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from multiprocessing import parent_process, resource_tracker
+from multiprocessing.connection import Connection, Pipe, wait
+from multiprocessing.context import SpawnProcess
+from multiprocessing.process import current_process
+from queue import Empty, PriorityQueue
 from types import ModuleType
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
-from pebble import ProcessExpired, ProcessFuture, ProcessPool
-
-__all__ = ["WorkerLostError", "end", "mapped", "started"]
+__all__ = ["FEW_THREADS", "StoppedError", "Worker", "WorkerLostError", "Workers", "mapped", "timed"]
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -24,9 +37,33 @@ _TRIES = 3
 _SAFE = {"PYTHONSAFEPATH": "1"}
 """No module of the working folder, where a stranger's files may lie, is imported while a worker starts."""
 
+FEW_THREADS = {"POLARS_MAX_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "RUST_BACKTRACE": "0"}
+"""Environment of a worker whose memory is limited: each thread reserves some. Rust's panics are not told at length."""
+
+_ENDING = 5
+"""Seconds that a worker may take to end once its pipe has ended."""
+
+_STARTING = threading.Lock()
+"""What is changed of this process while another is started belongs to one thread at a time."""
+
 
 class WorkerLostError(RuntimeError):
-    """A piece of work lost every worker that took it up."""
+    """A piece of work lost every worker that took it up, or exceeded a limit of reading.
+
+    `setting` names the limit that it exceeded, empty where none is known.
+    """
+
+    def __init__(self, message: str, setting: str = "") -> None:
+        super().__init__(message)
+        self.setting = setting
+
+
+class StoppedError(Exception):
+    """A worker was stopped while it worked, by a limit of reading (`setting`) or by whatever gave this exit code."""
+
+    def __init__(self, setting: str, exit_code: int | None) -> None:
+        super().__init__(f"exit {exit_code}")
+        self.setting = setting
 
 
 @contextmanager
@@ -44,7 +81,34 @@ def _environment(variables: Mapping[str, str]) -> Iterator[None]:
                 os.environ[name] = value
 
 
-class _Worker(SpawnProcess):
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Have Ctrl-C wait, also in a process that is started meanwhile, which would print where it was interrupted."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    # Where it is started only afterwards, it would take this away again.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _with_children() -> Iterator[None]:
+    """Let a daemonic process, such as a worker of Dask, start others: these end with it of their own accord."""
+    configuration = current_process()._config  # type: ignore[attr-defined]  # noqa: SLF001
+    daemon = configuration.pop("daemon", None)
+    try:
+        yield
+    finally:
+        if daemon is not None:
+            configuration["daemon"] = daemon
+
+
+class _Process(SpawnProcess):
     """A process of its own that does not run the script of its user once more: it needs nothing of it."""
 
     variables: Mapping[str, str] = _SAFE
@@ -53,48 +117,278 @@ class _Worker(SpawnProcess):
         main = sys.modules["__main__"]
         sys.modules["__main__"] = ModuleType("__main__")
         try:
-            with _environment(self.variables):
+            with _environment(self.variables), _uninterrupted(), _with_children():
                 super().start()
         finally:
             sys.modules["__main__"] = main
 
 
-class _Context(SpawnContext):
-    """How workers are made."""
+class Worker:
+    """A process that does one thing after another, for one thread at a time."""
 
-    def __init__(self, variables: Mapping[str, str]) -> None:
-        super().__init__()
-        self.variables = variables
+    def __init__(
+        self, initializer: Callable[[], None] | None = None, variables: Mapping[str, str] | None = None
+    ) -> None:
+        """Start it under these environment variables; it does the first thing once the initializer has returned.
 
-    def Process(self, *arguments: Any, **named: Any) -> _Worker:  # type: ignore[override]  # noqa: N802
-        """Return a worker that is not started yet."""
-        worker = _Worker(*arguments, **named)
-        worker.variables = {**_SAFE, **self.variables}
-        return worker
+        It is spawned, since threads may already run here. Raises OSError where no process can be started.
+        """
+        (requests, self._requests), (self._answers, answers) = Pipe(duplex=False), Pipe(duplex=False)
+        self._process = _Process(target=_serve, args=(requests, answers, initializer), daemon=True)
+        self._process.variables = {**_SAFE, **(variables or {})}
+        try:
+            with _STARTING:
+                self._process.start()
+        except BaseException:
+            self._close()
+            raise
+        finally:
+            requests.close()
+            answers.close()
+
+    def asked(self, function: Callable[..., Result], *arguments: object) -> Result:
+        """Return a function of these arguments, worked out there.
+
+        Raises what the function raises, in words where that cannot travel, and StoppedError when the worker is stopped,
+        also by the clock that it asks for (`timed`); then it is of no more use.
+        """
+        try:
+            self._requests.send((function, arguments))
+            kind, value = self._answer()
+        except (EOFError, OSError):
+            raise self._stopped() from None
+        if kind == "raised":
+            raise value
+        return value  # type: ignore[no-any-return]
+
+    def _answer(self) -> tuple[str, Any]:
+        """Return what the worker says at last, keeping time for it as it asks."""
+        rest: float | None = None
+        while self._answers.poll(rest):
+            kind, value = self._answers.recv()
+            if kind != "timed":
+                return kind, value
+            rest = value
+        raise self._stopped("seconds")
+
+    def _stopped(self, setting: str = "") -> StoppedError:
+        """End the worker and return what it was stopped by."""
+        if not setting:
+            wait([self._process.sentinel], _ENDING)
+        code = self.end()
+        processor_time = not setting and code == -getattr(signal, "SIGXCPU", 0)
+        return StoppedError("processor_seconds" if processor_time else setting, code)
+
+    def kill(self) -> None:
+        """Stop the process, whatever it is doing; whoever waits for it is told."""
+        self._process.kill()
+
+    def end(self) -> int | None:
+        """Stop the process, wait until it has gone and return its exit code, which is None where it is not known."""
+        self.kill()
+        # Starting another process asks what became of each; only one of two that ask is told.
+        with _STARTING:
+            self._process.join()
+            code = self._process.exitcode
+        self._close()
+        return code
+
+    def _close(self) -> None:
+        """Close this process's ends of the pipes."""
+        self._requests.close()
+        self._answers.close()
 
 
-def started(
-    workers: int, initializer: Callable[[], None] | None = None, variables: Mapping[str, str] | None = None
-) -> ProcessPool:
-    """Return a pool of workers, under these environment variables, that are started and load what they need.
+class _Own:
+    """What leads to the one that asks, in a worker."""
 
-    They are spawned, since threads may already run here. Raises BrokenProcessPool where no process can be started.
-    """
-    pool = ProcessPool(workers, initializer=initializer, context=_Context(variables or {}))
-    # The process that keeps track of the pool's locks is started here.
-    with _environment(_SAFE):
-        pool.schedule(_nothing)
-    return pool
+    answers: Connection | None = None
 
 
-def end(pool: ProcessPool) -> None:
-    """End the workers of a pool, whatever they are doing."""
-    pool.stop()  # type: ignore[no-untyped-call]
-    pool.join()
+@contextmanager
+def timed(seconds: float) -> Iterator[None]:
+    """Have this worker stopped by the one that asks if this takes longer, whatever it does; elsewhere do nothing."""
+    if _Own.answers is None:
+        yield
+        return
+    _Own.answers.send(("timed", seconds))
+    try:
+        yield
+    finally:
+        _Own.answers.send(("timed", None))
 
 
-def _nothing() -> None:
-    """Do nothing: a worker that does so has started."""
+def _serve(requests: Connection, answers: Connection, initializer: Callable[[], None] | None) -> None:
+    """Do what is asked, one thing after another, until nobody asks."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    _Own.answers = answers
+    if initializer:
+        initializer()
+    with suppress(EOFError, OSError):
+        while True:
+            answers.send_bytes(_done(requests.recv_bytes()))
+
+
+def _end_with_parent() -> None:
+    """End this process, whatever it is doing, when the one that started it ends."""
+    if parent := parent_process():
+        parent.join()
+        os._exit(1)
+
+
+def _done(request: bytes) -> bytes:
+    """Return what was asked, or what was raised instead; nothing may end this process without an answer."""
+    try:
+        function, arguments = pickle.loads(request)  # noqa: S301
+        return pickle.dumps(("done", function(*arguments)))
+    except BaseException as fault:  # noqa: BLE001
+        return pickle.dumps(("raised", _able_to_travel(fault)))
+
+
+def _able_to_travel(fault: BaseException) -> BaseException:
+    """Return an exception with its trace, in words where another process could not rebuild it."""
+    trace = "".join(traceback.format_exception(fault))
+    try:
+        fault.add_note(trace)
+        pickle.loads(pickle.dumps(fault))  # noqa: S301
+    except Exception:  # noqa: BLE001
+        return RuntimeError(trace)
+    return fault
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Piece:
+    """A piece of work, and how many workers it has lost."""
+
+    future: Future[Any]
+    function: Callable[..., Any]
+    arguments: tuple[object, ...]
+    losses: int = 0
+
+
+class Workers:
+    """Several workers that are started and load what they need; whoever is free takes the next piece of work."""
+
+    def __init__(
+        self,
+        number: int,
+        initializer: Callable[[], None] | None = None,
+        variables: Mapping[str, str] | None = None,
+    ) -> None:
+        """Start them; raise WorkerLostError where no process can be started."""
+        self._made_of = (initializer, variables)
+        self._pieces: PriorityQueue[tuple[int, _Piece | None]] = PriorityQueue()
+        self._numbers = itertools.count()
+        self._closing = False
+        self._lock = threading.Lock()
+        self._workers: dict[int, Worker] = {}
+        self._threads: list[threading.Thread] = []
+        try:
+            for place in range(number):
+                self._start(place)
+        except BaseException:
+            self.close()
+            raise
+        self._threads = [
+            threading.Thread(target=self._work, args=(place,), name=f"flexlash worker {place}", daemon=True)
+            for place in range(number)
+        ]
+        for thread in self._threads:
+            thread.start()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def submit(self, function: Callable[..., Result], *arguments: object) -> Future[Result]:
+        """Return what will be the function of these arguments; pieces are begun in the order they are given in.
+
+        The future raises what the function raises, and WorkerLostError when it exceeds a limit or loses three workers.
+        """
+        future: Future[Result] = Future()
+        with self._lock:
+            if self._closing:
+                raise RuntimeError("the workers have ended")
+            self._pieces.put((next(self._numbers), _Piece(future=future, function=function, arguments=arguments)))
+        return future
+
+    def close(self) -> None:
+        """Stop all workers, whatever they are doing; what has not been done is cancelled."""
+        with self._lock:
+            self._closing = True
+            with suppress(Empty):
+                while piece := self._pieces.get_nowait()[1]:
+                    _give_up(piece)
+            for place, worker in self._workers.items():
+                self._pieces.put((-1 - place, None))
+                worker.kill()
+        for thread in self._threads:
+            thread.join()
+        for worker in self._workers.values():
+            worker.end()
+
+    def _start(self, place: int) -> Worker:
+        """Start a worker in a place; raise WorkerLostError where none can be started, or all are to end."""
+        with self._lock:
+            if self._closing:
+                raise WorkerLostError("the workers have ended")
+            try:
+                self._workers[place] = Worker(*self._made_of)
+            except OSError as fault:
+                raise WorkerLostError(f"no worker process can be started: {fault}") from fault
+            return self._workers[place]
+
+    def _work(self, place: int) -> None:
+        """Have the worker of a place do one piece after another."""
+        worker: Worker | None = self._workers[place]
+        while True:
+            number, piece = self._pieces.get()
+            if piece is None:
+                return
+            if not piece.losses and not piece.future.set_running_or_notify_cancel():
+                continue
+            try:
+                worker = worker or self._start(place)
+                answer = worker.asked(piece.function, *piece.arguments)
+            except StoppedError as stopped:
+                self._repeat(number, piece, stopped)
+                with suppress(WorkerLostError):
+                    worker = None
+                    worker = self._start(place)
+            except BaseException as fault:  # noqa: BLE001
+                piece.future.set_exception(fault)
+            else:
+                piece.future.set_result(answer)
+            # What was asked and answered may be large, and the next piece may be long in coming.
+            del piece
+            answer = None
+
+    def _repeat(self, number: int, piece: _Piece, stopped: StoppedError) -> None:
+        """Have whoever is free repeat the work of a worker that was stopped, before any other work."""
+        lost = replace(piece, losses=piece.losses + 1)
+        with self._lock:
+            if self._closing:
+                _give_up(piece)
+            elif stopped.setting:
+                piece.future.set_exception(
+                    WorkerLostError(f"a worker process exceeded its {stopped.setting}", stopped.setting)
+                )
+            elif lost.losses == _TRIES:
+                message = f"a worker process was stopped {_TRIES} times ({stopped})"
+                piece.future.set_exception(WorkerLostError(message))
+            else:
+                self._pieces.put((number, lost))
+
+
+def _give_up(piece: _Piece) -> None:
+    """Cancel a piece of work, whether it has begun or not."""
+    if not piece.future.cancel():
+        piece.future.set_exception(CancelledError())
 
 
 def mapped(function: Callable[[Item], Result], items: Sequence[Item], workers: int) -> Iterator[Result]:
@@ -107,29 +401,11 @@ def mapped(function: Callable[[Item], Result], items: Sequence[Item], workers: i
         yield from map(function, items)
         return
     try:
-        pool = started(workers)
-    except (BrokenProcessPool, OSError):
+        pool = Workers(workers)
+    except WorkerLostError:
         yield from map(function, items)
         return
-    try:
-        futures = [pool.schedule(function, (item,)) for item in items]
-        for item, future in zip(items, futures, strict=True):
-            yield _finished(pool, function, item, future)
-    finally:
-        end(pool)
-
-
-def _finished(
-    pool: ProcessPool,
-    function: Callable[[Item], Result],
-    item: Item,
-    future: ProcessFuture[Result],
-    tries: int = _TRIES,
-) -> Result:
-    """Return what a worker gives, asking another where one was lost."""
-    try:
-        return future.result()
-    except ProcessExpired as lost:
-        if tries == 1:
-            raise WorkerLostError(f"a worker process was stopped {_TRIES} times (exit {lost.exitcode})") from lost
-        return _finished(pool, function, item, pool.schedule(function, (item,)), tries - 1)
+    with pool:
+        futures = deque(pool.submit(function, item) for item in items)
+        while futures:
+            yield futures.popleft().result()

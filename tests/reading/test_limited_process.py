@@ -17,7 +17,7 @@ import regenerate
 from here import WHERE, answer_here
 from read_files import read_submission
 from small_workbook import book_of
-from worker_tasks import ask_for_a_process, each_parquet, fail, obey, own_number, slowly, square
+from worker_tasks import ask_for_a_process, each_parquet, fail, large, obey, own_number, slowly, square
 
 from flexlash.pipeline import check
 from flexlash.reading import limited_process as isolated
@@ -242,20 +242,29 @@ def test_where_no_process_can_be_started_it_is_told(monkeypatch):
     def refuse(*_):
         raise OSError(11, "Resource temporarily unavailable")
 
-    monkeypatch.setattr("flexlash.workers._Worker.start", refuse)
+    monkeypatch.setattr("flexlash.workers._Process.start", refuse)
     with pytest.raises(ProcessFaultError, match="cannot be started"):
         ask(own_number, ReadingLimits())
     monkeypatch.undo()
     assert ask(own_number, ReadingLimits()) != os.getpid()
 
 
+def _answered_for_ever(size):
+    while True:
+        assert len(ask(large, ReadingLimits(), size)) == size
+
+
 @pytest.mark.slow
-def test_an_answer_that_never_ends_is_not_waited_for(monkeypatch):
-    """A process that dies while it answers leaves half an answer: after a while it counts as too slow."""
-    monkeypatch.setattr(isolated, "_ANSWERING", -1.5)
-    refusal = _refusal("import time; time.sleep(3)", seconds=2)
-    assert refusal.facts["setting"] == "seconds"
-    monkeypatch.undo()
+@limits_are_there
+def test_a_process_that_dies_while_it_answers_is_noticed():
+    """Half an answer of a process that was killed is neither waited for nor taken for one: the file is refused."""
+    for moment in range(5):
+        number = ask(own_number, ReadingLimits())
+        killer = threading.Timer(0.01 * moment, os.kill, (number, signal.SIGKILL))
+        killer.start()
+        with pytest.raises(Refusal, match="E118"):
+            _answered_for_ever(50 * 2**20)
+        killer.join()
     assert ask(own_number, ReadingLimits()) != os.getpid()
 
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
+import random
 import signal
 import time
 from pathlib import Path
 
+from flexlash.reading.limited_process import ask
 from flexlash.reading.read import Source, submission_of
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
@@ -15,13 +18,18 @@ __all__ = [
     "ask_for_a_process",
     "die",
     "die_once",
+    "doubled",
     "each_parquet",
     "fail",
+    "large",
     "obey",
     "own_number",
+    "random_bytes",
+    "read_within",
     "sleep",
     "slowly",
     "square",
+    "told",
 ]
 
 
@@ -63,6 +71,11 @@ def slowly(answer):
     return answer
 
 
+def large(size):
+    """Return so many bytes."""
+    return bytes(size)
+
+
 def own_number():
     """Return the number of the process that does this."""
     return os.getpid()
@@ -96,3 +109,31 @@ def each_parquet(files):
         except Refusal as refusal:
             ends.append(refusal.code)
     return ends
+
+
+def doubled(data):
+    """Return some bytes twice, from a piece of work of a batch."""
+    return data * 2
+
+
+def told(data):
+    """Do what some bytes say and return what they call `answer`, as JSON."""
+    found = {}
+    exec(data.decode(), {"answer": found})  # noqa: S102
+    return json.dumps(found).encode()
+
+
+def read_within(data):
+    """Do what some bytes say as if a file had taken its reader over, with the limits that stand before them."""
+    limits, text = data.decode().split("\n", 1)
+    try:
+        found = ask(obey, ReadingLimits(**json.loads(limits)), text)
+    except Refusal as refusal:
+        found = {"refused": refusal.facts.get("setting", refusal.code)}
+    return json.dumps(found).encode()
+
+
+def random_bytes(data):
+    """Return as many bytes as are named after a seed, the same for every worker."""
+    seed, size = data.decode().split()
+    return random.Random(seed).randbytes(int(size))  # noqa: S311

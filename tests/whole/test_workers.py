@@ -51,7 +51,7 @@ def test_where_no_process_can_be_started_all_is_done_here(monkeypatch):
     def refuse(*_):
         raise OSError(11, "Resource temporarily unavailable")
 
-    monkeypatch.setattr("flexlash.workers._Worker.start", refuse)
+    monkeypatch.setattr("flexlash.workers._Process.start", refuse)
     assert list(mapped(square, [1, 2, 3], 2)) == [(1, os.getpid()), (4, os.getpid()), (9, os.getpid())]
 
 

@@ -1,6 +1,6 @@
 """Inside the limited process: so much memory and processor time, no writing, no calling, while a file is handled.
 
-Where the system cannot limit a process (Windows), the clock of the one that asks remains.
+Where the system cannot limit a process (Windows), the clock remains, which the one that asks keeps.
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ from flexlash.reading.raw import RawSheet, RawValue, Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.columns import columns_of
+from flexlash.workers import timed
 
-__all__ = ["Fault", "carried_out", "forbid", "gone_on", "kept", "limited", "prepare"]
+__all__ = ["Fault", "answered", "carried_out", "forbid", "is_prepared", "limited", "prepare"]
 
 _MEBI = 2**20
 _FORBIDDEN = (
@@ -46,18 +47,29 @@ class Fault:
 
 
 class _State:
-    """What this process knows of itself: whether it handles a file, what failed at first, what it keeps."""
+    """What this process knows of itself: whether it was prepared and handles a file, what failed at first."""
 
+    prepared = False
     handles_a_file = False
     fault: Fault | ChangedLibrary | None = None
-    kept: Any = None
 
 
-def prepare() -> None:
-    """Make this process one that can be limited: silent, with its libraries loaded before anything is forbidden."""
+def is_prepared() -> bool:
+    """Whether this process was made one that can be limited."""
+    return _State.prepared
+
+
+def prepare(load: Callable[[], None] | None = None) -> None:
+    """Make this process one that can be limited: silent, with its libraries loaded before anything is forbidden.
+
+    `load` loads what else will be needed.
+    """
+    _State.prepared = True
     _silence()
     try:
         _warm_up()
+        if load:
+            load()
     except BaseException as fault:  # noqa: BLE001
         # Told by the first answer: a process that ends here could not say why.
         _State.fault = _why(fault)
@@ -112,18 +124,16 @@ def carried_out(task: Callable[..., Any], limits: ReadingLimits, arguments: tupl
         return Fault.of(fault)
 
 
-def kept(task: Callable[..., Any], limits: ReadingLimits, arguments: tuple[Any, ...]) -> Any:
-    """Return nothing where a task gives something, which is kept here; else what `carried_out` returns."""
+def answered(
+    task: Callable[..., Any],
+    limits: ReadingLimits,
+    arguments: tuple[Any, ...],
+    then: Callable[[Any], Any] | None = None,
+) -> Any:
+    """Return what `carried_out` returns, or what follows from it within no limits, or the Fault that this has."""
     answer = carried_out(task, limits, arguments)
-    if isinstance(answer, Refusal | ChangedLibrary | Fault):
+    if then is None or isinstance(answer, Refusal | ChangedLibrary | Fault):
         return answer
-    _State.kept = answer
-    return None
-
-
-def gone_on(then: Callable[[Any], Any]) -> Any:
-    """Return what follows from the answer that was kept, within no limits, or the Fault that this has."""
-    answer, _State.kept = _State.kept, None
     try:
         return then(answer)
     except Exception as fault:  # noqa: BLE001
@@ -132,14 +142,15 @@ def gone_on(then: Callable[[Any], Any]) -> Any:
 
 @contextlib.contextmanager
 def limited(limits: ReadingLimits) -> Iterator[None]:
-    """Limit memory, processor time and reach of this process meanwhile, as far as the system can."""
-    before = _lowered(limits)
-    _State.handles_a_file = True
-    try:
-        yield
-    finally:
-        _State.handles_a_file = False
-        _set(before)
+    """Limit time, memory, processor time and reach of this process meanwhile, as far as the system can."""
+    with timed(limits.seconds):
+        before = _lowered(limits)
+        _State.handles_a_file = True
+        try:
+            yield
+        finally:
+            _State.handles_a_file = False
+            _set(before)
 
 
 def _lowered(limits: ReadingLimits) -> dict[int, int]:

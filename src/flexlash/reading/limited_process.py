@@ -3,31 +3,20 @@
 from __future__ import annotations
 
 import os
-import signal
 import threading
 from collections.abc import Callable
-from concurrent.futures import TimeoutError as TookTooLong
-from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import current_process
-from typing import Any, TypeVar
+from typing import TypeVar
 
-from pebble import ProcessExpired, ProcessPool
-
-from flexlash.reading.inside_limits import Fault, carried_out, gone_on, kept, prepare
+from flexlash.reading.inside_limits import Fault, answered, is_prepared, prepare
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
-from flexlash.workers import end, started
+from flexlash.workers import FEW_THREADS, StoppedError, Worker
 
 __all__ = ["ProcessFaultError", "ask", "begin"]
 
 Result = TypeVar("Result")
-
-_VARIABLES = {"POLARS_MAX_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "RUST_BACKTRACE": "0"}
-"""Each thread reserves memory, which the process has little of."""
-
-_ANSWERING = 30
-"""Seconds beyond its time after which a process that gives no answer never will: it died while it gave one."""
 
 _DAEMON = (
     "flexlash reads files in a process of its own, which a daemonic process, such as one of multiprocessing.Pool, may "
@@ -36,26 +25,29 @@ _DAEMON = (
 
 _ONE_AT_A_TIME = threading.Lock()
 
-_POOLS: dict[int, ProcessPool] = {}
-"""The limited process of this one, by this one's number: a copy of this process has none of its threads."""
+_WORKERS: dict[int, Worker] = {}
+"""The limited process of this one, by this one's number: a copy of this process may not ask it."""
 
 
 class ProcessFaultError(RuntimeError):
     """What the limited process was to do has a fault of the program, not of the file."""
 
 
-def begin() -> ProcessPool:
+def begin() -> Worker:
     """Have the limited process start, if there is none, and load its libraries while this one does something else.
 
-    Raises ProcessFaultError in a process that may start none.
+    Raises ProcessFaultError in a process that may start none, and where the system starts none.
     """
     number = os.getpid()
-    if number not in _POOLS:
+    if number not in _WORKERS:
         if current_process().daemon:
             raise ProcessFaultError(_DAEMON)
-        _POOLS.clear()
-        _POOLS[number] = started(1, prepare, _VARIABLES)
-    return _POOLS[number]
+        _WORKERS.clear()
+        try:
+            _WORKERS[number] = Worker(prepare, FEW_THREADS)
+        except OSError as fault:
+            raise ProcessFaultError(f"the process that reads files cannot be started: {fault}") from fault
+    return _WORKERS[number]
 
 
 def ask(
@@ -66,7 +58,8 @@ def ask(
 ) -> Result:
     """Return a task of these arguments, done in the limited process; `then` goes on there with what it has found.
 
-    What `then` does has no limits: it must grow with what was found to be sound alone.
+    A worker of a batch is such a process itself: there it is done in place. What `then` does has no limits: it must
+    grow with what was found to be sound alone.
     Raises Refusal when the task refuses its file, exceeds a limit or stops the process, ChangedLibrary when a library
     is to blame, ProcessFaultError when the task itself is at fault or no process can be started.
     """
@@ -86,22 +79,14 @@ def _answer(
     then: Callable[[Result], Result] | None,
 ) -> Result | Refusal | ChangedLibrary | Fault:
     """Return what the limited process answers, or what it died of."""
+    if is_prepared():
+        return answered(task, limits, arguments, then)  # type: ignore[no-any-return]
+    worker = begin()
     try:
-        start = kept if then else carried_out
-        future = begin().schedule(start, (task, limits, arguments), timeout=limits.seconds)
-        answer: Any = future.result(limits.seconds + _ANSWERING)
-        return begin().schedule(gone_on, (then,)).result() if then and answer is None else answer  # type: ignore[no-any-return]
-    except TookTooLong:
+        return worker.asked(answered, task, limits, arguments, then)  # type: ignore[no-any-return]
+    except StoppedError as stopped:
         _abandon()
-        return limits.exceeded("seconds")
-    except ProcessExpired as lost:
-        # Another process is being started in its place, which would complain if this one ended meanwhile.
-        _abandon()
-        processor_time = lost.exitcode == -getattr(signal, "SIGXCPU", 0)
-        return limits.exceeded("processor_seconds") if processor_time else Refusal("E118")
-    except (BrokenProcessPool, OSError) as fault:
-        _abandon()
-        raise ProcessFaultError(f"the process that reads files cannot be started: {fault}") from fault
+        return limits.exceeded(stopped.setting) if stopped.setting else Refusal("E118")
     except BaseException:
         _abandon()
         raise
@@ -109,5 +94,5 @@ def _answer(
 
 def _abandon() -> None:
     """End the limited process, whatever it is doing; the next request starts another."""
-    if pool := _POOLS.pop(os.getpid(), None):
-        end(pool)
+    if worker := _WORKERS.pop(os.getpid(), None):
+        worker.end()

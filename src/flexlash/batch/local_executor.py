@@ -1,0 +1,61 @@
+"""Work done by processes of this machine, each of which reads files within limits of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import Future
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from flexlash.batch.executor import Executor, Work
+from flexlash.reading.inside_limits import Fault, prepare
+from flexlash.reading.libraries import ChangedLibrary
+from flexlash.reading.limited_process import ProcessFaultError
+from flexlash.workers import FEW_THREADS, Workers
+
+__all__ = ["local_executor", "prepared", "worked"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _LocalExecutor:
+    """Processes of this machine."""
+
+    workers: int
+    processes: Workers
+
+    def submit(self, work: Work, data: bytes) -> Future[bytes]:
+        """Return what will be the answer; threads may ask side by side."""
+        return self.processes.submit(worked, work, data)
+
+
+@contextmanager
+def local_executor(workers: int) -> Iterator[Executor]:
+    """Give an executor of so many processes, which have ended when it is left.
+
+    Raises WorkerLostError where no process can be started.
+    """
+    with Workers(workers, prepared, FEW_THREADS) as processes:
+        yield _LocalExecutor(workers=workers, processes=processes)
+
+
+def prepared() -> None:
+    """Make this process a worker: everything that a submission needs is loaded before the first one comes."""
+    prepare(_loaded)
+
+
+def _loaded() -> None:
+    """Load what follows reading and validation, up to the report."""
+    from flexlash.analysis import tolerance_spread  # noqa: F401
+    from flexlash.feedback import returned_files  # noqa: F401
+    from flexlash.report import report_data, workbook  # noqa: F401
+
+
+def worked(work: Work, data: bytes) -> bytes:
+    """Return the answer of a piece of work; what it raises is told in words, which every process understands."""
+    try:
+        return work(data)
+    except (ProcessFaultError, ChangedLibrary):
+        raise
+    except BaseException as exception:  # noqa: BLE001
+        fault = Fault.of(exception)
+        raise ProcessFaultError(f"{fault.kind} in a worker process\n{fault.trace}") from None
