@@ -97,7 +97,7 @@ def _copy(outcome: Outcome, task: Task) -> FileBytes | None:
 
 def _worst(outcome: Outcome) -> Iterator[WorstVariant]:
     """Yield the worst of the computed variants."""
-    for row in worst_first(outcome)[:_WORST]:
+    for row in worst_first(outcome, _WORST):
         limit = row["backlash_limit_arcmin"]
         yield WorstVariant(
             variant=row["variant"],
