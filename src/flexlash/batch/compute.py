@@ -16,6 +16,7 @@ from flexlash.pipeline import computed
 from flexlash.reading.inside_limits import Fault
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.schema.exit_codes import ExitCode
+from flexlash.schema.number_words import share_words
 
 __all__ = ["answer_of", "compute"]
 
@@ -104,4 +105,5 @@ def _worst(outcome: Outcome) -> Iterator[WorstVariant]:
             p99_865_arcmin=row["p99_865_arcmin"],
             backlash_limit_arcmin=limit,
             probability_over_limit=None if limit is None else row["probability_over_limit"],
+            over_limit="" if limit is None else share_words(row),
         )
