@@ -41,7 +41,7 @@ CLIMBS = {
 
 EDGES = {
     "openpyxl": {"reading"},
-    "xlsxwriter": {"feedback", "report"},
+    "xlsxwriter": {"batch", "feedback", "report"},
     "pandera": {"validation"},
     "click": {"cli"},
     "scipy": {"mechanics", "report", "tolerance"},

@@ -84,13 +84,20 @@ def computed_apart(task: bytes) -> bytes:
     return compute(task)
 
 
-@dataclass(kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class _Begun:
-    """A submission under way: its place, its digest once it was read, when it was begun."""
+    """A submission under way: its place, and when it was begun."""
 
     index: int
-    sha256: str = ""
     start: float = field(default_factory=time.perf_counter)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _HandedOver(_Begun):
+    """A submission that a worker has, with its digest."""
+
+    sha256: str
+    future: Future[bytes]
 
 
 class _SideBySide:
@@ -102,31 +109,32 @@ class _SideBySide:
         self._advance = advance
         self._given = [one.given.path for one in batch.wanted if not one.given.skipped]
         self._digests = digests_of(self._given) if len(self._given) > 1 else frozenset[str]()
-        # What a worker is told: nothing of where files lie here, nor of how many workers there are.
+        # What a worker is told: nothing of where files lie here; a single submission has all processes for its rows.
+        jobs = 1 if len(self._given) > 1 else batch.options.jobs
         self._asked = replace(
-            batch.options, jobs=1, given=(), marked_copy=None, progress=None, tolerances=None, materials=None
+            batch.options, jobs=jobs, given=(), marked_copy=None, progress=None, tolerances=None, materials=None
         )
 
     def ended(self) -> Iterator[Ended]:
         """Yield how each submission ended, in order."""
         ahead = deque(range(len(self._batch.wanted)))
-        begun: dict[Future[bytes], _Begun] = {}
+        begun: dict[Future[bytes], _HandedOver] = {}
         finished: dict[int, Ended] = {}
         for turn in range(len(self._batch.wanted)):
             while turn not in finished:
                 while ahead and turn not in finished and len(begun) < _AHEAD * self._executor.workers:
                     one = _Begun(index=ahead.popleft())
                     if handed_over := self._guarded(one, finished, partial(self._handed_over, one)):
-                        begun[handed_over] = one
+                        begun[handed_over.future] = handed_over
                 if turn not in finished:
                     for future in wait(begun, return_when=FIRST_COMPLETED).done:
-                        one = begun.pop(future)
-                        self._guarded(one, finished, partial(self._answered, one, future))
+                        waited = begun.pop(future)
+                        self._guarded(waited, finished, partial(self._answered, waited))
             yield finished.pop(turn)
 
     def _guarded(
-        self, one: _Begun, finished: dict[int, Ended], step: Callable[[], Ended | Future[bytes]]
-    ) -> Future[bytes] | None:
+        self, one: _Begun, finished: dict[int, Ended], step: Callable[[], Ended | _HandedOver]
+    ) -> _HandedOver | None:
         """Take a step with a submission; return what it waits for, None when it has ended in whatever way."""
         wanted = self._batch.wanted[one.index]
         path = wanted.given.path
@@ -140,14 +148,14 @@ class _SideBySide:
         except Exception as exception:  # noqa: BLE001
             internal = fault_of(exception)
             ended = replace(Ended.failing(path, ExitCode.INTERNAL, fault_words(internal.kind)), fault=internal)
-        if isinstance(ended, Future):
+        if isinstance(ended, _HandedOver):
             return ended
         given, seconds = wanted.given, time.perf_counter() - one.start
         finished[one.index] = replace(ended, below=given.below, in_folder=given.in_folder, seconds=seconds)
         self._advance(finished[one.index])
         return None
 
-    def _handed_over(self, one: _Begun) -> Ended | Future[bytes]:
+    def _handed_over(self, one: _Begun) -> Ended | _HandedOver:
         """Hand a submission over to a worker, or say how it ended before that."""
         batch, wanted = self._batch, self._batch.wanted[one.index]
         path = wanted.given.path
@@ -164,9 +172,9 @@ class _SideBySide:
             wanted.file.require()
         if isinstance(batch.tables, OSError | Refusal):
             raise batch.tables
-        one.sha256 = hashlib.sha256(source.data).hexdigest()
+        sha256 = hashlib.sha256(source.data).hexdigest()
         if batch.manifest and (
-            ended := batch.manifest.done(path, wanted.given.below, one.sha256, wanted.file, wanted.copy)
+            ended := batch.manifest.done(path, wanted.given.below, sha256, wanted.file, wanted.copy)
         ):
             return ended
         companions = Companions.of(path, self._given, self._digests)
@@ -178,14 +186,15 @@ class _SideBySide:
             report=wanted.file.ending if wanted.file else "",
             copy=wanted.copy.ending if wanted.copy else "",
         )
-        return self._executor.submit(computed_apart, task.as_bytes())
+        future = self._executor.submit(computed_apart, task.as_bytes())
+        return _HandedOver(index=one.index, start=one.start, sha256=sha256, future=future)
 
-    def _answered(self, one: _Begun, future: Future[bytes]) -> Ended:
+    def _answered(self, one: _HandedOver) -> Ended:
         """Return how a submission ended that was handed over, with its files written."""
         batch, wanted = self._batch, self._batch.wanted[one.index]
         path = wanted.given.path
         try:
-            answer = Answer.of(future.result())
+            answer = Answer.of(one.future.result())
         except WorkerLostError as lost:
             refusal = batch.options.limits.exceeded(lost.setting) if lost.setting else Refusal("E118")
             return Ended.refusing(path, refusal, several=batch.several, sha256=one.sha256)

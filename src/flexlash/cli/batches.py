@@ -53,12 +53,8 @@ def to_be_told(given: GivenFiles, *, as_json: bool, quiet: bool, verbose: bool, 
     return told
 
 
-def workers(jobs: int, scheduler: str | None = None) -> AbstractContextManager[Executor]:
-    """Return the workers that compute: processes of this machine, or those of a Dask scheduler."""
-    if scheduler is not None:
-        from flexlash.batch.dask_executor import dask_executor
-
-        return dask_executor(scheduler)
+def workers(jobs: int) -> AbstractContextManager[Executor]:
+    """Return the workers that compute: processes of this machine."""
     from flexlash.batch.local_executor import local_executor
 
     return local_executor(jobs)
@@ -72,11 +68,10 @@ def carried_out(
     told: Submissions,
     *,
     resume: bool = False,
-    scheduler: str | None = None,
 ) -> ExitCode:
     """Compute, check or mend submissions side by side, write what is wanted, tell how each ended; return the code."""
     # Workers load their libraries while this process loads its own.
-    with workers(max(1, min(options.jobs, len(given.submissions))), scheduler) as executor:
+    with workers(max(1, min(options.jobs, len(given.submissions)))) as executor:
         from flexlash.batch.side_by_side import Batch, Wanted, side_by_side, tables_or_why
 
         tables = tables_or_why(options)

@@ -39,9 +39,6 @@ __all__ = ["run"]
 @click.option(
     "--resume", is_flag=True, help="Go on in the folder OUT where an earlier run was stopped; what is done stays."
 )
-@click.option(
-    "--scheduler", metavar="ADDRESS", help="Compute on the workers of a Dask scheduler; local starts one here."
-)
 @JSON
 @option("from_report")
 @QUIET
@@ -61,7 +58,6 @@ def run(
     from_report: bool,
     recursive: bool,
     resume: bool,
-    scheduler: str | None,
     as_json: bool,
     quiet: bool,
     verbose: bool,
@@ -93,7 +89,7 @@ def run(
         raise click.UsageError("--resume needs a folder as OUT, in which an earlier run was stopped.")
     told = to_be_told(given, as_json=as_json, quiet=quiet, verbose=verbose, ran=True)
     chosen = Options.of("run()", options)
-    sys.exit(carried_out("run", given, outputs, chosen, told, resume=resume, scheduler=scheduler))
+    sys.exit(carried_out("run", given, outputs, chosen, told, resume=resume))
 
 
 def _outputs(

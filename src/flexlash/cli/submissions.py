@@ -154,9 +154,10 @@ class Submissions:
             yield _Line(f"{name}: {ended.told['findings'][0]['message']}", _COLOURS["info"], is_message=True)
         elif ended.words and not ended.refused:
             over = sum(ended.counts[verdict] for verdict in ("marginal", "fails"))
-            limit = f"; {over} of {over + ended.counts['meets']} miss their limit" if over else ""
+            judged = counted(over + ended.counts["meets"], "variant")
+            limit = f" Limit not met by {over} of {judged}." if over else ""
             files = ", ".join(named(path) for path in ended.written.paths)
-            yield _Line(f"{ended.name}: {ended.words}{limit}.{f' Written: {files}' if files else ''}")
+            yield _Line(f"{ended.name}: {ended.words}.{limit}{f' Written: {files}' if files else ''}")
 
     def _lines(self, ended: Ended, attempt: Attempt) -> Iterator[_Line]:
         """Yield what the screen shows in full: findings grouped by rule, then the summary."""
