@@ -5,9 +5,10 @@ from __future__ import annotations
 from abc import abstractmethod
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-import polars as pl
+if TYPE_CHECKING:
+    import polars as pl
 
 __all__ = ["RowRecords"]
 
@@ -28,7 +29,11 @@ class RowRecords(Mapping[int, Record]):
 
     @property
     def _rows(self) -> pl.Series:
-        return pl.Series("row", dtype=pl.Int64) if self.columns is None else self.columns["row"]
+        if self.columns is not None:
+            return self.columns["row"]
+        import polars as pl
+
+        return pl.Series("row", dtype=pl.Int64)
 
     def __len__(self) -> int:
         """Return how many records there are."""
