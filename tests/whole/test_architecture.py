@@ -36,12 +36,15 @@ ENTRANCES = {"__init__", "__main__"}
 
 CLIMBS = {
     ("reading.inside_limits", "validation.validate"),
+    ("reading.survey", "validation.whole_tables"),
+    ("reading.survey_parquet", "validation.whole_tables"),
 }
-"""The imports that go the other way, each because the limited process loads before its limits what it will need."""
+"""The imports that go the other way: the limited process loads before its limits what it will need, and a survey judges
+the rows of a table by the functions that judge a table read at once, while nothing holds more than a block of them."""
 
 EDGES = {
     "openpyxl": {"reading"},
-    "xlsxwriter": {"batch", "feedback", "report"},
+    "xlsxwriter": {"feedback", "report"},
     "pandera": {"validation"},
     "click": {"cli"},
     "scipy": {"mechanics", "report", "tolerance"},
@@ -126,7 +129,7 @@ def test_no_stage_imports_a_later_one():
         assert not _reached(record) & {*STAGES}, record
 
 
-BUILT = {"cli.submissions", "outputs.plan", "reading.delimited", "report.submission_sheets"}
+BUILT = {"cli.submissions", "outputs.plan", "reading.delimited", "reading.survey", "report.submission_sheets"}
 """Where a record is filled step by step by the code beside it, and stays with it."""
 
 OURS = {"schema", "validation", "mechanics", "tolerance", "analysis", "comparison", "outputs", "pipeline"}

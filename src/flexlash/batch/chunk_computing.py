@@ -108,7 +108,7 @@ def _by_place(outcome: Outcome, table: Table | None) -> tuple[tuple[Finding, ...
     later = {*sheets[sheets.index(table.sheet) + 1 :]}
     places: dict[int, list[Finding]] = {-1: [], 0: [], 1: []}
     for found in outcome.findings:
-        is_own = found.sheet == table.sheet and found.row > table.heading.row
+        is_own = found.sheet == table.sheet and found.row > table.last_head_row
         places[0 if is_own else 1 if found.sheet in later else -1].append(found)
     return tuple(places[-1]), tuple(places[0]), tuple(places[1])
 

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["WORDS", "NominalNumbers"]
-
-WORDS = {"governing_section": ("wall", "tooth rim", "disk"), "buckling_range": ("shorter", "yes", "longer")}
-"""The fields that are words, with what they can be."""
+__all__ = ["NominalNumbers"]
 
 
 @dataclass(frozen=True, kw_only=True)

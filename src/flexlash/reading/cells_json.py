@@ -22,7 +22,7 @@ from flexlash.reading.raw import (
 )
 from flexlash.reading.xlsx import Cells
 
-__all__ = ["cells_from_json", "cells_to_json"]
+__all__ = ["cells_from_json", "cells_to_json", "dialect_of"]
 
 _KINDS: dict[str, tuple[type, Callable[[Any], str], Callable[[str], RawValue]]] = {
     "moment": (datetime.datetime, datetime.datetime.isoformat, datetime.datetime.fromisoformat),
@@ -91,7 +91,7 @@ def cells_from_json(written: dict[str, Any]) -> Cells:
                 hidden_rows=frozenset(sheet["hidden_rows"]),
                 merged=tuple(tuple(area) for area in sheet["merged"]),
                 numbers_are_texts=sheet["numbers_are_texts"],
-                dialect=_dialect(sheet["manner"]),
+                dialect=dialect_of(sheet["manner"]) if sheet["manner"] else None,
             )
             for sheet in written["sheets"]
         ],
@@ -101,10 +101,8 @@ def cells_from_json(written: dict[str, Any]) -> Cells:
     )
 
 
-def _dialect(written: dict[str, Any] | None) -> CsvDialect | None:
-    """Return how a delimited text was written."""
-    if written is None:
-        return None
+def dialect_of(written: dict[str, Any]) -> CsvDialect:
+    """Return how a delimited text was written, as JSON holds it."""
     addresses = {name: address and tuple(address) for name, address in written.items() if name in _ADDRESSES}
     return CsvDialect(**(written | addresses | {"longer": frozenset(written.get("longer", ()))}))
 

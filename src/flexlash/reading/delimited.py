@@ -6,7 +6,7 @@ import csv
 import io
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
 
@@ -19,13 +19,23 @@ from flexlash.schema.columns import ENTRY_SHEETS, columns_of
 from flexlash.schema.header_names import LAST_HEADER_ROW, known_names, name_and_unit
 from flexlash.schema.spellings import plain
 
-__all__ = ["WINDOWS", "read_table"]
+__all__ = [
+    "DELIMITERS",
+    "SEPARATOR_LINE",
+    "WINDOWS",
+    "TooLong",
+    "delimiter_of",
+    "mark_errors",
+    "number_columns",
+    "read_table",
+    "records_of",
+]
 
-_DELIMITERS = ",;\t|"
+DELIMITERS = ",;\t|"
 _TOP = 15
 """Rows by which the delimiter is told."""
 
-_SEPARATOR_LINE = re.compile(r'"?sep=([,;\t|])"?(?:\r\n|\r|\n|$)', re.IGNORECASE)
+SEPARATOR_LINE = re.compile(r'"?sep=([,;\t|])"?(?:\r\n|\r|\n|$)', re.IGNORECASE)
 """First line by which a table tells Excel its delimiter; Excel does not show it as a row."""
 
 _WIDEST = 100_000
@@ -48,15 +58,17 @@ def read_table(data: bytes, name: str, file: str = "", limits: ReadingLimits | N
     limits = limits or ReadingLimits()
     text, encoding = decoded(data)
     text = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\n")
-    separator_line = _SEPARATOR_LINE.match(text)
+    separator_line = SEPARATOR_LINE.match(text)
     text = text[separator_line.end() :] if separator_line else text
     if '"' not in text:
         limits.require("table_rows", text.count("\n") + 1)
-    delimiter = _delimiter(text, separator_line[1] if separator_line else _DELIMITERS, limits)
-    read = _rows(_records(text, delimiter, limits), limits)
+    delimiter = delimiter_of(
+        lambda: io.StringIO(text, newline="\n"), separator_line[1] if separator_line else DELIMITERS, limits
+    )
+    read = _rows(records_of(io.StringIO(text, newline="\n"), delimiter, limits), limits)
     if "#" in text:
-        _mark_errors(read.rows)
-    header, columns, others = _header(read.rows, name)
+        mark_errors(read.rows)
+    header, columns, others = number_columns(read.rows, name)
     longer = read.longer_than(header) if delimiter == "," and header else frozenset()
     # Without a quote no cell of a table that is separated by commas holds one.
     is_settled = delimiter == "," and '"' not in text and not longer
@@ -72,12 +84,12 @@ def read_table(data: bytes, name: str, file: str = "", limits: ReadingLimits | N
     return RawSheet(name=name, rows=read.rows, numbers_are_texts=True, dialect=dialect)
 
 
-class _TooLong(csv.Error):
+class TooLong(csv.Error):
     """A cell without end."""
 
 
-def _records(text: str, delimiter: str, limits: ReadingLimits) -> Iterator[list[str]]:
-    """Yield the records of a text; raises csv.Error where its quotes do not close.
+def records_of(texts: Iterable[str], delimiter: str, limits: ReadingLimits) -> Iterator[list[str]]:
+    """Yield the records of the lines of a text; raises csv.Error where its quotes do not close.
 
     A record of too many cells is refused before it is taken apart.
     """
@@ -85,7 +97,7 @@ def _records(text: str, delimiter: str, limits: ReadingLimits) -> Iterator[list[
 
     def counted() -> Iterator[str]:
         nonlocal lines, delimiters
-        for line in io.StringIO(text, newline="\n"):
+        for line in texts:
             lines += 1
             delimiters += line.count(delimiter)
             if delimiters > _WIDEST:
@@ -98,19 +110,22 @@ def _records(text: str, delimiter: str, limits: ReadingLimits) -> Iterator[list[
             yield record
     except csv.Error as fault:
         if lines == 1 and "field limit" in str(fault):
-            raise _TooLong from fault
+            raise TooLong from fault
         raise
 
 
-def _delimiter(text: str, delimiters: str, limits: ReadingLimits) -> str:
-    """Return the delimiter that makes the most even rows of the first ones."""
+def delimiter_of(lines: Callable[[], Iterable[str]], delimiters: str, limits: ReadingLimits) -> str:
+    """Return the delimiter that makes the most even rows of the first ones; `lines` begins at the first again.
+
+    Raises Refusal when there is none.
+    """
     evenness: dict[str, int] = {}
     is_endless = True
     for sign in delimiters:
         try:
-            evenness[sign] = _evenness(list(islice(_records(text, sign, limits), _TOP)))
+            evenness[sign] = _evenness(list(islice(records_of(lines(), sign, limits), _TOP)))
         except csv.Error as fault:
-            is_endless = is_endless and isinstance(fault, _TooLong)
+            is_endless = is_endless and isinstance(fault, TooLong)
     if not evenness and is_endless:
         raise limits.exceeded("characters")
     delimiter = max(evenness, key=lambda sign: evenness[sign], default="")
@@ -165,7 +180,7 @@ def _rows(records: Iterator[list[str]], limits: ReadingLimits) -> _Read:
                 read.add(row, cells, len(values))
             if len(shared) > _SHARED:
                 shared.clear()
-    except _TooLong as fault:
+    except TooLong as fault:
         raise limits.exceeded("characters") from fault
     except csv.Error as fault:
         raise Refusal("E102") from fault
@@ -182,7 +197,7 @@ def _count(values: list[str], cells: dict[int, RawValue], count: int, limits: Re
         raise limits.exceeded("table_cells")
 
 
-def _mark_errors(rows: _Rows) -> None:
+def mark_errors(rows: _Rows) -> None:
     """Put errors in the place of Excel's words for them."""
     for cells in rows.values():
         for column, text in cells.items():
@@ -190,7 +205,7 @@ def _mark_errors(rows: _Rows) -> None:
                 cells[column] = ErrorCell(text.strip())
 
 
-def _header(rows: _Rows, schema: str) -> tuple[int, frozenset[int] | None, frozenset[int]]:
+def number_columns(rows: _Rows, schema: str) -> tuple[int, frozenset[int] | None, frozenset[int]]:
     """Return the row of the headers and the columns that hold numbers and texts by them.
 
     Where no header is known, the row is 0 and every column may hold numbers, which None stands for.

@@ -7,19 +7,19 @@ import re
 
 from flexlash.reading.refusal import Refusal
 
-__all__ = ["WINDOWS", "decoded", "unmarked_utf_16"]
+__all__ = ["CONTROL", "MARKS", "WINDOWS", "decoded", "unmarked_utf_16"]
 
 WINDOWS = "Windows-1252"
 """The encoding that is taken when a text is no Unicode; only its reader can tell whether that was right."""
 
-_MARKED = (
+MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig", "UTF-8"),
     (codecs.BOM_UTF32_LE, "utf-32", "UTF-32"),
     (codecs.BOM_UTF32_BE, "utf-32", "UTF-32"),
     (codecs.BOM_UTF16_LE, "utf-16", "UTF-16"),
     (codecs.BOM_UTF16_BE, "utf-16", "UTF-16"),
 )
-_NO_TEXT = re.compile(r"[\x00-\x08\x0e-\x19\x1b-\x1f]")
+CONTROL = re.compile(r"[\x00-\x08\x0e-\x19\x1b-\x1f]")
 """Control characters that no program writes into a table; 1A ended the files of DOS."""
 
 _SAMPLE = 4096
@@ -29,7 +29,7 @@ _MOST = 0.5
 
 def decoded(data: bytes) -> tuple[str, str]:
     """Return a text and the name of its encoding; raise Refusal when it has none that is known."""
-    marked = ((codec, name) for mark, codec, name in _MARKED if data.startswith(mark))
+    marked = ((codec, name) for mark, codec, name in MARKS if data.startswith(mark))
     codec, encoding = next(marked, (unmarked_utf_16(data) or "utf-8", "UTF-16" if unmarked_utf_16(data) else "UTF-8"))
     try:
         text = data.decode(codec)
@@ -59,6 +59,6 @@ def _as_windows(data: bytes) -> str:
         text = data.decode("cp1252")
     except UnicodeDecodeError as fault:
         raise Refusal("E107") from fault
-    if _NO_TEXT.search(text):
+    if CONTROL.search(text):
         raise Refusal("E107")
     return text

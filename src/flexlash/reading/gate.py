@@ -5,8 +5,10 @@ from __future__ import annotations
 import errno
 import os
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Literal
+from typing import BinaryIO, Literal
 
 from flexlash.reading.encodings import unmarked_utf_16
 from flexlash.reading.other_kinds import NEITHER, other_kind
@@ -14,13 +16,16 @@ from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.stamps import has_stamp
 
-__all__ = ["Kind", "Refusal", "kind_of", "read_bytes"]
+__all__ = ["EXCERPT", "Kind", "Refusal", "kind_of", "opened_file", "read_bytes"]
 
 Kind = Literal["workbook", "parquet", "csv"]
 
 _MEBI = 2**20
 _ARCHIVE = b"PK\x03\x04"
 _PARQUET = b"PAR1"
+EXCERPT = b"\0flexlash excerpt\n"
+"""What the rows of a large table begin with on their way to a worker; no file is one."""
+
 _LOCK = "~$"
 """What the name of the file begins with by which Excel marks a workbook as open."""
 
@@ -37,6 +42,26 @@ def read_bytes(path: Path, limits: ReadingLimits | None = None) -> bytes:
     too large, or a lock file.
     """
     limits = limits or ReadingLimits()
+    with opened_file(path) as file:
+        beginning = file.read(len(_PARQUET))
+        setting = "parquet_mebibytes" if beginning == _PARQUET else "file_mebibytes"
+        most = getattr(limits, setting) * _MEBI
+        # A sparse file costs neither time nor memory; one that grows meanwhile is refused by what was read.
+        limits.require(setting, os.fstat(file.fileno()).st_size / _MEBI)
+        data = beginning + file.read(most + 1 - len(beginning))
+        if len(data) > most:
+            raise limits.exceeded(setting)
+    if not data:
+        raise Refusal("E101", found="the file is empty")
+    return data
+
+
+@contextmanager
+def opened_file(path: Path) -> Iterator[BinaryIO]:
+    """Open a regular file to be read.
+
+    Raises OSError when it cannot be opened, is a link, a folder or a device, Refusal when it is a lock file.
+    """
     if _is_lock(path):
         raise Refusal("I525")
     handle = _open(path)
@@ -44,17 +69,7 @@ def read_bytes(path: Path, limits: ReadingLimits | None = None) -> bytes:
         os.close(handle)
         raise FileNotFoundError(errno.ENOENT, "this is no file", str(path))
     with os.fdopen(handle, "rb") as file:
-        beginning = file.read(len(_PARQUET))
-        setting = "parquet_mebibytes" if beginning == _PARQUET else "file_mebibytes"
-        most = getattr(limits, setting) * _MEBI
-        # A sparse file costs neither time nor memory; one that grows meanwhile is refused by what was read.
-        limits.require(setting, os.fstat(handle).st_size / _MEBI)
-        data = beginning + file.read(most + 1 - len(beginning))
-        if len(data) > most:
-            raise limits.exceeded(setting)
-    if not data:
-        raise Refusal("E101", found="the file is empty")
-    return data
+        yield file
 
 
 def _is_lock(path: Path) -> bool:

@@ -14,7 +14,7 @@ from flexlash.reading.xlsx import Cells
 if TYPE_CHECKING:
     import polars as pl
 
-__all__ = ["read_parquet"]
+__all__ = ["is_inexact", "read_parquet", "values_of"]
 
 _MEBI = 2**20
 _EXACT = 2**53
@@ -41,7 +41,7 @@ def read_parquet(data: bytes, limits: ReadingLimits | None = None) -> Cells:
     check_file(data, limits)
     try:
         frame = pl.read_parquet(io.BytesIO(data))
-        columns = [_values(series, limits) for series in frame.get_columns()]
+        columns = [values_of(series, limits) for series in frame.get_columns()]
     except (MemoryError, Refusal):
         raise
     except BaseException as fault:
@@ -58,12 +58,12 @@ def read_parquet(data: bytes, limits: ReadingLimits | None = None) -> Cells:
     return Cells(sheets=[RawSheet(name="Variants", rows=rows)])
 
 
-def _values(series: pl.Series, limits: ReadingLimits) -> list[Any]:
+def values_of(series: pl.Series, limits: ReadingLimits) -> list[Any]:
     """Return a column's values as cells hold them: what is neither number, text, truth value nor date as a text."""
     import polars as pl
 
     kind = series.dtype
-    if kind.is_decimal() or (kind.is_integer() and _is_inexact(series)):
+    if kind.is_decimal() or (kind.is_integer() and is_inexact(series)):
         return series.cast(pl.Float64).to_list()
     if kind.is_numeric() or kind in {pl.Boolean, pl.Null}:
         return series.to_list()
@@ -84,7 +84,7 @@ def _values(series: pl.Series, limits: ReadingLimits) -> list[Any]:
     return [None if value is None else _checked(str(value), limits) for value in series.to_list()]
 
 
-def _is_inexact(series: pl.Series) -> bool:
+def is_inexact(series: pl.Series) -> bool:
     """Whether a column of whole numbers holds one beyond those that are doubles."""
     least, most = series.min(), series.max()
     return least is not None and not -_EXACT <= least <= most <= _EXACT  # type: ignore[operator]

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import hashlib
+import os
 import zlib
-from typing import Any
+from typing import Any, BinaryIO, NamedTuple
 
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.reading.thrift import read_struct
 
-__all__ = ["check_file"]
+__all__ = ["RowGroup", "check_file", "check_group", "row_groups"]
 
 _MARK = b"PAR1"
 _TAIL = 8
 """The length of the footer and the mark, which end a file."""
 
 _MEBI = 2**20
-_LARGEST_FOOTER = 2 * _MEBI
+_LARGEST_FOOTER, _LARGEST_FOOTER_OF_MANY = 2 * _MEBI, 64 * _MEBI
+
+_LARGEST_CHUNK = 512 * _MEBI
 
 _SCHEMA, _ROWS, _GROUPS = 2, 3, 4
 _CHILDREN = 5
@@ -52,21 +56,76 @@ def check_file(data: bytes, limits: ReadingLimits) -> bool:
     return checked == {True}
 
 
-def _footer(data: bytes, limits: ReadingLimits) -> dict[int, Any]:
+class RowGroup(NamedTuple):
+    """A group of rows of a Parquet file, by what its footer says of it."""
+
+    rows: int
+    unpacked: int
+    chunks: tuple[dict[int, Any], ...]
+
+
+def row_groups(file: BinaryIO, limits: ReadingLimits | None = None) -> list[RowGroup]:
+    """Return the groups of rows of a Parquet file, of which nothing but the footer is read.
+
+    Raises Refusal when it is damaged, or has too many columns.
+    """
+    limits = limits or ReadingLimits()
+    try:
+        end = file.seek(-_TAIL, os.SEEK_END)
+        length = min(int.from_bytes(file.read(4), "little"), _LARGEST_FOOTER_OF_MANY)
+        # The mark at the beginning is before the footer as well.
+        file.seek(max(end - length - len(_MARK), 0))
+        footer = _footer(file.read(), limits, _LARGEST_FOOTER_OF_MANY)
+        limits.require("columns", footer[_SCHEMA][0].get(_CHILDREN, 0))
+        return [
+            RowGroup(
+                rows=group[_GROUP_ROWS],
+                unpacked=sum(chunk[_META][_UNPACKED] for chunk in group[_CHUNKS]),
+                chunks=tuple(chunk[_META] for chunk in group[_CHUNKS]),
+            )
+            for group in footer.get(_GROUPS, [])
+        ]
+    except (*_NONSENSE, OSError) as fault:
+        raise Refusal("E102") from fault
+
+
+def check_group(file: BinaryIO, group: RowGroup) -> tuple[set[bool], bytes]:
+    """Return whether pages of a group of rows have checksums, all of them right, and the digest of its bytes.
+
+    Raises Refusal for a wrong checksum.
+    """
+    checked = set()
+    digest = hashlib.blake2b(digest_size=16)
+    try:
+        for chunk in group.chunks:
+            if chunk[_PACKED]:
+                file.seek(min(chunk[field] for field in (_DATA_PAGE, _DICTIONARY_PAGE) if chunk.get(field)))
+                if not 0 < chunk[_PACKED] <= _LARGEST_CHUNK:
+                    raise Refusal("E102")
+                data = file.read(chunk[_PACKED])
+                digest.update(data)
+                checked.add(_is_checked(data, chunk, 0))
+    except (*_NONSENSE, OSError) as fault:
+        raise Refusal("E102") from fault
+    return checked, digest.digest()
+
+
+def _footer(data: bytes, limits: ReadingLimits, largest: int = _LARGEST_FOOTER) -> dict[int, Any]:
     """Return the fields of the footer, which stands before its length at the end of the file."""
     length = int.from_bytes(data[-_TAIL:-4], "little")
     start = len(data) - _TAIL - length
     if not data.endswith(_MARK) or start < len(_MARK):
         raise ValueError("no Parquet file")
-    if length > _LARGEST_FOOTER:
+    if length > largest:
         # It describes every column of every group of rows.
         raise limits.exceeded("columns")
     return read_struct(data[start:-_TAIL], 0)[0]
 
 
-def _is_checked(data: bytes, chunk: dict[int, Any]) -> bool:
+def _is_checked(data: bytes, chunk: dict[int, Any], start: int | None = None) -> bool:
     """Whether the pages of a chunk have checksums; raise ValueError where one of them has none or a wrong one."""
-    start = min(chunk[field] for field in (_DATA_PAGE, _DICTIONARY_PAGE) if chunk.get(field))
+    if start is None:
+        start = min(chunk[field] for field in (_DATA_PAGE, _DICTIONARY_PAGE) if chunk.get(field))
     end = start + chunk[_PACKED]
     try:
         if _PAGE_CHECKSUM not in read_struct(data, start)[0]:

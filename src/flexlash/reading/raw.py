@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
+from flexlash.reading.whole_table import WholeTable
+
 __all__ = [
     "ERROR_WORDS",
     "CommaNumber",
@@ -90,7 +92,7 @@ class RawSheet:
 
     `numbers_are_texts` tells a delimited text, in which a text may be a number, `dialect` how it was written.
     `hidden_rows` hold cells that Excel does not show; `merged` are areas as (first row, first column, last row, last
-    column).
+    column). `whole` are the facts of the table of which these are but some rows; None for a sheet that is all of it.
     """
 
     name: str
@@ -100,6 +102,7 @@ class RawSheet:
     hidden_rows: frozenset[int] = frozenset()
     merged: tuple[tuple[int, int, int, int], ...] = ()
     dialect: CsvDialect | None = None
+    whole: WholeTable | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

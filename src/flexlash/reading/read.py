@@ -13,6 +13,7 @@ from pathlib import Path
 
 from flexlash.reading.carried import read_report
 from flexlash.reading.delimited import read_table
+from flexlash.reading.excerpt import is_excerpt, submission_of_excerpt
 from flexlash.reading.gate import kind_of, read_bytes
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.reading.parquet import read_parquet
@@ -68,7 +69,10 @@ class ReadReport:
 
 
 def submission_of(source: Source, limits: ReadingLimits) -> Submission:
-    """Return the cells of a workbook, a text table or a Parquet file; raise Refusal when it is none of them."""
+    """Return the cells of a workbook, a text table, a Parquet file or an excerpt; raise Refusal when it is none."""
+    if source.path is None and is_excerpt(source.data):
+        with _refusing():
+            return submission_of_excerpt(source.data, limits)
     with _refusing():
         kind = kind_of(source.data)
         cells = _cells(source, kind, limits)

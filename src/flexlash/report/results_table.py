@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 import datetime
-import math
 import re
 from collections.abc import Container, Iterator, Sequence
 
 import polars as pl
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Percentage, RawValue
+from flexlash.reading.own_columns import kind_of, number_of
+from flexlash.reading.raw import ErrorCell, Percentage, RawValue
+from flexlash.reading.whole_table import OwnKind
 from flexlash.schema.result_columns import result_columns
 from flexlash.schema.unused_names import unused_name
 
 __all__ = ["csv_header", "csv_rows", "csv_text", "results_table"]
 
-_NUMBER = re.compile(r"-?(?:0|[1-9]\d*)(?:\.\d+)?(?:[eE][+-]\d{1,3})?", re.ASCII)
-"""A text of a CSV file that is a number and no part number such as 007 or 12E5."""
-
-_MOST_DIGITS = 15
-"""Digits of a number that every program keeps."""
-
-_GREATEST = 2**63
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 _STARTS = ((r"^([\t\r])", "'${1}"), (r"(^|[;|\t\r\n])([=+\-@])", "${1}'${2}"))
@@ -41,10 +35,10 @@ def results_table(outcome: Outcome) -> pl.DataFrame:
     """
     own: list[pl.Series] = []
     taken = {column.key for column in result_columns(cross_check=True, elasticity=True)}
-    for header, values in _own_columns(outcome):
+    for header, values, kind in _own_columns(outcome):
         name = _own_name(header, taken)
         taken.add(name)
-        own.append(_typed(name, values))
+        own.append(_typed(name, values, kind))
     return outcome.results.with_columns(own)
 
 
@@ -55,45 +49,27 @@ def _own_name(header: str, taken: Container[str]) -> str:
     )
 
 
-def _own_columns(outcome: Outcome) -> Iterator[tuple[str, list[RawValue | None]]]:
-    """Yield header and entries of each column that the submission has and flexlash does not use."""
+def _own_columns(outcome: Outcome) -> Iterator[tuple[str, list[RawValue | None], OwnKind]]:
+    """Yield header, entries and kind of each column that the submission has and flexlash does not use."""
     table = outcome.validated.table if outcome.validated else None
     if outcome.validated is None or table is None:
         return
     rows = [row for row, _, _ in outcome.validated.submitted]
     for column, header in sorted(table.heading.extra.items()):
         values = [table.cells[row].get(column) for row in rows]
-        if table.numbers_are_texts:
-            numbers = [None if value is None else _number_of(value) for value in values]
+        kind = table.whole.own.get(column, "text") if table.whole else None
+        if table.numbers_are_texts and kind != "text":
+            numbers = [None if value is None else number_of(value) for value in values]
             is_numeric = all((value is None) == (number is None) for value, number in zip(values, numbers, strict=True))
             values = [*numbers] if is_numeric else values
-        yield _clean(header), values
+        yield _clean(header), values, kind or kind_of(values)
 
 
-def _number_of(value: RawValue) -> float | int | None:
-    """Return the number that a text of a CSV file is, None where it is none or would lose digits."""
-    if not isinstance(value, str) or isinstance(value, DoubtfulNumber):
-        return None
-    text = value.strip()
-    text = text.replace(",", ".") if isinstance(value, CommaNumber) else text
-    digits = sum(character.isdigit() for character in text.lower().partition("e")[0])
-    if not _NUMBER.fullmatch(text) or digits > _MOST_DIGITS:
-        return None
-    return int(text) if text.lstrip("-").isdigit() else float(text)
-
-
-def _typed(name: str, values: Sequence[RawValue | None]) -> pl.Series:
+def _typed(name: str, values: Sequence[RawValue | None], kind: OwnKind) -> pl.Series:
     """Return a column of whole numbers, of numbers, or of texts."""
-    entries = [value for value in values if value is not None]
-    if entries and all(map(_is_number, entries)):
-        is_whole = all(isinstance(value, int) and abs(value) < _GREATEST for value in entries)
-        return pl.Series(name, values, dtype=pl.Int64 if is_whole else pl.Float64, strict=False)
+    if kind in {"whole", "number"}:
+        return pl.Series(name, values, dtype=pl.Int64 if kind == "whole" else pl.Float64, strict=False)
     return pl.Series(name, [None if value is None else _text_of(value) for value in values], dtype=pl.String)
-
-
-def _is_number(value: RawValue) -> bool:
-    """Whether an entry is a finite number."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _text_of(value: RawValue) -> str:

@@ -76,7 +76,7 @@ def with_waiting_rows(findings: Sequence[Finding], table: Table, blocked: Blocke
     for waiting in waiting_rows(table, blocked):
         wait = f"{_rows_words(waiting.rows)} of {sheet} wait{'s' if len(waiting.rows) == 1 else ''}"
         sentences |= dict.fromkeys(waiting.sources, f" {wait} for {waiting.kind} {shown(waiting.name)}.")
-    every = f" All rows of {sheet} wait for it." if blocked.everything and not table.frame.is_empty() else ""
+    every = f" All rows of {sheet} wait for it." if blocked.everything and table.has_entries else ""
     return [
         replace(finding, message=finding.message + sentences.get((finding.sheet, finding.row), every))
         if finding.level == "error" and finding.cell and finding.sheet != table.sheet

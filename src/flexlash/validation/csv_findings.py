@@ -21,10 +21,11 @@ def report_dialect(sheet: RawSheet, ledger: Ledger) -> None:
     facts: dict[str, Any] = {"file": dialect.file} if dialect.file else {}
     if dialect.delimiter != "," or dialect.encoding == "UTF-16":
         ledger.add("I507", value=_NAMES[dialect.delimiter], detail=dialect.encoding, **facts)
-    if dialect.comma_number:
+    # What stands in another excerpt of the same table is told there.
+    if dialect.comma_number and dialect.comma_number[0] in sheet.rows:
         facts |= _at(sheet, dialect.comma_number)
         ledger.add("I510", suggestion=facts["value"].replace(",", "."), **facts)
-    if dialect.foreign_text:
+    if dialect.foreign_text and dialect.foreign_text[0] in sheet.rows:
         ledger.add("I511", **facts | _at(sheet, dialect.foreign_text))
 
 

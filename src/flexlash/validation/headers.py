@@ -37,6 +37,8 @@ def _as_header(cell: RawValue) -> str:
 
 def _filled(sheet: RawSheet, header: int) -> set[int]:
     """Return the columns that hold anything below the header row."""
+    if sheet.whole:
+        return {*sheet.whole.filled}
     return {
         index
         for row, cells in sheet.rows.items()

@@ -13,12 +13,12 @@ from flexlash.schema.columns import columns_of, naming_column
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import Table
 
-__all__ = ["report_hidden_content"]
+__all__ = ["DIGITS", "report_hidden_content"]
 
 _EMPTY_ROWS = 60
 """So many empty rows between two rows fill more than a screen: who scrolls does not see both."""
 
-_DIGITS = re.compile(r"\d{1,3}", re.ASCII)
+DIGITS = re.compile(r"\d{1,3}", re.ASCII)
 
 
 def report_hidden_content(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
@@ -31,8 +31,8 @@ def report_hidden_content(sheet: RawSheet, table: Table, ledger: Ledger) -> None
     for first, last in _runs(rows, sheet.hidden_rows):
         words = f"row {first} is" if first == last else f"rows {first} to {last} are"
         ledger.add("W425", sheet=sheet.name, cell=_name_cell(table, first), detail=words)
-    for above, row in pairwise(rows):
-        if row - above > _EMPTY_ROWS:
+    for above, row in ((sheet.whole.above.get(row, 0), row) for row in rows) if sheet.whole else pairwise(rows):
+        if above and row - above > _EMPTY_ROWS:
             cell = _name_cell(table, row)
             ledger.add("W427", sheet=sheet.name, cell=cell, detail=row - above - 1, other=above)
     _report_digits(sheet, table, ledger)
@@ -44,7 +44,9 @@ def _report_digits(sheet: RawSheet, table: Table, ledger: Ledger) -> None:
         return
     for key, column in columns_of(table.schema).items():
         texts = table.frame.select("row", key).drop_nulls().rows() if column.role == "remark" else []
-        if texts and all(_DIGITS.fullmatch(text) for _, text in texts):
+        if sheet.whole:
+            texts = [(row, text) for row, text in texts if row == sheet.whole.digits.get(key)]
+        if texts and all(DIGITS.fullmatch(text) for _, text in texts):
             row, text = texts[0]
             cell = table.address(row, key)
             ledger.add("W430", sheet=sheet.name, cell=cell, column=key, name=column.name, value=text)

@@ -22,7 +22,7 @@ from flexlash.validation.rows_without_entries import NoEntries, NoEntry
 from flexlash.validation.units_row import take_units_row
 from flexlash.validation.validated import Heading, Table
 
-__all__ = ["tabulate"]
+__all__ = ["entries_of", "longest_text", "surplus_of", "tabulate"]
 
 _MEANT_BESIDE = "setting"
 """First column of Settings, where the template explains each setting in a column without a header."""
@@ -46,13 +46,14 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
         heading=heading,
         frame=pl.DataFrame(),
         numbers_are_texts=sheet.numbers_are_texts,
+        whole=sheet.whole,
     )
     read = {index: columns[key] for key, index in heading.columns.items()}
     records: list[dict[str, Any]] = []
     first_key = naming_column(schema).key
-    for number, cells, bare in _entries(table, sheet, units, ledger):
+    for number, cells, bare in entries_of(table, sheet, units, ledger):
         record: dict[str, Any] = {"row": number}
-        if surplus := _surplus(sheet, heading, number):
+        if surplus := surplus_of(sheet, heading, number):
             _report_surplus(table, number, surplus, sheet, ledger)
         if bare:
             table.faulty.update((number, key) for key in columns)
@@ -73,12 +74,14 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
     return replace(table, frame=pl.DataFrame(records, schema={"row": pl.Int64, **types}, orient="row"))
 
 
-def _entries(
+def entries_of(
     table: Table, sheet: RawSheet, units: int | None, ledger: Ledger
 ) -> Iterator[tuple[int, dict[int, RawValue], NoEntry | None]]:
     """Yield the rows of a table but that of units, each with why it is no entry after all; tell what is none at all."""
     no_entries, last = NoEntries(table.schema, table.heading), table.heading.row
     for number, cells in _data_rows(sheet, table.heading, naming_column(table.schema).key, ledger):
+        if sheet.whole:
+            last = max(sheet.whole.above.get(number, number - 1), units or 0, table.heading.row)
         none = no_entries.of(cells, apart=number > last + 1) if number != units else None
         if none and none.code[0] == "W":
             ledger.add(none.code, sheet=sheet.name, cell=CellAddress(row=number, column=none.column), **none.facts)
@@ -88,7 +91,7 @@ def _entries(
             yield number, cells, none
 
 
-def _surplus(sheet: RawSheet, heading: Heading, row: int) -> list[int]:
+def surplus_of(sheet: RawSheet, heading: Heading, row: int) -> list[int]:
     """Return the columns of a delimited text's row that lie beyond the last header, blank ones where they may count."""
     if sheet.dialect is None:
         return []
@@ -139,13 +142,15 @@ def _data_rows(
         }
         entered = {index: value for index, value in cells.items() if index in named}
         if len(entered) > 1 or first in entered:
-            for index in cells.keys() - named - {*_surplus(sheet, heading, number)}:
+            for index in cells.keys() - named - {*surplus_of(sheet, heading, number)}:
                 nameless.setdefault(index, number)
             yield number, entered
         elif cells:
             index, value = next(iter((entered or cells).items()))
             address = CellAddress(row=number, column=index)
             ledger.add("W408", sheet=sheet.name, cell=address, value=_as_shown(value))
+    if sheet.whole:
+        nameless = {index: number for index, number in sheet.whole.nameless.items() if number in sheet.rows}
     for index, number in sorted(nameless.items()) if first_key != _MEANT_BESIDE else ():
         address = CellAddress(row=number, column=index)
         ledger.add("I509", sheet=sheet.name, cell=address, value=column_letters(index))
@@ -196,7 +201,7 @@ def _typed(cell: _Cell, ledger: Ledger) -> str | float | None:
     typed = (
         as_number(value, column, from_text=cell.table.numbers_are_texts, measure=cell.measure)
         if column.is_number
-        else as_text(value, _longest(column))
+        else as_text(value, longest_text(column))
     )
     if isinstance(typed, float):
         factor = cell.table.heading.factors[column.key]
@@ -227,7 +232,7 @@ def _on_bound(column: Column, value: float) -> float:
     return value
 
 
-def _longest(column: Column) -> int:
+def longest_text(column: Column) -> int:
     """Return how many characters a text may have: names are short, remarks are not."""
     return 1000 if column.role == "remark" else 200
 

@@ -29,7 +29,8 @@ def take_units_row(sheet: RawSheet, heading: Heading, schema: str, ledger: Ledge
 
     A column whose unit there is another than its header's is taken out of the heading, so that nothing of it is used.
     """
-    row = next((number for number in sorted(sheet.rows) if number > heading.row), 0)
+    below = (number for number in sorted(sheet.rows) if number > heading.row)
+    row = sheet.whole.first_row if sheet.whole else next(below, 0)
     columns = columns_of(schema)
     cells = {index: cell for index, cell in sheet.rows.get(row, {}).items() if index not in heading.ignored}
     units = _units({key: cells.get(index, "") for key, index in heading.columns.items()}, columns)

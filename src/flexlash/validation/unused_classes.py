@@ -25,8 +25,8 @@ def report_unused_classes(tolerances: Table | None, variants: Table, known: Iter
     if tolerances is None:
         return
     column = columns_of("Tolerances")[_KEY]
-    entered = variants.frame[_KEY].fill_null("standard")
-    used = {plain(name): name for name in reversed(entered.to_list())}
+    entered = variants.whole.classes if variants.whole else variants.frame[_KEY].fill_null("standard").to_list()
+    used = {plain(name): name for name in reversed(entered)}
     candidates = {key: used[key] for key in known if key in used}
     swapped = _by_letters(candidates)
     for row, name in islice(_unused(tolerances, {"", "standard", *used}), affordable(candidates)):

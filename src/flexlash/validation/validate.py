@@ -12,9 +12,10 @@ import polars as pl
 from flexlash.reading.raw import Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.cell_addresses import CellAddress
-from flexlash.schema.columns import columns_of
+from flexlash.schema.column import Role
+from flexlash.schema.columns import VARIANTS, columns_of
 from flexlash.schema.spellings import affordable, misspelt, plain, spelt_alike, suggested
-from flexlash.schema.variant import Material, Settings, ToleranceRow
+from flexlash.schema.variant import Material, Settings, ToleranceRow, Variant
 from flexlash.validation.cell_values import is_no_value, no_value_facts
 from flexlash.validation.csv_findings import report_dialect
 from flexlash.validation.entry_sheets import entry_sheets, report_other_names, report_second_tables
@@ -32,11 +33,13 @@ from flexlash.validation.template_versions import TEMPLATE_VERSION, check_versio
 from flexlash.validation.typed_columns import tabulate
 from flexlash.validation.unused_classes import report_unused_classes
 from flexlash.validation.validated import Table, Validated
-from flexlash.validation.variant_rows import VariantRows
 
-__all__ = ["TEMPLATE_VERSION", "validate"]
+__all__ = ["MOST_NAMES", "TEMPLATE_VERSION", "validate"]
 
 _OTHER_SOURCES = "Other sources"
+
+MOST_NAMES = 100_000
+"""Most materials or classes named, beyond which none of them is compared with those that there are."""
 
 _NEAR = 0.7
 """Likeness from which on a material or class is suggested; short names of steels share letters by chance."""
@@ -67,7 +70,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
         _check_rows(variants, used, ledger)
         report_unused_classes(tables.get("Tolerances"), variants, used.classes, ledger)
     _report_other_sources(submission, ledger)
-    sound = None if variants is None or ledger.everything else _sound(variants.frame, ledger.rows)
+    sound = variants.frame.iter_rows(named=True) if variants is not None and not ledger.everything else ()
     return Validated(
         file=submission.name,
         findings=tuple(ledger.findings),
@@ -75,18 +78,12 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
         unit_mistakes=ledger.unit_mistakes,
         table=variants,
         tolerances=tables.get("Tolerances"),
-        variants=VariantRows(frame=sound, materials=used.materials, settings=used.settings),
+        variants=tuple(_variant(record, used) for record in sound if record["row"] not in ledger.rows),
         classes=used.classes,
         materials=used.materials,
         settings=used.settings,
         header_rows={schema: table.heading.row for schema, table in tables.items()},
     )
-
-
-def _sound(frame: pl.DataFrame, faulty: Collection[int]) -> pl.DataFrame:
-    """Return the rows that can be computed; the frame itself, held once, where all can."""
-    rows = frame["row"].to_list()
-    return frame.filter(pl.Series([row not in faulty for row in rows], dtype=pl.Boolean)) if faulty else frame
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,7 +116,7 @@ def _used(submission: Submission, present: Collection[str], tables: Mapping[str,
 
 def _check_rows(table: Table, used: _Used, ledger: Ledger) -> None:
     """Check relations, duplicates and references of the Variants rows."""
-    if table.frame.is_empty():
+    if not table.has_entries:
         cell = table.address(table.heading.row + 1, "variant")
         ledger.add("E115", sheet=table.sheet, cell=cell)
         ledger.everything = True
@@ -139,7 +136,8 @@ def _check_references(table: Table, ledger: Ledger, key: str, code: str, names: 
     if ledger.everything and not names:
         return
     known, faulty = spelt_alike(names), ledger.materials if key == "material" else ledger.classes
-    meant = _Meant(names, known)
+    named = table.whole.named[key] if table.whole else table.frame[key].drop_nulls().n_unique()
+    meant = _Meant(names, known, few=named <= min(affordable(names), MOST_NAMES))
     for row, value in table.frame.select("row", key).iter_rows():
         if value is None or (row, key) in table.faulty:
             continue
@@ -161,19 +159,19 @@ def _unknown(key: str, code: str, value: str, meant: Mapping[str, Mapping[str, s
 
 
 class _Meant(dict[str, dict[str, str | None]]):
-    """What unknown names probably mean, looked up once each, for as many as can be compared with all known names."""
+    """What unknown names probably mean, looked up once each, where so `few` are named that all can be compared."""
 
-    def __init__(self, names: Sequence[str], known: Mapping[str, str]) -> None:
+    def __init__(self, names: Sequence[str], known: Mapping[str, str], *, few: bool) -> None:
         super().__init__()
         self.names = names
         self.known = known
-        self.most = affordable(names)
+        self.few = few
 
     def __missing__(self, value: str) -> dict[str, str | None]:
         """Look a name up."""
         self[value] = (
             {"suggestion": suggested(value, self.names, _NEAR), "certain_value": misspelt(value, self.known)}
-            if len(self) < self.most
+            if self.few
             else {}
         )
         return self[value]
@@ -181,6 +179,11 @@ class _Meant(dict[str, dict[str, str | None]]):
 
 def _check_duplicates(table: Table, ledger: Ledger) -> None:
     """Mark every row of a name that is used more than once, each with its partners."""
+    if table.whole:
+        for row in table.frame["row"]:
+            if others := table.whole.partners.get(row):
+                _report(table, ledger, "E308", row, "variant", value=table.entered(row, "variant"), other=others)
+        return
     partners: dict[str, list[int]] = defaultdict(list)
     for row, name in table.frame.select("row", "variant").iter_rows():
         if name is not None:
@@ -202,3 +205,38 @@ def _report_other_sources(submission: Submission, ledger: Ledger) -> None:
     for name, sheet in submission.sheets.items():
         if plain(name) == plain(_OTHER_SOURCES) and len(sheet.rows) > 1:
             ledger.add("W406", sheet=name, cell=CellAddress(row=min(sheet.rows), column=1))
+
+
+def _sizes(record: Mapping[str, Any], role: Role) -> dict[str, float]:
+    """Return the numbers of a row in SI by name; those that are blank, or 0 where that says the same, are left out."""
+    return {
+        column.dimension: record[column.key] * column.si_unit.si
+        for column in VARIANTS
+        if column.role == role
+        and column.is_number
+        and record[column.key] is not None
+        and not (column.zero_is_blank and record[column.key] == 0)
+    }
+
+
+def _variant(record: Mapping[str, Any], used: _Used) -> Variant:
+    """Return a sound row as a variant in SI; dimensions that equal another are left out."""
+    requirements = _sizes(record, "requirement")
+    material = used.materials[plain(record["material"])]
+    constants = dict(material.constants)
+    if "shear_modulus" in constants:
+        constants = {"shear_modulus": constants["shear_modulus"]}
+    return Variant(
+        row=record["row"],
+        name=record["variant"],
+        flexspline_type=record["flexspline_type"] or "cup",
+        material=material.name,
+        tolerance_class=record["tolerance_class"] or "standard",
+        dimensions=_sizes(record, "dimension") | constants | used.settings.calibrations,
+        rated_torque=requirements.get("rated_torque"),
+        load_inertia=requirements.get("load_inertia_kg_m2"),
+        backlash_limit=requirements.get("backlash_limit"),
+        yield_strength=material.yield_strength,
+        youngs_modulus=material.constants.get("youngs_modulus"),
+        poisson_ratio=material.constants.get("poisson_ratio"),
+    )

@@ -7,17 +7,17 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from flexlash.reading.raw import RawValue
+from flexlash.reading.whole_table import WholeTable
 from flexlash.schema.cell_addresses import CellAddress, cell_ranges
 from flexlash.schema.findings import Finding
-from flexlash.schema.variant import Material, Settings, ToleranceRow
-from flexlash.validation.variant_rows import VariantRows
+from flexlash.schema.variant import Material, Settings, ToleranceRow, Variant
 
 if TYPE_CHECKING:
     import polars as pl
 
-__all__ = ["Blocked", "Heading", "Owner", "Table", "UnitMistake", "Validated"]
+__all__ = ["MANY", "Blocked", "Heading", "Owner", "Table", "UnitMistake", "Validated"]
 
-_MANY = 100
+MANY = 100
 """Rows of one name from which on each is told the range of all instead of its partners."""
 
 Owner: TypeAlias = tuple[Literal["material", "class"], str]
@@ -46,7 +46,8 @@ class Table:
     """Typed cells of an entry sheet in the template's units.
 
     `frame` has the column `row` and one column per key of the schema, null where blank or unreadable;
-    `cells` are the raw cells by row and column; `faulty` holds (row, key) of cells that already have a finding.
+    `cells` are the raw cells by row and column; `faulty` holds (row, key) of cells that already have a finding. `whole`
+    are the facts of the table of which these are but some rows.
     """
 
     sheet: str
@@ -56,6 +57,17 @@ class Table:
     cells: dict[int, dict[int, RawValue]] = field(default_factory=dict)
     faulty: set[tuple[int, str]] = field(default_factory=set)
     numbers_are_texts: bool = False
+    whole: WholeTable | None = None
+
+    @property
+    def has_entries(self) -> bool:
+        """Whether there is an entry, here or in the table of which these are but some rows."""
+        return not (self.whole.is_empty if self.whole else self.frame.is_empty())
+
+    @property
+    def last_head_row(self) -> int:
+        """The last row above the entries that every excerpt of the table holds; what is told of it is told by each."""
+        return max(self.heading.row, self.whole.head if self.whole else 0)
 
     def entered(self, row: int, key: str) -> Any:
         """Return a cell as the user entered it, an empty text where it is blank."""
@@ -69,7 +81,7 @@ class Table:
         """Yield rows that hold the same entry, each with the addresses of the others; of many rows, those of all."""
         every = cell_ranges([self.address(row, key) for row in rows])
         for row in rows if len(rows) > 1 else ():
-            few = len(rows) <= _MANY
+            few = len(rows) <= MANY
             yield row, cell_ranges([self.address(other, key) for other in rows if other != row]) if few else every
 
 
@@ -125,7 +137,7 @@ class Validated:
     unit_mistakes: Mapping[tuple[str, int, str], UnitMistake] = field(default_factory=dict)
     table: Table | None = None
     tolerances: Table | None = None
-    variants: VariantRows = field(default_factory=VariantRows)
+    variants: tuple[Variant, ...] = ()
     classes: Mapping[str, Sequence[ToleranceRow]] = field(default_factory=dict)
     materials: Mapping[str, Material] = field(default_factory=dict)
     settings: Settings = field(default_factory=Settings)
