@@ -1,0 +1,196 @@
+"""Work done by the workers of a Dask scheduler, on this machine or others: bytes travel, and nothing else.
+
+Whatever Dask needs on a network is said in docs/clusters.md.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import threading
+from collections.abc import Coroutine, Iterator
+from concurrent.futures import CancelledError, Future
+from contextlib import AsyncExitStack, contextmanager
+from dataclasses import dataclass
+from importlib.util import find_spec
+from typing import Any, TypeVar
+
+from flexlash import __version__
+from flexlash.batch.dask_work import OtherVersion, carried_out_here, end_processes
+from flexlash.batch.executor import Executor, Work, WorkerLostError
+from flexlash.schema.exit_codes import ExitCode
+from flexlash.schema.findings import shown
+
+__all__ = ["LOCAL", "ClusterError", "MissingDaskError", "dask_executor"]
+
+Result = TypeVar("Result")
+
+LOCAL = "local"
+"""The address of a scheduler that is started here, and ends with its caller."""
+
+_ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d{1,5}", re.ASCII)
+
+_HERE = "127.0.0.1:0"
+"""Any port that this computer alone reaches."""
+
+_CONNECTING = 10
+"""Seconds that the scheduler and its first worker may take to answer."""
+
+_TRIES = 3
+"""Times that a piece of work is given to a scheduler that gave it up, having lost several workers over it."""
+
+_QUIET = {
+    # What goes wrong is told by the one that asks; Dask's own words would stand between.
+    "logging": dict.fromkeys(("distributed", "distributed.client", "distributed.core", "tornado"), "critical"),
+    # A workbook may have 20 MiB, and data that are scattered are lost with the worker that holds them.
+    "distributed.admin.large-graph-warning-threshold": "1TiB",
+    "distributed.comm.timeouts.connect": f"{_CONNECTING}s",
+}
+
+
+class MissingDaskError(ModuleNotFoundError):
+    """Dask is not installed."""
+
+    exit_code = ExitCode.USAGE
+
+    def __init__(self) -> None:
+        super().__init__("A scheduler needs Dask: pip install 'flexlash[dask]'.")
+
+
+class ClusterError(OSError):
+    """A scheduler or its workers cannot be reached or cannot do the work."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _DaskExecutor:
+    """The workers of a scheduler, asked in a thread that talks with it."""
+
+    workers: int
+    address: str
+    client: Any
+    loop: asyncio.AbstractEventLoop
+
+    def submit(self, work: Work, data: bytes) -> Future[bytes]:
+        """Return what will be the answer; threads may ask side by side.
+
+        Besides what every executor raises it raises ClusterError when the scheduler is lost, or workers have another
+        version of flexlash.
+        """
+        return asyncio.run_coroutine_threadsafe(self._answer(work, data), self.loop)
+
+    async def _answer(self, work: Work, data: bytes) -> bytes:
+        """Return the answer of some worker; the scheduler repeats by itself what it loses a few workers over."""
+        from distributed import KilledWorker
+
+        for _ in range(_TRIES):
+            try:
+                asked = self.client.submit(carried_out_here, __version__, work, data, pure=False)
+                answer = await asked
+            except KilledWorker:
+                continue
+            except CancelledError:
+                raise _unreachable(self.address) from None
+            except Exception as fault:
+                if self.client.status != "running":
+                    raise _unreachable(self.address) from None
+                raise ClusterError(
+                    f"a worker of the Dask scheduler at {self.address} cannot do the work of flexlash {__version__} "
+                    f"({type(fault).__name__}: {fault}); install flexlash {__version__} there"
+                ) from fault
+            if isinstance(answer, OtherVersion):
+                raise ClusterError(
+                    f"a worker of the Dask scheduler at {self.address} has flexlash {answer}, this is {__version__}; "
+                    "install the same version everywhere"
+                )
+            if isinstance(answer, Exception):
+                raise answer
+            return answer  # type: ignore[no-any-return]
+        raise WorkerLostError(f"all workers of Dask that took up a piece of work were lost, {_TRIES} times")
+
+
+def _unreachable(address: str) -> ClusterError:
+    return ClusterError(f"the Dask scheduler at {address} is not reachable")
+
+
+@contextmanager
+def dask_executor(address: str, workers: int | None = None) -> Iterator[Executor]:
+    """Give an executor of all workers of the Dask scheduler at an address such as `tcp://10.0.0.1:8786`.
+
+    The address `local` starts a scheduler here, with so many `workers` or as many as there are processors; both end
+    when the executor is left. Raises ValueError for what is no address, MissingDaskError, and ClusterError when the
+    scheduler or its workers do not answer.
+    """
+    if address != LOCAL and not _ADDRESS.fullmatch(address):
+        raise ValueError(f"{shown(address)} is no address of a Dask scheduler: local or tcp://HOST:PORT is required")
+    if find_spec("distributed") is None:
+        raise MissingDaskError
+    import dask
+
+    with dask.config.set(_QUIET), _loop() as loop:
+        stack = AsyncExitStack()
+        try:
+            yield _in(loop, _connected(stack, address, workers or os.cpu_count() or 1, loop))
+        finally:
+            _in(loop, stack.aclose())
+
+
+async def _connected(
+    stack: AsyncExitStack, address: str, workers: int, loop: asyncio.AbstractEventLoop
+) -> _DaskExecutor:
+    """Return an executor that is connected until the stack is closed."""
+    from distributed import Client, LocalCluster
+
+    at: Any = address
+    if address == LOCAL:
+        # A worker of Dask within this process, whose own processes do the work. Its servers are seen here alone.
+        at = await stack.enter_async_context(
+            LocalCluster(  # type: ignore[no-untyped-call]
+                n_workers=1, threads_per_worker=workers, processes=False, protocol="inproc://", memory_limit=0,
+                dashboard_address=_HERE, worker_dashboard_address=_HERE, asynchronous=True,
+            )
+        )  # fmt: skip
+        # Before the worker ends, which would wait for what they are doing.
+        stack.callback(end_processes)
+    try:
+        client: Any = Client(at, asynchronous=True, set_as_default=False, timeout=_CONNECTING)  # type: ignore[no-untyped-call]
+        stack.push_async_callback(client.close)
+        await client
+    except OSError as fault:
+        raise ClusterError(f"the Dask scheduler at {address} is not reachable: {fault}") from fault
+    try:
+        await client.wait_for_workers(1, timeout=_CONNECTING)
+    except (TimeoutError, OSError) as fault:
+        raise ClusterError(
+            f"the Dask scheduler at {address} has no workers; start one with: dask worker {address}"
+        ) from fault
+    threads = sum((await client.nthreads()).values())
+    return _DaskExecutor(workers=threads, address=address, client=client, loop=loop)
+
+
+def _in(loop: asyncio.AbstractEventLoop, what: Coroutine[Any, Any, Result]) -> Result:
+    """Return what is worked out in the thread of a loop."""
+    return asyncio.run_coroutine_threadsafe(what, loop).result()
+
+
+@contextmanager
+def _loop() -> Iterator[asyncio.AbstractEventLoop]:
+    """Give a loop that runs in a thread of its own; what it has not finished at the end is cancelled."""
+    loop = asyncio.new_event_loop()
+    thread = threading.Thread(target=loop.run_forever, name="flexlash Dask", daemon=True)
+    thread.start()
+    try:
+        yield loop
+    finally:
+        _in(loop, _all_cancelled())
+        loop.call_soon_threadsafe(loop.stop)
+        thread.join()
+        loop.close()
+
+
+async def _all_cancelled() -> None:
+    """Cancel everything else that this loop is doing."""
+    others = asyncio.all_tasks() - {asyncio.current_task()}
+    for task in others:
+        task.cancel()
+    await asyncio.gather(*others, return_exceptions=True)

@@ -1,0 +1,58 @@
+"""What a worker of Dask does: it hands each piece of work to processes of its own machine, which live as long as it.
+
+Whatever a file does to its reader stops such a process alone: the worker of Dask neither has limits nor is lost, and no
+piece of work that waits for it is blamed.
+"""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import CancelledError
+
+from flexlash import __version__
+from flexlash.batch.executor import Work, WorkerLostError
+from flexlash.batch.local_executor import prepared, worked
+from flexlash.reading.libraries import ChangedLibrary
+from flexlash.reading.limited_process import ProcessFaultError
+from flexlash.workers import FEW_THREADS, Workers
+
+__all__ = ["OtherVersion", "carried_out_here", "end_processes"]
+
+
+class OtherVersion(Exception):
+    """Another version of flexlash than the one that asks would give other numbers."""
+
+
+_STARTING = threading.Lock()
+_PROCESSES: list[Workers] = []
+"""The processes of this worker, as many as it has threads."""
+
+
+def _processes() -> Workers:
+    """Return the processes of this worker, which the first piece of work starts."""
+    from distributed import get_worker
+
+    with _STARTING:
+        if not _PROCESSES:
+            _PROCESSES.append(Workers(get_worker().state.nthreads, prepared, FEW_THREADS))
+        return _PROCESSES[0]
+
+
+def end_processes() -> None:
+    """End the processes of a worker that ends before its own process does."""
+    with _STARTING:
+        while _PROCESSES:
+            _PROCESSES.pop().close()
+
+
+def carried_out_here(version: str, work: Work, data: bytes) -> bytes | Exception:
+    """Return the answer to a piece of work of this version of flexlash, or what it raises.
+
+    An exception is returned, since Dask would tell it in its own log and take it for one of its own.
+    """
+    if version != __version__:
+        return OtherVersion(__version__)
+    try:
+        return _processes().submit(worked, work, data).result()
+    except (WorkerLostError, ProcessFaultError, ChangedLibrary, CancelledError) as fault:
+        return fault
