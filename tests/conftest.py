@@ -11,11 +11,13 @@ from typing import Any
 import openpyxl
 import pytest
 from filled import SOUND, filled
-from here import WHERE, answer_here
+from here import WHERE, WORKERS, answer_here, workers_here
 
+from flexlash.cli import batches
 from flexlash.reading import limited_process as isolated
 
-_APART = isolated._answer
+_APART = {WHERE: isolated._answer, WORKERS: batches.workers}
+_HERE = {WHERE: answer_here, WORKERS: workers_here}
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -55,9 +57,10 @@ def pytest_make_collect_report(collector):
 
 @pytest.fixture(scope="session", autouse=True)
 def _read_here():
-    """Read workbooks in this process: starting another takes a second."""
+    """Read and compute in this process: starting another takes a second."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(WHERE, answer_here)
+        for place, here in _HERE.items():
+            patch.setattr(place, here)
         yield
 
 
@@ -65,16 +68,16 @@ def _read_here():
 def _read_apart_in_module(request):
     """Read them in a process of their own, as the program does, also in the fixtures of a module that is about it."""
     with pytest.MonkeyPatch.context() as patch:
-        if request.node.get_closest_marker("limited_process"):
-            patch.setattr(WHERE, _APART)
+        for place, apart in _APART.items() if request.node.get_closest_marker("limited_process") else ():
+            patch.setattr(place, apart)
         yield
 
 
 @pytest.fixture(autouse=True)
 def _read_apart(request, monkeypatch):
     """Read them in a process of their own where a test is about it."""
-    if "limited_process" in request.keywords:
-        monkeypatch.setattr(WHERE, _APART)
+    for place, apart in _APART.items() if "limited_process" in request.keywords else ():
+        monkeypatch.setattr(place, apart)
 
 
 @pytest.fixture

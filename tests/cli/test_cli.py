@@ -441,7 +441,7 @@ def test_an_internal_error_is_one_sentence(table, sound, monkeypatch, capsys, ma
     def fail(*_, **__):
         raise ZeroDivisionError
 
-    monkeypatch.setattr("flexlash.pipeline.check", fail)
+    monkeypatch.setattr("flexlash.batch.compute.examined", fail)
     path = table([sound])
     assert main_in("check", path) == 1
     err = capsys.readouterr().err
@@ -460,7 +460,7 @@ def test_an_interrupt_ends_with_130(table, sound, monkeypatch, capsys, main_in):
     def interrupt(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("flexlash.pipeline.check", interrupt)
+    monkeypatch.setattr("flexlash.batch.side_by_side.wait", interrupt)
     assert main_in("check", table([sound])) == 130
     assert "Interrupted." in capsys.readouterr().err
 

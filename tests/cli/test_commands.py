@@ -140,15 +140,13 @@ def test_files_that_cannot_be_compared(what, as_json, report, tmp_path):
 
 
 FOLDERS = (
-    ["run", "."], ["run", "--from-report", "."], ["run", "/"], ["run", ""], ["check", "."],
-    ["check", "--annotate", "/"], ["check", "--apply-fixes", "."], ["template", "--upgrade", "."],
-    ["template", "--upgrade", "/"],
+    ["run", "--from-report", "."], ["template", "--upgrade", "."], ["template", "--upgrade", "/"], ["diff", ".", "/"],
 )  # fmt: skip
 
 
 @pytest.mark.parametrize("arguments", FOLDERS, ids=" ".join)
 def test_folders_are_no_files(arguments, tmp_path, monkeypatch, capsys):
-    """Every command that is given a folder says so, ends with 5 and writes nothing."""
+    """A command that takes files alone and is given a folder says so, ends with 5 and writes nothing."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("sys.argv", ["flexlash", *arguments])
     with pytest.raises(SystemExit) as stop:
@@ -156,6 +154,29 @@ def test_folders_are_no_files(arguments, tmp_path, monkeypatch, capsys):
     assert stop.value.code == 5
     assert "this is a folder; give the files in it" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("arguments", [["run"], ["run", "-o", "out"], ["check"], ["check", "--annotate"]], ids=" ".join)
+def test_a_folder_without_a_submission_is_nothing(arguments, tmp_path, monkeypatch):
+    """Run and check say that there is nothing in a folder to compute, and end with 4; with --json as well."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in" / "letter.docx").touch()
+    done = _call(*arguments, "in")
+    assert done.exit_code == 4
+    assert "in: not read: 1 file of other kinds (.docx)." in done.stderr
+    assert "in: there is no submission in this folder" in done.stderr
+    assert done.stdout.startswith("Total of 0 submissions")
+    told = _call(*arguments, "in", "--json")
+    assert json.loads(told.stdout)["total"]["exit_code"] == told.exit_code == 4
+
+
+def test_an_empty_name_is_not_the_present_folder(tmp_path, monkeypatch):
+    """A variable of a script that is not set does not compute whatever lies here."""
+    monkeypatch.chdir(tmp_path)
+    for command in ("run", "check"):
+        done = _call(command, "")
+        assert (done.exit_code, "a name is empty" in done.stderr) == (2, True)
 
 
 @pytest.mark.slow

@@ -135,7 +135,8 @@ def test_quiet_is_silent_unless_something_failed(every_kind, command):
     done = _call(command, "--quiet", every_kind["fine"], every_kind["fine"])
     assert (done.exit_code, done.output) == (0, "")
     failed = _call(command, "--quiet", every_kind["fine"], every_kind["partly"])
-    assert "E201" in failed.output
+    assert f"{every_kind['partly']}: 1 of 2 rows" in failed.output
+    assert "E201" in _call(command, "--quiet", "-v", every_kind["fine"], every_kind["partly"]).output
     assert str(every_kind["fine"]) not in failed.output
     assert failed.stdout.splitlines()[-1].startswith("Total of 2 submissions")
     assert json.loads(_call(command, "--quiet", "--json", every_kind["fine"]).stdout)["exit_code"] == 0
@@ -143,7 +144,9 @@ def test_quiet_is_silent_unless_something_failed(every_kind, command):
 
 def test_nothing_but_skipped_files_is_nothing(every_kind):
     """Where every file is skipped, there was nothing to compute."""
-    done = _call("check", every_kind["skipped"], every_kind["skipped"], "--json")
+    again = every_kind["skipped"].with_name("again.xlsx")
+    again.write_bytes(every_kind["skipped"].read_bytes())
+    done = _call("check", every_kind["skipped"], again, "--json")
     *objects, last = map(json.loads, done.stdout.splitlines())
     assert [one["exit_code"] for one in objects] == [0, 0]
     assert last["total"] == {"submissions": 0, "computed": 0, "partly": 0, "not": 0, "exit_code": 4}
@@ -165,10 +168,10 @@ def test_whatever_happens_to_one_the_others_are_computed(table, sound, tmp_path,
 
     examined = pipeline.examined
 
-    def failing(source, options):
+    def failing(source, *more):
         if source.name == "b.csv":
             raise fault
-        return examined(source, options)
+        return examined(source, *more)
 
     monkeypatch.setattr(pipeline, "examined", failing)
     done = _call("run", "--samples", 64, *paths)

@@ -2,12 +2,15 @@
 
 import math
 
+import numpy as np
 import pytest
 from flexsplines import B3_160, CYLINDER, HAT, REFINED, REFINEMENTS, SHAPES, without
 
 from flexlash.mechanics import flexspline, strength, windup
 from flexlash.mechanics.nominal import nominal_numbers
+from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.variant import Variant
+from flexlash.schema.variant_arrays import VariantArrays
 
 STEEL = {"youngs_modulus": 211e9, "poisson_ratio": 0.3}
 
@@ -27,8 +30,19 @@ def variant(row, kind="cup", dimensions=B3_160, **rest):
 
 def _numbers(variants, share):
     """Return those nominal numbers that each variant has, by name."""
-    found = nominal_numbers(variants, share)
-    return [{key: value for key, value in vars(one).items() if value is not None} for one in found]
+    beside = ("rated_torque", "load_inertia", "yield_strength", "youngs_modulus", "poisson_ratio")
+    arrays = VariantArrays(
+        flexspline_types=[one.flexspline_type for one in variants],
+        dimensions={name: _column(one.dimensions.get(name) for one in variants) for name in DIMENSIONS},
+        numbers={name: _column(getattr(one, name) for one in variants) for name in beside},
+    )
+    found = nominal_numbers(arrays, share).iter_rows(named=True)
+    return [{key: value for key, value in one.items() if value is not None} for one in found]
+
+
+def _column(values):
+    """Return numbers as an array, NaN for None."""
+    return np.array(list(values), dtype=float)
 
 
 def test_nominal_numbers_of_the_baseline():

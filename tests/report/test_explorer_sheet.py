@@ -14,6 +14,7 @@ from scipy.special import ndtri
 from flexlash.pipeline import run
 from flexlash.report.explorer.curves_sheet import CURVES_NOTE, stored_curves
 from flexlash.report.explorer.explorer_sheet import write_explorer
+from flexlash.report.extent import extent_of
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import drawn_variants
 from flexlash.schema.units import ARCMIN
@@ -36,7 +37,7 @@ def _explorer_alone(outcome, path):
     drawn = path.with_name(f"drawn {path.name}")
     with xlsxwriter.Workbook(drawn) as workbook:
         book, curves = Book(workbook), stored_curves(drawn_variants(outcome))
-        write_explorer(book, curves, len(outcome.computed))
+        write_explorer(book, curves, extent_of(outcome))
         curves.write(book, CURVES_NOTE)
     return without_charts(drawn, path)
 

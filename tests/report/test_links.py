@@ -13,7 +13,7 @@ from flexlash.report.layout import links
 from flexlash.report.layout.links import (
     finding_list,
     finding_rows,
-    name_cell,
+    name_column,
     result_rows,
     row_of,
     rules_of,
@@ -35,7 +35,7 @@ def outcome(table, sound):
 def test_rows_of_results_follow_the_submitted_rows(outcome):
     """Row numbers of the submission lead to the rows of Results in submitted order."""
     assert result_rows(outcome) == {2: 2, 3: 3, 4: 4}
-    assert name_cell(outcome) == "B"
+    assert name_column(outcome) == 2
 
 
 def test_findings_are_listed_worst_first(outcome):

@@ -44,7 +44,7 @@ the rows of a table by the functions that judge a table read at once, while noth
 
 EDGES = {
     "openpyxl": {"reading"},
-    "xlsxwriter": {"feedback", "report"},
+    "xlsxwriter": {"batch", "feedback", "report"},
     "pandera": {"validation"},
     "click": {"cli"},
     "scipy": {"mechanics", "report", "tolerance"},

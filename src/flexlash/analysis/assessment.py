@@ -4,18 +4,32 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
-from flexlash.analysis.computed import Computed, Nominal
+import numpy as np
+import numpy.typing as npt
+import polars as pl
+
+from flexlash.analysis.computed import ComputedRows, Nominal
 from flexlash.mechanics.nominal import nominal_numbers
 from flexlash.mechanics.nominal_record import NominalNumbers
 from flexlash.mechanics.stiffness import catalogue_torque
+from flexlash.schema.arrays import Array
 from flexlash.schema.columns import DIMENSIONS, VARIANTS, columns_of
 from flexlash.schema.findings import spelled_out
 from flexlash.schema.spellings import plain
 from flexlash.schema.units import ARCMIN, RPM
 from flexlash.schema.variant import Limits, Settings, ToleranceRow, Variant
-from flexlash.tolerance.dimension_limits import LimitsProblem, limits_of, shape_problems
+from flexlash.schema.variant_arrays import VariantArrays
+from flexlash.tolerance.dimension_limits import (
+    LimitArrays,
+    LimitsProblem,
+    beyond_doubt,
+    limits_alike,
+    limits_of,
+    shape_problems,
+)
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import UnitMistake, Validated
 
@@ -42,38 +56,115 @@ _CODES = {"impossible": "E314", "untabulated": "E315", "cut": "W405", "overlap":
 
 
 def assess(validated: Validated, settings: Settings) -> Nominal:
-    """Return the computable variants with their limits and nominal numbers, and what these show to be wrong."""
-    ledger = Ledger.after(validated)
-    limits: dict[int, dict[str, Limits]] = {}
-    for variant in validated.variants:
-        rows = validated.classes[plain(variant.tolerance_class)]
-        found, untabulated = limits_of(variant, rows)
-        kept, misshapen = shape_problems(variant, found)
-        for problem in (*untabulated, *misshapen):
-            _report_limits(ledger, variant, problem)
-        kinds = {problem.dimension: problem.kind for problem in (*untabulated, *misshapen) if problem.kind != "overlap"}
-        _judge_widths(ledger, variant, rows, found, kinds)
-        limits[variant.row] = kept
-    _report_exact(validated, ledger)
-    sound = [variant for variant in validated.variants if variant.row not in ledger.rows]
-    numbers = nominal_numbers(sound, settings.lost_motion_percent / 100)
+    """Return the computable variants with their limits and nominal numbers, and what these show to be wrong.
+
+    All variants are looked at together, and one by one only those of which there may be something to say.
+    """
+    ledger, variants = Ledger.after(validated), validated.variants
+    if not variants:
+        return Nominal(blocked=ledger.blocked)
+    arrays, rows = variants.arrays(), np.array(variants.rows)
+    for place in np.flatnonzero(~_limits_are_fine(validated, arrays)).tolist():
+        _report_all_limits(ledger, variants[place], validated.classes)
+    _report_exact(validated, arrays, ledger)
+    sound = np.flatnonzero(~np.isin(rows, list(ledger.rows)))
+    arrays = arrays.take(sound)
+    numbers = pl.DataFrame({"row": rows[sound], "place": sound})
+    numbers = numbers.hstack(nominal_numbers(arrays, settings.lost_motion_percent / 100))
+    computed = ComputedRows(validated=validated, numbers=numbers)
     mistakes = _by_owner(validated.unit_mistakes.values())
-    for variant, nominal in zip(sound, numbers, strict=True):
-        mistaken = [*mistakes.get(variant.row, ()), *mistakes.get(plain(variant.material), ())]
-        if not _LEAST < nominal.backlash < _GREATEST:
-            _report_backlash(ledger, variant, nominal, mistaken)
-            continue
-        _report_calibration(ledger, variant)
-        if not mistaken:
-            _report_strength(ledger, variant, nominal)
-            _report_stiffness(ledger, variant, nominal)
-            _report_limit(ledger, variant, nominal)
-    computed = {
-        variant.row: Computed(variant=variant, limits=limits[variant.row], nominal=nominal)
-        for variant, nominal in zip(sound, numbers, strict=True)
-        if variant.row not in ledger.rows
-    }
-    return Nominal(computed=computed, findings=tuple(ledger.findings), blocked=ledger.blocked)
+    for place in np.flatnonzero(~_numbers_are_fine(arrays, numbers)).tolist():
+        _report_numbers(ledger, computed.variant(place), computed.nominal(place), mistakes)
+    kept = numbers.filter(~np.isin(rows[sound], list(ledger.rows)))
+    return Nominal(
+        computed=replace(computed, numbers=kept) if kept.height else ComputedRows(),
+        findings=tuple(ledger.findings),
+        blocked=ledger.blocked,
+    )
+
+
+def _limits_are_fine(validated: Validated, arrays: VariantArrays) -> npt.NDArray[np.bool_]:
+    """Return of which variants there is surely nothing to say about limits."""
+    fine = np.zeros(len(arrays.flexspline_types), dtype=bool)
+    with np.errstate(all="ignore"):
+        for flexspline_type, owner, places, sizes in arrays.alike(validated.variants.classes):
+            rows = validated.classes[owner]
+            limits = limits_alike(sizes, rows)
+            fine[places] = beyond_doubt(flexspline_type, sizes, limits) & _widths_are_usual(sizes, limits, rows)
+    return fine
+
+
+def _widths_are_usual(
+    sizes: Mapping[str, Array], limits: Mapping[str, LimitArrays], rows: Sequence[ToleranceRow]
+) -> npt.NDArray[np.bool_]:
+    """Return of which variants alike no limits are wide or hardly any beside their dimension."""
+    general, meant = _general_and_meant(rows)
+    usual = np.ones(len(sizes["torque"]), dtype=bool)
+    for name, one in limits.items():
+        share = (one.high - one.low) / 2 / np.where(sizes[name] == 0, 1.0, abs(sizes[name]))
+        usual &= share <= (_COARSE if name in general & _THICKNESSES else _WIDE)
+        usual &= (share >= _EXACT) | (name not in meant)
+    return usual
+
+
+def _numbers_are_fine(arrays: VariantArrays, numbers: pl.DataFrame) -> npt.NDArray[np.bool_]:
+    """Return of which variants there is surely nothing to say about their nominal numbers."""
+    of = {name: numbers[name].to_numpy() for name in _LOOKED_AT}
+    sizes, asked, none = arrays.dimensions, arrays.numbers, np.full(numbers.height, np.nan)
+    refined = np.any([np.isfinite(sizes.get(name, none)) for name in _REFINEMENTS], axis=0)
+    listed = [catalogue_torque(radius) for radius in of["mean_radius"].tolist()]
+    most = np.array([one.torque if one else np.nan for one in listed])
+    return ~(  # type: ignore[no-any-return]
+        ~((of["backlash"] > _LEAST) & (of["backlash"] < _GREATEST))
+        | (refined & ((sizes["cylinder_calibration"] != 1) | (sizes["disk_calibration"] != 1)))
+        | (of["von_mises"] > asked["yield_strength"])
+        | (of["wall_shear"] > of["buckling_shear"])
+        | (sizes["torque"] > most)
+        | (of["least_stiffness"] > of["stiffness"])
+        | (of["resonance_speed_low"] < _USUAL_SPEED)
+        | (of["backlash"] > asked["backlash_limit"])
+    )
+
+
+_LOOKED_AT = (
+    "backlash",
+    "buckling_shear",
+    "least_stiffness",
+    "mean_radius",
+    "resonance_speed_low",
+    "stiffness",
+    "von_mises",
+    "wall_shear",
+)
+
+
+def _report_all_limits(ledger: Ledger, variant: Variant, classes: Mapping[str, Sequence[ToleranceRow]]) -> None:
+    """Record all that is to be said of a variant's limits."""
+    rows = classes[plain(variant.tolerance_class)]
+    found, untabulated = limits_of(variant, rows)
+    problems = (*untabulated, *shape_problems(variant, found)[1])
+    for problem in problems:
+        _report_limits(ledger, variant, problem)
+    kinds = {problem.dimension: problem.kind for problem in problems if problem.kind != "overlap"}
+    _judge_widths(ledger, variant, rows, found, kinds)
+
+
+def _report_numbers(
+    ledger: Ledger,
+    variant: Variant,
+    nominal: NominalNumbers,
+    mistakes: Mapping[int | str, Sequence[UnitMistake]],
+) -> None:
+    """Record all that is to be said of a variant's nominal numbers."""
+    mistaken = [*mistakes.get(variant.row, ()), *mistakes.get(plain(variant.material), ())]
+    if not _LEAST < nominal.backlash < _GREATEST:
+        _report_backlash(ledger, variant, nominal, mistaken)
+        return
+    _report_calibration(ledger, variant)
+    if not mistaken:
+        _report_strength(ledger, variant, nominal)
+        _report_stiffness(ledger, variant, nominal)
+        _report_limit(ledger, variant, nominal)
 
 
 def _by_owner(mistakes: Iterable[UnitMistake]) -> dict[int | str, list[UnitMistake]]:
@@ -111,8 +202,7 @@ def _judge_widths(
 
     `kinds` are the problems that dimensions have already: beside a cut tail only an absurd width is reported.
     """
-    general = {row.dimension for row in rows if (row.grade or "").startswith("2768")}
-    meant = {row.dimension for row in rows if row.grade or row.lower < row.upper}
+    general, meant = _general_and_meant(rows)
     for name, limit in limits.items():
         column, nominal = DIMENSIONS[name], variant.dimensions[name]
         share = (limit.high - limit.low) / 2 / (abs(nominal) or 1.0)
@@ -132,6 +222,12 @@ def _judge_widths(
         )
 
 
+def _general_and_meant(rows: Sequence[ToleranceRow]) -> tuple[set[str], set[str]]:
+    """Return the dimensions with a general tolerance, and those that are meant to scatter."""
+    general = {row.dimension for row in rows if (row.grade or "").startswith("2768")}
+    return general, {row.dimension for row in rows if row.grade or row.lower < row.upper}
+
+
 def _width_code(share: float, *, coarse: bool, meant: bool) -> str:
     """Return the code of what is wrong with half a width of limits, as a share of the value; empty for nothing."""
     if share > 1 + _ROUNDING:
@@ -143,16 +239,15 @@ def _width_code(share: float, *, coarse: bool, meant: bool) -> str:
     return "W441" if meant and share < _EXACT else ""
 
 
-def _report_exact(validated: Validated, ledger: Ledger) -> None:
+def _report_exact(validated: Validated, arrays: VariantArrays, ledger: Ledger) -> None:
     """Warn once of each class that has no row for dimensions which `standard` scatters and one of its variants has."""
     table, standard = validated.tolerances, validated.classes.get("standard", [])
     if table is None:
         return
     exact: dict[str, set[str]] = defaultdict(set)
-    for variant in validated.variants:
-        name = plain(variant.tolerance_class)
-        scattered = limits_of(variant, standard)[0].keys() - {row.dimension for row in validated.classes[name]}
-        exact[name] |= scattered
+    for _, owner, _, sizes in arrays.alike(validated.variants.classes):
+        scattered = {name for name, one in limits_alike(sizes, standard).items() if one.given.any()}
+        exact[owner] |= scattered - {row.dimension for row in validated.classes[owner]}
     for row, name in table.frame.select("row", "tolerance_class").iter_rows():
         if left := exact.pop(plain(name or ""), None):
             words = ", ".join(column.plain_name for one, column in DIMENSIONS.items() if one in left)

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
+from flexlash.analysis.row_records import RowRecords
 from flexlash.mechanics.nominal_record import NominalNumbers
 from flexlash.schema.findings import Finding
+from flexlash.schema.spellings import plain
 from flexlash.schema.variant import Limits, Variant
-from flexlash.validation.validated import Blocked
+from flexlash.validation.validated import Blocked, Validated
 
 if TYPE_CHECKING:
+    import polars as pl
+
+    from flexlash.analysis.spread_rows import SpreadRows
     from flexlash.tolerance.spread_statistics import SpreadStatistics
 
-__all__ = ["Computed", "Elasticity", "Nominal", "Spread", "Verified"]
+__all__ = ["Computed", "ComputedRows", "Elasticity", "Nominal", "Spread", "Verified"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,18 +38,82 @@ class Elasticity:
     junction_fillet_shear: float | None
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Computed:
     """One computed variant, all in SI: as entered, its limits, its nominal numbers, its spread, its elasticity check.
 
-    What no stage has found so far, or could not find, is None.
+    What no stage has found so far, or could not find, is None. Each part is made when it is first asked for.
     """
 
-    variant: Variant
-    limits: Mapping[str, Limits]
-    nominal: NominalNumbers
-    spread: SpreadStatistics | None = None
-    elasticity: Elasticity | None = None
+    among: ComputedRows = field(repr=False)
+    place: int
+
+    @cached_property
+    def variant(self) -> Variant:
+        """The variant as entered."""
+        return self.among.variant(self.place)
+
+    @cached_property
+    def limits(self) -> Mapping[str, Limits]:
+        """The limits of its dimensions, far tails cut."""
+        from flexlash.tolerance.dimension_limits import limits_of, shape_problems
+
+        rows = self.among.validated.classes[plain(self.variant.tolerance_class)]
+        return shape_problems(self.variant, limits_of(self.variant, rows)[0])[0]
+
+    @cached_property
+    def nominal(self) -> NominalNumbers:
+        """Its numbers at the entered dimensions."""
+        return self.among.nominal(self.place)
+
+    @cached_property
+    def spread(self) -> SpreadStatistics | None:
+        """Its spread."""
+        statistics = self.among.statistics
+        return None if statistics is None else statistics.get(self.variant.row)
+
+    @cached_property
+    def elasticity(self) -> Elasticity | None:
+        """Its elasticity check."""
+        return self.among.checks.get(self.variant.row)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ComputedRows(RowRecords[Computed]):
+    """The computed variants by row number, which rises; held as columns, each a record when it is asked for.
+
+    `numbers` has the columns `row`, `place` among the variants of `validated`, and the fields of `NominalNumbers`; it
+    is None where no variant is computed. `statistics` and `checks` are what later stages found, by row number.
+    """
+
+    validated: Validated = field(default_factory=Validated)
+    numbers: pl.DataFrame | None = None
+    statistics: SpreadRows | None = None
+    checks: Mapping[int, Elasticity] = field(default_factory=dict)
+
+    @property
+    def columns(self) -> pl.DataFrame | None:
+        """The numbers."""
+        return self.numbers
+
+    def at(self, place: int) -> Computed:
+        """Return the variant at a place among the computed ones."""
+        return Computed(self, place)
+
+    def variant(self, place: int) -> Variant:
+        """Return the variant at a place among the computed ones."""
+        return self.validated.variants[int(self._numbers["place"][place])]
+
+    def nominal(self, place: int) -> NominalNumbers:
+        """Return the nominal numbers at a place among the computed ones."""
+        _, _, *numbers = self._numbers.row(place)
+        return NominalNumbers(**dict(zip(NominalNumbers.__dataclass_fields__, numbers, strict=True)))
+
+    @property
+    def _numbers(self) -> pl.DataFrame:
+        if self.numbers is None:
+            raise LookupError("no variant is computed")
+        return self.numbers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +123,7 @@ class Nominal:
     `blocked` is what is not to be computed after this stage.
     """
 
-    computed: Mapping[int, Computed] = field(default_factory=dict)
+    computed: ComputedRows = field(default_factory=ComputedRows)
     findings: tuple[Finding, ...] = ()
     blocked: Blocked = field(default_factory=Blocked)
 
@@ -62,7 +132,7 @@ class Nominal:
 class Spread:
     """The spread of each variant by row number; `cross_checked` says that plain Monte Carlo stands beside it."""
 
-    statistics: Mapping[int, SpreadStatistics]
+    statistics: SpreadRows
     cross_checked: bool = False
 
 

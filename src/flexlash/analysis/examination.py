@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from flexlash.analysis.computed import Nominal
+from flexlash.analysis.computed import ComputedRows, Nominal
 from flexlash.analysis.options import Options
 from flexlash.reading.limited_process import ask
 from flexlash.reading.products import Companions, require_submission
@@ -124,7 +124,7 @@ def _with_numbers(found: Examined) -> Examined:
         return found
     nominal = assess(found.validated, found.settings)
     if found.options.strict and len(nominal.computed) < len(found.validated.submitted):
-        nominal = replace(nominal, computed={})
+        nominal = replace(nominal, computed=ComputedRows())
     return replace(found, nominal=nominal)
 
 

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from flexlash.analysis.computed import Computed
-from flexlash.analysis.options import Options
-from flexlash.analysis.tolerance_spread import spread_of
+from flexlash.analysis.tolerance_spread import spread_again
 from flexlash.mechanics.flexspline import backlash
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.limit_verdict import misses_limit
@@ -108,14 +107,10 @@ def _halvings(one: Computed, settings: Settings) -> Iterable[Halving]:
     drawing = [name for name in ranked if DIMENSIONS[name].quantity in {"length", "angle"}]
     wanted = dict.fromkeys([(ranked[0],), *((name,) for name in drawing[:1]), tuple(ranked)])
     halved = [{name: _half(one.limits[name]) for name in names} for names in wanted]
-    trials = {
-        place: replace(one, variant=replace(one.variant, row=place), limits={**one.limits, **limits})
-        for place, limits in enumerate(halved)
-    }
-    spread = spread_of(trials, replace(settings, method="line", samples=None), Options())
-    for place, limits in enumerate(halved):
+    spread = spread_again(one, [{**one.limits, **limits} for limits in halved], settings)
+    for limits, statistics in zip(halved, spread, strict=True):
         keys = (f"probability_over_limit{end}" for end in ("", "_low", "_high"))
-        yield Halving(limits=limits, over={key: _number(spread.statistics[place], key) for key in keys})
+        yield Halving(limits=limits, over={key: _number(statistics, key) for key in keys})
 
 
 def _half(limits: Limits) -> Limits:

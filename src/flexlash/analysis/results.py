@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import fields
-from operator import truediv
-from typing import TYPE_CHECKING, Any
+from dataclasses import asdict, fields
 
 import polars as pl
 
-from flexlash.analysis.computed import Computed, Elasticity
-from flexlash.mechanics.nominal_record import NominalNumbers
+from flexlash.analysis.computed import ComputedRows, Elasticity
 from flexlash.schema.column import Column
 from flexlash.schema.findings import Finding
 from flexlash.schema.result_columns import result_columns
 from flexlash.schema.units import ARCMIN, RPM, as_entered
 from flexlash.validation.column_schemas import checked_results
 from flexlash.validation.validated import Table
-
-if TYPE_CHECKING:
-    from flexlash.tolerance.spread_statistics import SpreadStatistics
 
 __all__ = ["empty_results", "results_of"]
 
@@ -47,8 +40,7 @@ _STEMS = {column.key: (column.dimension, column.si_unit.si) for column in _COLUM
 _ENTERED = frozenset({"backlash_limit_arcmin", "hub_shear_radius_mm"})
 """Results that repeat an entry, the radius where it is the disk's own."""
 
-_NOMINAL = frozenset(one.name for one in fields(NominalNumbers))
-_ELASTICITY = {f"elasticity_{one.name}": one.name for one in fields(Elasticity)}
+_ELASTICITY = [one.name for one in fields(Elasticity)]
 
 
 def empty_results() -> pl.DataFrame:
@@ -58,7 +50,7 @@ def empty_results() -> pl.DataFrame:
 
 def results_of(
     table: Table,
-    computed: Mapping[int, Computed],
+    computed: ComputedRows,
     findings: Iterable[Finding],
     stops: Mapping[int, Sequence[Finding]],
     columns: Sequence[Column],
@@ -68,13 +60,8 @@ def results_of(
     `findings` are all of them; a row that is not `computed` keeps its place with empty numbers and says which of them,
     or of the errors elsewhere that are its `stops`, are why.
     """
-    records = list(computed.values())
-    numbers = pl.DataFrame(
-        {
-            "row": pl.Series(list(computed), dtype=pl.Int64),
-            **{column.key: _column(column, records) for column in columns if column.key not in _OF_THE_ROW},
-        }
-    )
+    known = _known(table, computed)
+    numbers = known.select("row", *(_column(column, known) for column in columns if column.key not in _OF_THE_ROW))
     rows = table.frame.select("row", pl.col("variant").fill_null(""), pl.col("notes").replace("", None))
     remarks = _remarks(table, computed.keys(), findings, stops)
     joined = rows.join(remarks, on="row", how="left", maintain_order="left")
@@ -90,37 +77,38 @@ def _type(column: Column) -> type[pl.DataType]:
     return pl.Float64 if column.is_number else pl.String
 
 
-def _column(column: Column, computed: Sequence[Computed]) -> pl.Series:
-    """Return one column of the computed variants in its printed unit."""
+def _known(table: Table, computed: ComputedRows) -> pl.DataFrame:
+    """Return all that is known of the computed variants: numbers [SI] and words by name, with their row number."""
+    known = pl.DataFrame(schema={"row": pl.Int64}) if computed.numbers is None else computed.numbers
+    entered = table.frame["backlash_limit_arcmin"]
+    limits = pl.Series("backlash_limit", entered.to_numpy() * ARCMIN, nan_to_null=True)
+    beside = [table.frame.select("row", limits)]
+    if computed.statistics is not None:
+        beside += [computed.statistics.frame, computed.statistics.main_shares()]
+    if computed.checks:
+        checks = [asdict(check) for check in computed.checks.values()]
+        elasticity = pl.DataFrame(checks, schema=dict.fromkeys(_ELASTICITY, pl.Float64))
+        beside.append(
+            elasticity.rename(lambda name: f"elasticity_{name}").with_columns(row=pl.Series(list(computed.checks)))
+        )
+    for frame in beside:
+        known = known.join(frame, on="row", how="left", maintain_order="left")
+    return known
+
+
+def _column(column: Column, known: pl.DataFrame) -> pl.Series:
+    """Return one column of the computed variants in its printed unit, null where no stage has found it."""
     stem, size = _STEMS.get(column.key, (column.key, 1.0))
-    values = [_value(stem, one) for one in computed]
-    if column.is_number:
-        # Not by polars, which multiplies by the reciprocal: that is another last digit.
-        printed = as_entered if column.key in _ENTERED else truediv
-        values = [None if value is None else printed(value, size) for value in values]
-    return pl.Series(column.key, values, dtype=_type(column))
-
-
-def _value(stem: str, one: Computed) -> Any:
-    """Return a number [SI] or word of a variant by its name in the stage that found it, None where there is none."""
-    if stem == "backlash_limit":
-        return one.variant.backlash_limit
-    if stem in _NOMINAL:
-        return getattr(one.nominal, stem)
-    if stem in _ELASTICITY:
-        return one.elasticity and getattr(one.elasticity, _ELASTICITY[stem])
-    return one.spread and _of_spread(stem, one.spread)
-
-
-def _of_spread(stem: str, spread: SpreadStatistics) -> Any:
-    """Return a number [SI] or word of a spread by its name."""
-    shares = spread.shares
-    if stem == "interaction_share":
-        return max(1.0 - math.fsum(shares.values()), 0.0) if shares else None
-    if stem in {"main_contributor", "main_contributor_share"}:
-        main = max(shares, key=lambda name: shares[name], default=None)
-        return main if stem == "main_contributor" or main is None else shares[main]
-    return spread.numbers.get(stem, spread.texts.get(stem))
+    if stem not in known.columns:
+        return pl.Series(column.key, [None] * known.height, dtype=_type(column))
+    values = known[stem]
+    if not column.is_number:
+        return values.cast(pl.String).alias(column.key)
+    if column.key in _ENTERED:
+        entered = [None if value is None else as_entered(value, size) for value in values.to_list()]
+        return pl.Series(column.key, entered, dtype=pl.Float64)
+    # Not by polars, which multiplies by the reciprocal: that is another last digit.
+    return pl.Series(column.key, values.to_numpy() / size).set(values.is_null(), None)
 
 
 def _remarks(

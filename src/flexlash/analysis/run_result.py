@@ -23,11 +23,11 @@ def outcome_of(examined: Examined, spread: Spread | None = None, verified: Verif
         skipped = any(found.level == "info" for found in why)
         return Outcome(submission=submission, results=empty_results(), findings=why, skipped=skipped)
     findings = consolidated(validated, (*nominal.findings, *(verified.findings if verified else ())), nominal.blocked)
-    statistics, checks = spread.statistics if spread else {}, verified.checks if verified else {}
-    computed = {
-        row: replace(one, spread=statistics.get(row), elasticity=checks.get(row))
-        for row, one in nominal.computed.items()
-    }
+    computed = replace(
+        nominal.computed,
+        statistics=spread.statistics if spread else None,
+        checks=verified.checks if verified else {},
+    )
     columns = result_columns(cross_check=spread is not None and spread.cross_checked, elasticity=verified is not None)
     ordered, table = in_order(findings, submission.sheets), validated.table
     stops = stopped_by(table, nominal.blocked, findings) if table and len(computed) < table.frame.height else {}

@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexlash.analysis.outcome import Outcome, Written
+from flexlash.analysis.whole_batch import worst_rows
 from flexlash.schema.cell_addresses import cell_ranges
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.finding_catalogue import Level
 from flexlash.schema.findings import CATALOGUE, Finding, shown
 from flexlash.schema.limit_verdict import BOUNDS, VERDICTS, misses_limit
-from flexlash.schema.number_words import ALL_UNITS, angle_words, rounded, share_words
+from flexlash.schema.number_words import ALL_UNITS, angle_words, grouped, rounded, share_words
 from flexlash.validation.blocking_errors import waiting_rows
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ __all__ = [
     "dimension_words",
     "finding_lines",
     "group_lines",
+    "grouped",
     "limit_lines",
     "lines_of_limits",
     "listed",
@@ -215,7 +217,7 @@ def words_of_fixes(cells: int, others: int) -> str:
 
 def counted(count: int, what: str) -> str:
     """Return a number with its noun: `1 cell`, `5 cells`."""
-    return f"{count} {what}{'' if count == 1 else 's'}"
+    return f"{grouped(count)} {what}{'' if count == 1 else 's'}"
 
 
 def are(count: int) -> str:
@@ -228,21 +230,23 @@ def quoted(name: str) -> str:
     return f"“{name}”"
 
 
-def listed(words: Sequence[str], most: int) -> str:
+def listed(words: Sequence[str], most: int, count: int = 0) -> str:
     """Return the first few of a list as a sentence names them, and how many more there are.
 
-    >>> listed(["a", "b"], 3), listed(["a", "b", "c", "d"], 2)
-    ('a and b', 'a, b and 2 more')
+    `count` is how many there are where the list has the first of them alone.
+
+    >>> listed(["a", "b"], 3), listed(["a", "b", "c", "d"], 2), listed(["a", "b"], 2, 12_002)
+    ('a and b', 'a, b and 2 more', 'a, b and 12,000 more')
     """
     named = list(words[:most])
-    if len(words) > most:
-        named.append(f"{len(words) - most} more")
+    if (more := max(count, len(words)) - len(named)) > 0:
+        named.append(f"{grouped(more)} more")
     return " and ".join(filter(None, [", ".join(named[:-1]), *named[-1:]]))
 
 
 def limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
     """Yield how many variants meet their limits, and by name the worst of those that do not."""
-    yield from lines_of_limits(outcome.counts, worst_first(outcome), most)
+    yield from lines_of_limits(outcome.counts, worst_first(outcome, most), most)
 
 
 def lines_of_limits(counts: Mapping[str, int], worst: Iterable[Mapping[str, Any]], most: int = 3) -> Iterator[str]:
@@ -341,13 +345,6 @@ def spread_notes(outcome: Outcome) -> Iterator[str]:
     return notes.lines(cross_check=cross_check, method=outcome.settings.method)
 
 
-def worst_first(outcome: Outcome) -> list[dict[str, Any]]:
-    """Return the computed Results rows, greatest probability over limit first, then greatest P97.5."""
-    rows = [row for row in outcome.results.iter_rows(named=True) if row["p97_5_arcmin"] is not None]
-
-    def badness(row: dict[str, Any]) -> tuple[float, float]:
-        limit = row["backlash_limit_arcmin"]
-        share = -1.0 if limit is None else row["probability_over_limit"]
-        return share, row["p99_865_arcmin"] / (limit or 1.0)
-
-    return sorted(rows, key=badness, reverse=True)
+def worst_first(outcome: Outcome, most: int | None = None) -> list[dict[str, Any]]:
+    """Return the computed Results rows, all or the first few, as `worst_rows` orders them."""
+    return worst_rows(outcome.results, most).to_dicts()

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
+from typing import TypeAlias, overload
 
 from flexlash.analysis.computed import Computed, Spread
 from flexlash.analysis.options import Options
+from flexlash.analysis.spread_rows import SpreadRows
 from flexlash.mechanics.flexspline import backlash
 from flexlash.schema.columns import DIMENSIONS
-from flexlash.schema.variant import Settings
+from flexlash.schema.variant import Limits, Settings
 from flexlash.tolerance.distribution_curves import Curve, curve_of
 from flexlash.tolerance.row_batches import TolerancedRow, batch_statistics, batches_alike
 from flexlash.tolerance.sampling import SamplingPlan
 from flexlash.tolerance.spread_statistics import SpreadStatistics
 from flexlash.workers import mapped
 
-__all__ = ["drawn_curves", "row_curves", "row_statistics", "spread_of"]
+__all__ = ["drawn_curves", "row_curves", "row_statistics", "spread_again", "spread_of"]
 
 _MODELS = {kind: partial(backlash, kind) for kind in ("cup", "hat", "cylinder")}
+
+Found: TypeAlias = tuple[int, SpreadStatistics]
+"""A row's index, or its number, with its statistics."""
 
 ROWS_PER_WORKER, POINTS_PER_WORKER = 1000, 100_000
 """Rows to be spread, lines or points of curves, below which starting a worker costs more than it saves."""
@@ -26,25 +32,75 @@ ROWS_PER_WORKER, POINTS_PER_WORKER = 1000, 100_000
 
 def spread_of(computed: Mapping[int, Computed], settings: Settings, options: Options) -> Spread:
     """Return the spread of the variants; the same points serve all rows."""
-    steps = len(computed) * (2 if options.elasticity else 1)
-    numbers, rows = list(computed), [_toleranced(variant) for variant in computed.values()]
-    found: dict[int, SpreadStatistics] = {}
-    for done, (index, statistics) in enumerate(row_statistics(rows, _plan(settings, options), options.jobs), start=1):
-        found[numbers[index]] = statistics
+    numbers = list(computed)
+    found = row_statistics(_Toleranced(computed, numbers), _plan(settings, options), options.jobs)
+    told = _told(found, options, len(numbers) * (2 if options.elasticity else 1))
+    statistics = SpreadRows.of((numbers[index], statistics) for index, statistics in told)
+    return Spread(statistics=statistics, cross_checked=bool(options.cross_check))
+
+
+def _told(found: Iterable[Found], options: Options, steps: int) -> Iterator[Found]:
+    """Yield what is found, and tell how much that is of all steps."""
+    for done, one in enumerate(found, start=1):
+        yield one
         if options.progress:
             options.progress(done, steps)
-    return Spread(statistics=found, cross_checked=bool(options.cross_check))
 
 
-def row_statistics(
-    rows: Sequence[TolerancedRow], plan: SamplingPlan, jobs: int
-) -> Iterator[tuple[int, SpreadStatistics]]:
+def row_statistics(rows: Sequence[TolerancedRow], plan: SamplingPlan, jobs: int) -> Iterator[Found]:
     """Yield each row's index and statistics, rows alike together, by up to `jobs` processes where there are enough."""
-    batches = list(batches_alike(rows))
-    work = [[rows[index] for index in batch] for batch in batches]
-    statistics = mapped(partial(batch_statistics, plan=plan), work, min(jobs, len(rows) // ROWS_PER_WORKER))
-    for batch, of_batch in zip(batches, statistics, strict=True):
+    batches = _Batches(rows, list(batches_alike(rows)))
+    statistics = mapped(partial(batch_statistics, plan=plan), batches, min(jobs, len(rows) // ROWS_PER_WORKER))
+    for batch, of_batch in zip(batches.indices, statistics, strict=True):
         yield from zip(batch, of_batch, strict=True)
+
+
+@dataclass(frozen=True)
+class _Toleranced(Sequence[TolerancedRow]):
+    """What the spread of variants takes, made anew whenever it is asked for: a row's limits are much to hold."""
+
+    computed: Mapping[int, Computed]
+    numbers: Sequence[int]
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    @overload
+    def __getitem__(self, index: int) -> TolerancedRow: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[TolerancedRow]: ...
+    def __getitem__(self, index: int | slice) -> TolerancedRow | Sequence[TolerancedRow]:
+        if isinstance(index, slice):
+            return _Toleranced(self.computed, self.numbers[index])
+        return _toleranced(self.computed[self.numbers[index]])
+
+
+@dataclass(frozen=True)
+class _Batches(Sequence[list[TolerancedRow]]):
+    """The rows of batches, given by their indices, made when they are asked for."""
+
+    rows: Sequence[TolerancedRow]
+    indices: Sequence[list[int]]
+
+    def __len__(self) -> int:
+        return len(self.indices)
+
+    @overload
+    def __getitem__(self, index: int) -> list[TolerancedRow]: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[list[TolerancedRow]]: ...
+    def __getitem__(self, index: int | slice) -> list[TolerancedRow] | Sequence[list[TolerancedRow]]:
+        if isinstance(index, slice):
+            return _Batches(self.rows, self.indices[index])
+        return [self.rows[place] for place in self.indices[index]]
+
+
+def spread_again(
+    variant: Computed, limits: Iterable[Mapping[str, Limits]], settings: Settings
+) -> list[SpreadStatistics]:
+    """Return the spread of a variant by lines with each of these limits instead of its own."""
+    plan, row = _plan(replace(settings, method="line", samples=None), Options()), _toleranced(variant)
+    return [batch_statistics([replace(row, limits=other)], plan)[0] for other in limits]
 
 
 def drawn_curves(drawn: Sequence[Computed], settings: Settings, options: Options) -> list[Curve]:

@@ -13,7 +13,7 @@ from flexlash.schema.limit_verdict import BOUNDS, VERDICTS, Verdict
 if TYPE_CHECKING:
     import polars as pl
 
-__all__ = ["DRAWN", "LARGE", "WholeBatch", "verdicts_of", "worst_rows"]
+__all__ = ["DRAWN", "LARGE", "WholeBatch", "is_straddled", "verdict_place", "verdicts_of", "worst_rows"]
 
 LARGE = 2000
 """Most submitted rows of which a report repeats every one on all of its sheets."""
@@ -67,17 +67,28 @@ def worst_rows(results: pl.DataFrame, most: int | None = None) -> pl.DataFrame:
     return spread[order if most is None else order.head(most)]
 
 
+def verdict_place() -> pl.Expr:
+    """Return the place among the verdicts of what a row of Results has, from 0; null without a limit."""
+    import polars as pl
+
+    over = pl.col("probability_over_limit")
+    return pl.when(over.is_not_null()).then(sum((over > bound).cast(pl.Int32) for bound in BOUNDS.values()))
+
+
+def is_straddled() -> pl.Expr:
+    """Return whether more points may give a row of Results another verdict."""
+    import polars as pl
+
+    low, high = pl.col("probability_over_limit_low"), pl.col("probability_over_limit_high")
+    return pl.any_horizontal((low <= bound) & (bound < high) for bound in BOUNDS.values()).fill_null(value=False)
+
+
 def verdicts_of(results: pl.DataFrame) -> tuple[dict[Verdict, int], dict[Verdict, int]]:
     """Return how many variants with a limit have each verdict, and how many of each more points may give another.
 
     That is so where the 95 % interval of the share over the limit reaches beyond a bound.
     """
-    import polars as pl
-
-    over, low, high = (pl.col(f"probability_over_limit{end}") for end in ("", "_low", "_high"))
-    straddled = pl.any_horizontal((low <= bound) & (bound < high) for bound in BOUNDS.values())
-    place = pl.sum_horizontal((over > bound).cast(pl.Int32) for bound in BOUNDS.values())
-    judged = results.filter(over.is_not_null()).select(place=place, straddled=straddled.fill_null(value=False))
+    judged = results.select(place=verdict_place(), straddled=is_straddled())
     every, doubtful = Counter(judged["place"]), Counter(judged.filter("straddled")["place"])
     return (
         {verdict: every[number] for number, verdict in enumerate(VERDICTS)},

@@ -62,12 +62,16 @@ class FileBytes:
 
 @dataclass(frozen=True, kw_only=True)
 class WorstVariant:
-    """A computed variant that is among the worst of its submission; angles in arcmin, None without a limit."""
+    """A computed variant that is among the worst of its submission; angles in arcmin, None without a limit.
+
+    `over_limit` says its probability in words, with its interval.
+    """
 
     variant: str
     p99_865_arcmin: float
     backlash_limit_arcmin: float | None
     probability_over_limit: float | None
+    over_limit: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

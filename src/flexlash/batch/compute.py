@@ -16,6 +16,7 @@ from flexlash.pipeline import computed
 from flexlash.reading.inside_limits import Fault
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.schema.exit_codes import ExitCode
+from flexlash.schema.number_words import share_words
 
 __all__ = ["answer_of", "compute"]
 
@@ -97,11 +98,12 @@ def _copy(outcome: Outcome, task: Task) -> FileBytes | None:
 
 def _worst(outcome: Outcome) -> Iterator[WorstVariant]:
     """Yield the worst of the computed variants."""
-    for row in worst_first(outcome)[:_WORST]:
+    for row in worst_first(outcome, _WORST):
         limit = row["backlash_limit_arcmin"]
         yield WorstVariant(
             variant=row["variant"],
             p99_865_arcmin=row["p99_865_arcmin"],
             backlash_limit_arcmin=limit,
             probability_over_limit=None if limit is None else row["probability_over_limit"],
+            over_limit="" if limit is None else share_words(row),
         )

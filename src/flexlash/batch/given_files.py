@@ -53,6 +53,11 @@ class GivenFiles:
         """The files that are looked at."""
         return tuple(given.path for given in self.files if not given.skipped and given.fault is None)
 
+    @property
+    def sub_folders(self) -> dict[Path, Path]:
+        """In which sub-folder of its folder a submission lies, of those that do."""
+        return {given.path: given.below for given in self.files if given.below != Path()}
+
 
 def given_files(
     paths: Sequence[Path],

@@ -13,8 +13,9 @@ from flexlash.cli.reference_commands import explain, schema
 from flexlash.cli.run_command import run
 from flexlash.cli.streams import lost_output, patient_streams
 from flexlash.cli.template_command import template
-from flexlash.cli.terminal import colour, complain, internal_error, named, reason
+from flexlash.cli.terminal import colour, complain, internal_error, named
 from flexlash.schema.exit_codes import ExitCode
+from flexlash.schema.file_faults import reason
 
 __all__ = ["cli", "main"]
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import sys
-from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
 import click
 
-from flexlash.cli.click_types import JSON, LIMITS, QUIET, SUBMISSIONS, option, planned
-from flexlash.cli.submissions import Submissions
+from flexlash.analysis.options import Options
+from flexlash.batch.given_files import given_files
+from flexlash.cli.batches import Planned, carried_out, to_be_told
+from flexlash.cli.click_types import JSON, LIMITS, QUIET, RECURSIVE, SUBMISSIONS, VERBOSE, option, planned
 from flexlash.outputs.naming import fixed_outputs, marked_outputs
 from flexlash.outputs.plan import Plan
 
@@ -28,8 +30,11 @@ __all__ = ["check"]
 @option("strict")
 @LIMITS
 @option("marked_copies")
+@RECURSIVE
+@option("jobs", default=os.cpu_count() or 1, show_default="all cores")
 @JSON
 @QUIET
+@VERBOSE
 @option("tolerances")
 @option("materials")
 def check(
@@ -38,35 +43,33 @@ def check(
     *,
     annotate: bool,
     apply_fixes: bool,
+    recursive: bool,
     as_json: bool,
     quiet: bool,
+    verbose: bool,
     **options: Any,
 ) -> None:
     """Validate submissions and print what was found; nothing is sampled.
 
-    Nothing is written without --annotate or --apply-fixes.
+    Of a folder that is done with each workbook and table in it. Nothing is written without --annotate or --apply-fixes.
     """
-    from flexlash.reading.limited_process import begin
-
     if output and not (annotate or apply_fixes):
         raise click.UsageError("-o needs --apply-fixes or --annotate; check alone writes nothing.")
-    # A marked copy alone is meant to be checked again; among others it is met on the way.
-    options["marked_copies"] |= annotate and len(submissions) == 1
     beside = [path for path in (options["tolerances"], options["materials"]) if path]
-    plan = Plan(inputs=[*submissions, *beside], submissions=submissions, marked_copies=options["marked_copies"])
-    fixed = planned(fixed_outputs, plan, submissions, output) if apply_fixes else []
-    copies = planned(marked_outputs, plan, submissions, output, itself=not apply_fixes) if annotate else []
-    options["given"] = submissions
-    # The process that reads loads its libraries while this one loads its own.
-    begin()
-    all_of_them = Submissions(len(submissions), as_json=as_json, quiet=quiet)
-    for path, target, copy in zip_longest(submissions, fixed, copies):
-        with all_of_them.one(path) as ended:
-            from flexlash.pipeline import check as check_one
-            from flexlash.pipeline import mend
-
-            if target:
-                ended.outcome, ended.fixes = mend(path, target, marked_copy=copy, **options)
-            else:
-                ended.outcome = check_one(path, marked_copy=copy, **options)
-    sys.exit(all_of_them.end())
+    given = given_files(
+        submissions,
+        recursive=recursive,
+        output=output,
+        beside=beside,
+        marked_copies=options["marked_copies"],
+    )
+    # A marked copy alone is meant to be checked again; among others it is met on the way.
+    options["marked_copies"] |= annotate and len(given.files) == 1
+    paths, below = given.submissions, given.sub_folders
+    plan = Plan(inputs=[*paths, *beside], submissions=paths, marked_copies=options["marked_copies"])
+    fixed = planned(fixed_outputs, plan, paths, output, below=below) if apply_fixes else []
+    copies = planned(marked_outputs, plan, paths, output, itself=not apply_fixes, below=below) if annotate else []
+    outputs = Planned(files=dict(zip(paths, fixed, strict=False)), copies=dict(zip(paths, copies, strict=False)))
+    told = to_be_told(given, as_json=as_json, quiet=quiet, verbose=verbose)
+    chosen = Options.of("check()", options)
+    sys.exit(carried_out("mend" if apply_fixes else "check", given, outputs, chosen, told))

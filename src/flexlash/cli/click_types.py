@@ -14,13 +14,13 @@ from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema import argument_checks
 from flexlash.schema.findings import shown
 
-__all__ = ["JSON", "LIMITS", "QUIET", "SUBMISSIONS", "option", "planned"]
+__all__ = ["JSON", "LIMITS", "QUIET", "RECURSIVE", "SUBMISSIONS", "VERBOSE", "option", "planned"]
 
 Command = Callable[..., None]
 Planned = TypeVar("Planned")
 
 
-def planned(plan: Callable[..., Planned], *paths: Any, **options: bool) -> Planned:
+def planned(plan: Callable[..., Planned], *paths: Any, **options: Any) -> Planned:
     """Return where outputs go; raise a usage error for an output that cannot be meant."""
     try:
         return plan(*paths, **options)
@@ -41,9 +41,21 @@ def _limits(context: click.Context, parameter: click.Parameter, given: tuple[str
         raise click.UsageError(f"{where}: {fault}.") from fault
 
 
-SUBMISSIONS = click.argument("submissions", nargs=-1, required=True, type=click.Path(path_type=Path, readable=False))
+class _Named(click.Path):
+    """A path that is named: an empty text, as of a variable that is not set, would be the present folder."""
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        """Return the path; raise a usage error for an empty text."""
+        return super().convert(value, parameter, context) if value else self.fail("a name is empty", parameter, context)
+
+
+SUBMISSIONS = click.argument("submissions", nargs=-1, required=True, type=_Named(path_type=Path, readable=False))
 JSON = click.option("--json", "as_json", is_flag=True, help="Machine-readable outcome on stdout.")
 QUIET = click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")
+VERBOSE = click.option(
+    "-v", "--verbose", is_flag=True, help="Of several submissions, print all that is printed of one, not a line each."
+)
+RECURSIVE = click.option("--recursive", is_flag=True, help="Of a folder, take also what lies below it.")
 
 _DECLARED = {one.name: one for one in fields(Options)}
 

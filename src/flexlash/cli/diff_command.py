@@ -37,7 +37,7 @@ def diff(old: Path, new: Path, *, tolerance: float, every: bool, limits: Reading
     from flexlash.comparison.difference import difference
     from flexlash.comparison.difference_lines import difference_lines
 
-    both = Submissions(2, as_json=as_json)
+    both = Submissions(several=True, as_json=as_json)
     before, after = (_side(path, limits, both) for path in (old, new))
     if before is None or after is None:
         sys.exit(both.code)

@@ -21,15 +21,15 @@ def recreate_all(
     reports: Sequence[Path], output: Path | None, *, as_json: bool, quiet: bool, **options: Any
 ) -> ExitCode:
     """Write the submission and the report of each report anew and say whether they are the same; return the code."""
-    all_of_them = Submissions(len(reports), as_json=as_json, quiet=quiet, ran=True)
+    all_of_them = Submissions(several=len(reports) > 1, as_json=as_json, quiet=quiet, ran=True, verbose=True)
     beside = [Path(options[name]) for name in ("tolerances", "materials") if options.get(name)]
     plan = Plan(inputs=[*reports, *beside])
     for report in reports:
-        with all_of_them.one(report) as ended, progress(quiet=quiet or as_json) as advance:
+        with all_of_them.one(report) as attempt, progress(quiet=quiet or as_json) as advance:
             found = recreate(report, output, plan, progress=advance, **options)
-            ended.outcome = found.outcome
-            ended.further = {"compared": {"numbers": found.numbers, "different": found.different}}
+            attempt.outcome = found.outcome
+            attempt.further = {"compared": {"numbers": found.numbers, "different": found.different}}
             if found.numbers:
-                ended.remarks = [f"  {shown(remark, longest=400)}" for remark in found.remarks]
-                ended.closing = [comparison_line(found.different, found.numbers, shown(report.name))]
+                attempt.remarks = [f"  {shown(remark, longest=400)}" for remark in found.remarks]
+                attempt.closing = [comparison_line(found.different, found.numbers, shown(report.name))]
     return all_of_them.end()

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import os
 import sys
-from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
 import click
 
-from flexlash.cli.click_types import JSON, LIMITS, QUIET, SUBMISSIONS, option, planned
-from flexlash.cli.submissions import Submissions
-from flexlash.cli.terminal import progress
-from flexlash.outputs.naming import marked_outputs, report_outputs
+from flexlash.analysis.options import Options
+from flexlash.batch.given_files import GivenFiles, given_files
+from flexlash.cli.batches import Planned, carried_out, to_be_told
+from flexlash.cli.click_types import JSON, LIMITS, QUIET, RECURSIVE, SUBMISSIONS, VERBOSE, option, planned
+from flexlash.outputs.naming import marked_outputs, report_outputs, summary_outputs
 from flexlash.outputs.plan import Plan
 
 __all__ = ["run"]
@@ -35,9 +35,14 @@ __all__ = ["run"]
 @option("strict")
 @option("fail_over_limit")
 @LIMITS
+@RECURSIVE
+@click.option(
+    "--resume", is_flag=True, help="Go on in the folder OUT where an earlier run was stopped; what is done stays."
+)
 @JSON
 @option("from_report")
 @QUIET
+@VERBOSE
 @click.option(
     "--annotate/--no-annotate", default=True, show_default=True,
     help="Write <name>-checked.xlsx, your file with the cells to mend marked, when there are errors or warnings.",
@@ -51,35 +56,51 @@ def run(
     *,
     annotate: bool,
     from_report: bool,
+    recursive: bool,
+    resume: bool,
     as_json: bool,
     quiet: bool,
+    verbose: bool,
     **options: Any,
 ) -> None:
-    """Validate, compute the tolerance spread, write the report."""
+    """Validate, compute the tolerance spread, write the report.
+
+    Of a folder that is done with each workbook and table in it.
+    """
     from flexlash.mechanics.elasticity import MISSING, is_available
-    from flexlash.reading.limited_process import begin
 
     if options["elasticity"] and not is_available():
         raise click.UsageError(MISSING)
     beside = [path for path in (options["tolerances"], options["materials"]) if path]
-    plan = Plan(
-        inputs=[*submissions, *beside],
-        submissions=() if from_report else submissions,
-        marked_copies=options["marked_copies"],
-    )
-    reports = planned(report_outputs, plan, submissions, output)
     if from_report:
         from flexlash.cli.recreate_command import recreate_all
 
+        planned(report_outputs, Plan(inputs=[*submissions, *beside]), submissions, output)
         sys.exit(recreate_all(submissions, output, as_json=as_json, quiet=quiet, **options))
-    copies = planned(marked_outputs, plan, submissions, output) if annotate else []
-    options["given"] = submissions
-    # The process that reads loads its libraries while this one loads its own.
-    begin()
-    all_of_them = Submissions(len(submissions), as_json=as_json, quiet=quiet, ran=True)
-    for path, report, copy in zip_longest(submissions, reports, copies):
-        with all_of_them.one(path) as ended, progress(quiet=quiet or as_json) as advance:
-            from flexlash.pipeline import run as run_one
+    given = given_files(
+        submissions,
+        recursive=recursive,
+        output=output,
+        beside=beside,
+        marked_copies=options["marked_copies"],
+    )
+    outputs = _outputs(given, beside, output, annotate=annotate, marked_copies=options["marked_copies"])
+    if resume and outputs.summary is None:
+        raise click.UsageError("--resume needs a folder as OUT, in which an earlier run was stopped.")
+    told = to_be_told(given, as_json=as_json, quiet=quiet, verbose=verbose, ran=True)
+    chosen = Options.of("run()", options)
+    sys.exit(carried_out("run", given, outputs, chosen, told, resume=resume))
 
-            ended.outcome = run_one(path, report, marked_copy=copy, progress=advance, **options)
-    sys.exit(all_of_them.end())
+
+def _outputs(
+    given: GivenFiles, beside: list[Path], output: Path | None, *, annotate: bool, marked_copies: bool
+) -> Planned:
+    """Return where reports, marked copies and the summary go."""
+    paths, below = given.submissions, given.sub_folders
+    plan = Plan(inputs=[*paths, *beside], submissions=paths, marked_copies=marked_copies)
+    summary = planned(summary_outputs, plan, output)
+    reports = planned(report_outputs, plan, paths, output, below=below)
+    copies = planned(marked_outputs, plan, paths, output, below=below) if annotate else []
+    return Planned(
+        files=dict(zip(paths, reports, strict=False)), copies=dict(zip(paths, copies, strict=False)), summary=summary
+    )

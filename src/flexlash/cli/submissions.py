@@ -1,45 +1,38 @@
-"""One submission after the other: how each ended, on the screen or as JSON, and all of them together."""
+"""How submissions ended, on the screen or as JSON, each for itself and all of them together."""
 
 from __future__ import annotations
 
+import os
 import time
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from flexlash import __version__
-from flexlash.cli.terminal import complain, internal_error, named, print_json, reason
+from flexlash.analysis.run_summary import closing_lines, counted, listed
+from flexlash.batch.ended import Ended, how_many
+from flexlash.cli.terminal import complain, internal_error, named, print_json
 from flexlash.mechanics.elasticity import MissingLibrariesError
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.exit_codes import ExitCode, most_severe
-from flexlash.schema.findings import Finding, finding, readable, shown
-from flexlash.schema.variant import Settings
+from flexlash.schema.file_faults import unusable
+from flexlash.schema.findings import CATALOGUE, finding, shown
 
 if TYPE_CHECKING:
     from flexlash.analysis.outcome import Outcome
     from flexlash.feedback.fixing.fix import Fix
 
-__all__ = ["Ended", "Submissions"]
+__all__ = ["Attempt", "Submissions"]
 
-_FIELDS = (
-    "submission", "path", "sha256", "version", "seed", "method", "seconds", "exit_code", "error", "counts", "findings",
-    "outputs",
-)  # fmt: skip
-"""What `--json` says of a submission, whatever happened."""
-
-_COUNTS = ("rows", "computed", "errors", "warnings", "meets", "marginal", "fails")
 _NOT_OURS = (click.ClickException, click.Abort, KeyboardInterrupt, SystemExit, GeneratorExit)
 """What ends the whole command, not one submission."""
 
-_KINDS = {ExitCode.FINE: "computed", ExitCode.OVER_LIMIT: "computed", ExitCode.SOME_ROWS: "partly"}
-"""How much of a submission was computed, by its exit code; by any other, nothing."""
-
 _SHOWN_FIXES = 10
+_SHOWN_SKIPPED = 3
 _COLOURS = {"error": "red", "warning": "yellow", "info": "cyan"}
 
 
@@ -52,60 +45,38 @@ class _Line(NamedTuple):
 
 
 @dataclass(kw_only=True)
-class Ended:
-    """How a submission ended: its outcome, or why there is none.
+class Attempt:
+    """What is done with one file in this process: the outcome it came to, and what more is to be told of it.
 
-    `error` is the sentence that says why nothing of it was computed, `refusal` the finding where it was no submission.
-    `fixes` were made in it; `further` are more fields for `--json`; `remarks` and `closing` are lines that follow on
-    standard error and standard output.
+    `further` are more fields for `--json`; `remarks` and `closing` are lines that follow on standard error and standard
+    output.
     """
 
-    path: Path
     outcome: Outcome | None = None
-    code: ExitCode = ExitCode.FINE
-    error: str | None = None
-    refusal: Finding | None = None
-    seconds: float = 0.0
-    fixes: list[Fix] | None = None
     further: Mapping[str, Any] = field(default_factory=dict)
-    remarks: list[str] = field(default_factory=list)
-    closing: list[str] = field(default_factory=list)
-
-    @property
-    def name(self) -> str:
-        """The file that the closing lines speak of: the mended one, where there is one."""
-        return named(self.outcome.outputs[0] if self.fixes and self.outcome else self.path)
-
-    def as_dictionary(self) -> dict[str, Any]:
-        """Return the object that `--json` prints."""
-        usual = Settings()
-        known: dict[str, Any] = dict.fromkeys(_FIELDS)
-        known |= {"submission": readable(self.path.name), "sha256": "", "version": __version__}
-        known |= {"seed": usual.seed, "method": usual.method}
-        known |= {"counts": dict.fromkeys(_COUNTS, 0), "findings": [], "outputs": []}
-        if self.refusal:
-            known["counts"]["errors"] = 1
-            known["findings"] = [self.refusal.as_dictionary()]
-        known |= self.outcome.as_dictionary() if self.outcome else {}
-        known |= {"path": readable(self.path), "seconds": round(self.seconds, 3)}
-        known |= {"exit_code": self.code, "error": self.error}
-        fixes = {} if self.fixes is None else {"fixes": [fix.as_dictionary() for fix in self.fixes]}
-        return {**known, **fixes, **self.further}
+    remarks: Sequence[str] = ()
+    closing: Sequence[str] = ()
 
 
 class Submissions:
     """The submissions of a command: each ends for itself, all of them with the most severe exit code.
 
-    `ran` says that they are computed, not merely checked; then findings are messages, not what was asked for.
+    `ran` says that they are computed, not merely checked; then findings are messages, not what was asked for. Of
+    several each has one line, unless `verbose`.
     """
 
-    def __init__(self, count: int, *, as_json: bool, quiet: bool = False, ran: bool = False) -> None:
-        self.several = count > 1
+    def __init__(
+        self, *, several: bool, as_json: bool, quiet: bool = False, ran: bool = False, verbose: bool = False
+    ) -> None:
+        self.several = several
         self.as_json = as_json
         self.quiet = quiet
         self.ran = ran
+        self.verbose = verbose or not several
         self.codes: list[ExitCode] = []
         self.skipped = 0
+        self.done_before = 0
+        self._met: dict[str, list[str]] = defaultdict(list)
 
     @property
     def code(self) -> ExitCode:
@@ -113,107 +84,120 @@ class Submissions:
         return most_severe(self.codes)
 
     @contextmanager
-    def one(self, path: Path) -> Iterator[Ended]:
-        """Yield a record to be filled with a submission's outcome; whatever stops it, the others go on."""
-        ended = Ended(path=path)
-        lines: list[_Line] = []
+    def one(self, path: Path) -> Iterator[Attempt]:
+        """Yield a record to be filled with what is done with a file; whatever stops it, the others go on."""
+        attempt = Attempt()
         start = time.perf_counter()
+        ended = None
         try:
-            yield ended
-            self._judge(ended)
-            lines = list(self._lines(ended))
+            yield attempt
+            ended = self._ended(path, attempt.outcome)
         except _NOT_OURS:
             raise
         except Refusal as refusal:
             facts: dict[str, Any] = {"file": path.name, **refusal.facts}
-            ended.refusal = finding(refusal.code, **facts)
-            self._fail(ended, refusal.exit_code, ended.refusal.message)
+            found = finding(refusal.code, **facts)
+            ended = Ended.failing(path, refusal.exit_code, found.message, found)
         except OSError as fault:
-            place = named(fault.filename or path)
-            self._fail(ended, ExitCode.NO_FILE, f"{place} could not be opened or written: {reason(fault, path)}")
+            ended = Ended.failing(path, ExitCode.NO_FILE, unusable(fault, path))
+        except MissingLibrariesError as missing:
+            ended = Ended.failing(path, missing.exit_code, f"{missing} Without it: --no-elasticity.")
         except BaseException as fault:  # noqa: BLE001 - a panic of polars is no Exception
-            missing = isinstance(fault, MissingLibrariesError)
-            code = MissingLibrariesError.exit_code if missing else ExitCode.INTERNAL
-            self._fail(ended, code, f"{fault} Without it: --no-elasticity." if missing else internal_error(fault))
-        ended.seconds = time.perf_counter() - start
-        self._count(ended)
-        self._print(ended, lines)
+            ended = Ended.failing(path, ExitCode.INTERNAL, internal_error(fault))
+        if ended is None:
+            self.codes.append(ExitCode.FINE)
+        else:
+            self.tell(replace(ended, seconds=time.perf_counter() - start), attempt)
 
-    def end(self) -> ExitCode:
-        """Say what came of all of them, where there are several; return the exit code of the command."""
-        from flexlash.analysis.run_summary import counted
+    def _ended(self, path: Path, outcome: Outcome | None) -> Ended | None:
+        """Return how a file ended that came to an outcome."""
+        if outcome is None:
+            return None
+        from flexlash.batch.compute import answer_of
 
-        kinds = Counter(_KINDS.get(code, "not") for code in self.codes)
-        total = {kind: kinds[kind] for kind in ("computed", "partly", "not")}
+        return Ended.answered(path, answer_of(outcome, ran=self.ran), outcome.written, several=self.several)
+
+    def tell(self, ended: Ended, attempt: Attempt | None = None) -> None:
+        """Print how a submission ended, and count it unless it was skipped."""
+        attempt = attempt or Attempt()
+        self.done_before += ended.done_before
+        if ended.skipped:
+            self.skipped += 1
+        else:
+            self.codes.append(ended.code)
+        if self.as_json:
+            print_json({**ended.as_dictionary(), **attempt.further})
+        elif not (self.quiet and not ended.code):
+            for line in self._lines(ended, attempt) if self.verbose else self._one_line(ended):
+                click.echo(click.style(line.text, fg=line.colour) if line.colour else line.text, err=line.is_message)
+        self._complain(ended)
+
+    def _complain(self, ended: Ended) -> None:
+        """Print what was left alone, and why nothing came of a submission or a file of it is missing."""
+        name = f"{named(ended.path)}: "
+        for remark in ended.written.remarks:
+            click.echo(click.style(f"{name if self.several else ''}{remark}", fg="yellow"), err=True)
+        if ended.fault is not None and os.environ.get("FLEXLASH_DEBUG") == "1":
+            click.echo(ended.fault.trace, err=True)
+        if ended.error and not (ended.refused and (self.verbose or self.as_json)):
+            code = f"{next(iter(ended.by_rule))} " if ended.refused else ""
+            complain(f"{'' if named(ended.path) in ended.error and not code else name}{code}{ended.error}")
+        if ended.mend:
+            click.echo(f"{name if self.several else ''}Mend: {ended.mend}", err=True)
+
+    def _one_line(self, ended: Ended) -> Iterator[_Line]:
+        """Yield what the screen shows of one submission among several: how much was computed, and what was written."""
+        name = named(ended.path)
+        if ended.skipped and ended.in_folder:
+            self._met[next(iter(ended.by_rule))].append(name)
+        elif ended.skipped:
+            yield _Line(f"{name}: {ended.told['findings'][0]['message']}", _COLOURS["info"], is_message=True)
+        elif ended.words and not ended.refused:
+            over = sum(ended.counts[verdict] for verdict in ("marginal", "fails"))
+            judged = counted(over + ended.counts["meets"], "variant")
+            limit = f" Limit not met by {over} of {judged}." if over else ""
+            files = ", ".join(named(path) for path in ended.written.paths)
+            yield _Line(f"{ended.name}: {ended.words}.{limit}{f' Written: {files}' if files else ''}")
+
+    def _lines(self, ended: Ended, attempt: Attempt) -> Iterator[_Line]:
+        """Yield what the screen shows in full: findings grouped by rule, then the summary."""
+        name = f"{named(ended.path)}: " if self.several else ""
+        yield from (_Line(text) for text in _fix_lines(ended.fixes)) if ended.fixes is not None else ()
+        for level, text in ended.finding_lines:
+            yield _Line(f"{name}{text}", _COLOURS.get(level), self.ran)
+        if ended.words and not ended.skipped:
+            closing = closing_lines(ended.name, ended.words, ended.details, ended.counts, ended.written, ran=self.ran)
+            yield from (_Line(text) for text in closing)
+        yield from (_Line(f"{name}{text}", None, is_message=True) for text in attempt.remarks)
+        yield from (_Line(text) for text in attempt.closing)
+
+    def end(self, written: Sequence[Path] = ()) -> ExitCode:
+        """Say what came of all of them, where there are several; return the exit code of the command.
+
+        `written` are files about all of them.
+        """
+        total = how_many(self.codes)
         if self.several and self.as_json:
             print_json({"total": {"submissions": len(self.codes), **total, "exit_code": self.code}})
         elif self.several and (self.code or not self.quiet):
+            for code, names in self._met.items():
+                text = f"{counted(len(names), 'file')}, {CATALOGUE[code].title}: {listed(names, _SHOWN_SKIPPED)}"
+                click.echo(click.style(text, fg=_COLOURS["info"]), err=True)
+            if self.done_before:
+                click.echo(
+                    f"{counted(self.done_before, 'submission')} done by an earlier run, not computed again.", err=True
+                )
             done = "computed" if self.ran else "ready"
             skipped = f"; {self.skipped} skipped" if self.skipped else ""
             parts = f"{total['computed']} {done}, {total['partly']} {done} in part, {total['not']} not{skipped}"
             click.echo(f"Total of {counted(len(self.codes), 'submission')}: {parts}.")
+            if written:
+                click.echo(f"Written: {', '.join(map(named, written))}")
         return self.code
-
-    def _judge(self, ended: Ended) -> None:
-        """Set exit code and error of a submission that came to an outcome."""
-        outcome = ended.outcome
-        if outcome is None:
-            return
-        if outcome.skipped:
-            ended.code = ExitCode.FINE if self.several else ExitCode.NOTHING
-            return
-        ended.code = outcome.exit_code
-        if outcome.fault is not None:
-            ended.error = f"{named(outcome.fault.filename)} could not be written: {reason(outcome.fault)}"
-        elif outcome.submission.kind == "refused":
-            ended.error = outcome.findings[0].message
-
-    @staticmethod
-    def _fail(ended: Ended, code: ExitCode, error: str) -> None:
-        """Set exit code and error of a submission that came to no outcome."""
-        ended.outcome, ended.code, ended.error = None, code, error
-
-    def _count(self, ended: Ended) -> None:
-        """Count a submission, unless it is none."""
-        if ended.outcome is not None and ended.outcome.skipped:
-            self.skipped += 1
-        else:
-            self.codes.append(ended.code)
-
-    def _lines(self, ended: Ended) -> Iterator[_Line]:
-        """Yield what the screen shows of an outcome: findings grouped by rule, then the summary."""
-        outcome = ended.outcome
-        if outcome is None or self.as_json or (self.quiet and not ended.code):
-            return
-        from flexlash.analysis.run_summary import finding_lines, summary_lines
-
-        name = f"{named(ended.path)}: " if self.several else ""
-        yield from (_Line(text) for text in _fix_lines(ended.fixes)) if ended.fixes is not None else ()
-        for level, text in finding_lines(outcome.findings):
-            yield _Line(f"{name}{text}", _COLOURS.get(level), self.ran)
-        yield from (_Line(text) for text in summary_lines(outcome, ended.name, ran=self.ran))
-        yield from (_Line(f"{name}{text}", None, True) for text in ended.remarks)
-        yield from (_Line(text) for text in ended.closing)
-
-    def _print(self, ended: Ended, lines: Iterable[_Line]) -> None:
-        """Print how a submission ended."""
-        if self.as_json and (ended.outcome or ended.error):
-            print_json(ended.as_dictionary())
-        for line in lines:
-            click.echo(click.style(line.text, fg=line.colour) if line.colour else line.text, err=line.is_message)
-        name = f"{named(ended.path)}: "
-        for remark in ended.outcome.remarks if ended.outcome else ():
-            click.echo(click.style(f"{name if self.several else ''}{remark}", fg="yellow"), err=True)
-        if ended.error and (ended.outcome is None or ended.outcome.fault is not None):
-            complain(ended.error if named(ended.path) in ended.error else f"{name}{ended.error}")
-        if ended.refusal:
-            click.echo(f"{name if self.several else ''}Mend: {ended.refusal.fix}", err=True)
 
 
 def _fix_lines(fixes: Sequence[Fix]) -> Iterator[str]:
     """Yield what was changed in a mended submission, the first cells of it by name."""
-    from flexlash.analysis.run_summary import counted
-
     yield (
         f"{counted(len(fixes), 'cell')} mended:" if fixes else "There is nothing that could be mended with certainty."
     )

@@ -4,23 +4,31 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import sys
+import time
 import traceback
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from flexlash.reading.libraries import ChangedLibrary
-from flexlash.schema.findings import readable, shown
+from flexlash.batch.ended import fault_of, fault_words
+from flexlash.schema.findings import shown
 
 if TYPE_CHECKING:
     from flexlash.analysis.options import Progress
+    from flexlash.batch.ended import Ended
     from flexlash.schema.findings import Finding
 
-__all__ = ["colour", "complain", "internal_error", "named", "print_json", "print_refusal", "progress", "reason"]
+__all__ = ["Bar", "colour", "complain", "internal_error", "named", "print_json", "print_refusal", "progress"]
+
+_BAR = 24
+"""Characters of a bar."""
+
+_ERASED = "\r\x1b[2K"
+"""What takes the present line of a terminal away."""
 
 
 def named(path: object) -> str:
@@ -48,16 +56,7 @@ def internal_error(fault: BaseException) -> str:
     """Return the sentence about a fault of flexlash's own, of which FLEXLASH_DEBUG=1 shows everything."""
     if os.environ.get("FLEXLASH_DEBUG") == "1":
         traceback.print_exception(fault)
-    if isinstance(fault, ChangedLibrary):
-        return f"Internal error: {shown(fault, longest=400)}."
-    from flexlash.reading.limited_process import ProcessFaultError
-
-    lines = str(fault).splitlines()
-    kind = lines[0] if isinstance(fault, ProcessFaultError) and lines else type(fault).__name__
-    return (
-        f"Internal error ({readable(kind)}): this is a fault of flexlash, not of your file. "
-        "Set FLEXLASH_DEBUG=1 for details."
-    )
+    return fault_words(fault_of(fault).kind)
 
 
 def print_json(fields: Mapping[str, Any]) -> None:
@@ -66,12 +65,40 @@ def print_json(fields: Mapping[str, Any]) -> None:
     click.echo(json.dumps(fields, ensure_ascii=plain))
 
 
-def reason(fault: OSError, path: Path | None = None) -> str:
-    """Return why a file, or the path that the fault names, could not be opened or written."""
-    place = fault.filename or path
-    if isinstance(place, str | Path) and os.path.isdir(place):  # noqa: PTH112
-        return "this is a folder; give the files in it"
-    return readable(fault.strerror or fault)
+class Bar:
+    """How far many files are, drawn on standard error where that is a terminal that can draw, unless it is `quiet`."""
+
+    def __init__(self, files: int, *, quiet: bool) -> None:
+        self._files = files
+        self._is_drawn = not quiet and sys.stderr.isatty() and _can_draw()
+        self._done = self._rows = self._known = 0
+        self._start = time.perf_counter()
+        self.draw()
+
+    def advance(self, ended: Ended) -> None:
+        """Draw that a submission has ended; what an earlier run has done tells nothing of how long the rest takes."""
+        self._done += 1
+        self._known += ended.done_before
+        self._rows += 0 if ended.done_before else ended.counts["rows"]
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw the bar anew: files, rows, rows a second, time left."""
+        if not self._is_drawn:
+            return
+        seconds = time.perf_counter() - self._start
+        filled = round(_BAR * self._done / self._files) if self._files else _BAR
+        text = f"Computing [{'#' * filled}{'-' * (_BAR - filled)}] {self._done} of {self._files} files"
+        if new := self._done - self._known:
+            left = round(seconds / new * (self._files - self._done))
+            text += f", {self._rows:,} rows, {self._rows / seconds:,.0f} rows/s, {left // 60}:{left % 60:02} left"
+        width = shutil.get_terminal_size().columns - 1
+        click.echo(f"{_ERASED}{text[:width]}", nl=False, err=True)
+
+    def clear(self) -> None:
+        """Make room for lines that are printed."""
+        if self._is_drawn:
+            click.echo(_ERASED, nl=False, err=True)
 
 
 @contextmanager

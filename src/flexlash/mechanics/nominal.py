@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping
 from functools import partial
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
+import polars as pl
 
 from flexlash.mechanics import flexspline, strength, windup
-from flexlash.mechanics.nominal_record import NominalNumbers
+from flexlash.mechanics.nominal_record import WORDS, NominalNumbers
 from flexlash.mechanics.stiffness import (
     catalogue_stiffness,
     drive_lost_motion,
@@ -20,16 +20,16 @@ from flexlash.mechanics.stiffness import (
     torsional_stiffness,
 )
 from flexlash.schema.arrays import Array, Quantity
-from flexlash.schema.variant import Variant
+from flexlash.schema.variant_arrays import VariantArrays
 
 __all__ = ["nominal_numbers"]
 
-_Numbers: TypeAlias = dict[str, float | str | None]
-"""Numbers [SI] and words of one variant by result key without unit."""
+_Columns: TypeAlias = dict[str, Any]
+"""Numbers [SI] of variants of one shape by result key without unit, masked where one has none; words by their place."""
 
 
-def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> list[NominalNumbers]:
-    """Nominal results of each variant [SI].
+def nominal_numbers(variants: VariantArrays, lost_motion_share: float) -> pl.DataFrame:
+    """Nominal results of each variant [SI]: the fields of `NominalNumbers` as columns, null where one has none.
 
     Equation: as in `flexspline.windups`, `strength`, `stiffness`; lost motion of the flexspline 2 p T_rated / K
     Arguments: variants, and lost_motion_share p [-] of the rated torque at which lost motion is stated.
@@ -38,31 +38,33 @@ def nominal_numbers(variants: Sequence[Variant], lost_motion_share: float) -> li
 
     >>> b3_160 = {"torque": 800.0, "cylinder_length": 0.16, "mean_radius": 0.08, "wall_thickness": 0.0016,
     ...           "disk_inner_radius": 0.04, "youngs_modulus": 211e9, "poisson_ratio": 0.3}
-    >>> variant = Variant(row=5, name="B3-160", flexspline_type="cup", material="20Cr2Ni4",
-    ...                   tolerance_class="standard", dimensions=b3_160)
-    >>> f"{nominal_numbers([variant], 0.04)[0].stiffness:.7g}"
+    >>> sizes = {name: np.array([size]) for name, size in b3_160.items()}
+    >>> variant = VariantArrays(flexspline_types=["cup"], dimensions=sizes, numbers={})
+    >>> f"{nominal_numbers(variant, 0.04)['stiffness'][0]:.7g}"
     '1491835'
     """
-    groups: dict[tuple[str, frozenset[str]], list[int]] = defaultdict(list)
-    for index, variant in enumerate(variants):
-        groups[variant.flexspline_type, frozenset(variant.dimensions)].append(index)
-    numbers: dict[int, NominalNumbers] = {}
-    for (flexspline_type, _), indices in groups.items():
-        first = variants[indices[0]]
-        dimensions = {
-            name: np.array([variants[index].dimensions[name] for index in indices]) for name in first.dimensions
-        }
-        with np.errstate(all="ignore"):
-            columns = _windups(flexspline_type, dimensions) | _stresses(flexspline_type, dimensions)
-            rows = zip(*(np.asarray(column).tolist() for column in columns.values()), strict=True)
-            for index, row in zip(indices, rows, strict=True):
-                known: _Numbers = dict(zip(columns, row, strict=True))
-                known |= _beside(variants[index], known, lost_motion_share)
-                numbers[index] = NominalNumbers(**known)  # type: ignore[arg-type]
-    return [numbers[index] for index in range(len(variants))]
+    count = len(variants.flexspline_types)
+    columns = {name: np.ma.array(np.full(count, np.nan), mask=True) for name in NominalNumbers.__dataclass_fields__}
+    with np.errstate(all="ignore"):
+        for flexspline_type, _, places, dimensions in variants.alike():
+            asked = {name: values[places] for name, values in variants.numbers.items()}
+            known = _windups(flexspline_type, dimensions) | _stresses(flexspline_type, dimensions)
+            known |= _beside(flexspline_type, dimensions | asked, known, lost_motion_share)
+            for name, values in known.items():
+                columns[name][places] = values
+    return pl.DataFrame([_series(name, values) for name, values in columns.items()])
 
 
-def _windups(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Quantity]:
+def _series(name: str, values: Any) -> pl.Series:
+    """Return a masked column with nulls instead; NaN stays a number."""
+    if name in WORDS:
+        words = [None if place is None else WORDS[name][int(place)] for place in values.tolist()]
+        return pl.Series(name, words, dtype=pl.Enum(WORDS[name]))
+    series = pl.Series(name, values.data)
+    return series.set(pl.Series(values.mask), None) if values.mask.any() else series
+
+
+def _windups(flexspline_type: str, dimensions: dict[str, Array]) -> _Columns:
     """Return wind-ups and what follows from them for variants of one shape, each of shape (variants,)."""
     segments = flexspline.windups(flexspline_type, dimensions)
     torque, radius = dimensions["torque"], flexspline.radius_of(dimensions)
@@ -93,7 +95,7 @@ def _windups(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Qu
     }
 
 
-def _stresses(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Quantity]:
+def _stresses(flexspline_type: str, dimensions: dict[str, Array]) -> _Columns:
     """Return the greatest shear and von Mises stress of each section for variants of one shape."""
     torque, radius, wall = dimensions["torque"], flexspline.radius_of(dimensions), dimensions["wall_thickness"]
     shear = {"wall": strength.shear_stress(torque, radius, wall)}
@@ -116,48 +118,57 @@ def _stresses(flexspline_type: str, dimensions: dict[str, Array]) -> dict[str, Q
     return numbers | {"von_mises": np.max(np.array(list(stress.values())), axis=0)}
 
 
-_SECTIONS = {"wall": "wall", "rim": "tooth rim", "hub": "disk"}
-_TUBE = ("wall_thickness", "cylinder_length")
-_RANGES = {-1: "shorter", 0: "yes", 1: "longer"}
+def _beside(flexspline_type: str, sizes: Mapping[str, Array], numbers: _Columns, lost_motion_share: float) -> _Columns:
+    """Return what asks for more than dimensions and torque: material strength, rated torque, inertia, catalogue.
+
+    `sizes` are dimensions, and what a variant has beside them, NaN where it has it not.
+    """
+    stiffness, torque, radius = numbers["stiffness"], sizes["torque"], numbers["mean_radius"]
+    none = np.full(len(torque), np.nan)
+    stress = [numbers.get(f"{section}_von_mises", np.zeros(len(torque))) for section in ("wall", "rim", "hub")]
+    beside: _Columns = {"governing_section": np.argmax(stress, axis=0)}
+    strong, young, poisson, rated, inertia = (sizes.get(name, none) for name in _BESIDE)
+    beside["elastic_limit_torque"] = _where_given(strength.limit_torque(torque, numbers["von_mises"], strong), strong)
+    tube = (radius, sizes["wall_thickness"], sizes["cylinder_length"])
+    buckling = strength.wall_buckling_shear(young, poisson, *tube)
+    of_buckling = {
+        "buckling_shear": buckling,
+        "buckling_torque": strength.limit_torque(torque, numbers["wall_shear"], buckling),
+        "buckling_range": strength.buckling_range(poisson, *tube) + 1,
+    }
+    beside |= {name: _where_given(values, young, poisson) for name, values in of_buckling.items()}
+    lost_at = lost_motion_share * rated
+    beside["lost_motion"] = _where_given(lost_motion(stiffness, lost_at), rated)
+    of_drive = [drive_lost_motion(*one) for one in zip(radius.tolist(), lost_at.tolist(), strict=True)]
+    beside["drive_lost_motion"] = _optional(of_drive, rated)
+    listed = [catalogue_stiffness(one) for one in radius.tolist()]
+    least = np.array(
+        [one.at_radius(size) if one else np.nan for one, size in zip(listed, radius.tolist(), strict=True)]
+    )
+    if flexspline_type != "cylinder":
+        beside["catalogue_size"] = _optional([one and float(one.size) for one in listed])
+        beside["catalogue_stiffness"] = _optional([one and one.stiffness for one in listed])
+        beside["least_stiffness"] = np.ma.array(least, mask=[one is None for one in listed])
+    frequency = natural_frequency(stiffness, inertia)
+    slowest = natural_frequency(np.where(least < stiffness, least, stiffness), inertia)
+    of_load = {
+        "natural_frequency": frequency,
+        "resonance_speed": resonance_speed(frequency),
+        "resonance_speed_low": resonance_speed(slowest),
+    }
+    return beside | {name: _where_given(values, inertia) for name, values in of_load.items()}
 
 
-def _beside(variant: Variant, numbers: _Numbers, lost_motion_share: float) -> _Numbers:
-    """Return what asks for more than dimensions and torque: material strength, rated torque, inertia, catalogue."""
-    beside: _Numbers = {}
-    stiffness, torque = _of(numbers, "stiffness"), variant.dimensions["torque"]
-    stress = {section: numbers.get(f"{section}_von_mises") or 0.0 for section in _SECTIONS}
-    beside["governing_section"] = _SECTIONS[max(stress, key=lambda section: stress[section])]
-    if variant.yield_strength is not None:
-        limit = strength.limit_torque(torque, np.float64(_of(numbers, "von_mises")), variant.yield_strength)
-        beside["elastic_limit_torque"] = float(limit)
-    radius = _of(numbers, "mean_radius")
-    if variant.youngs_modulus is not None and variant.poisson_ratio is not None:
-        young, poisson = variant.youngs_modulus, np.float64(variant.poisson_ratio)
-        # As numbers of NumPy, which divide by nothing without raising.
-        tube = [np.float64(size) for size in (radius, *(variant.dimensions[name] for name in _TUBE))]
-        buckling = strength.wall_buckling_shear(young, poisson, *tube)
-        torque_there = strength.limit_torque(torque, np.float64(_of(numbers, "wall_shear")), buckling)
-        beside |= {"buckling_shear": float(buckling), "buckling_torque": float(torque_there)}
-        beside["buckling_range"] = _RANGES[int(strength.buckling_range(poisson, *tube))]
-    if variant.rated_torque is not None:
-        lost_at = lost_motion_share * variant.rated_torque
-        beside["lost_motion"] = float(lost_motion(np.float64(stiffness), lost_at))
-        beside["drive_lost_motion"] = drive_lost_motion(radius, lost_at)
-    listed = catalogue_stiffness(radius)
-    if listed and variant.flexspline_type != "cylinder":
-        beside |= {"catalogue_size": float(listed.size), "catalogue_stiffness": listed.stiffness}
-        beside["least_stiffness"] = listed.at_radius(radius)
-    if variant.load_inertia is not None:
-        frequency = natural_frequency(stiffness, variant.load_inertia)
-        beside |= {"natural_frequency": frequency, "resonance_speed": resonance_speed(frequency)}
-        of_drive = min(stiffness, listed.at_radius(radius)) if listed else stiffness
-        beside["resonance_speed_low"] = resonance_speed(natural_frequency(of_drive, variant.load_inertia))
-    return beside
+_BESIDE = ("yield_strength", "youngs_modulus", "poisson_ratio", "rated_torque", "load_inertia")
 
 
-def _of(numbers: _Numbers, key: str) -> float:
-    """Return a number that every variant has."""
-    value = numbers[key]
-    if not isinstance(value, float):
-        raise TypeError(key)
-    return value
+def _where_given(values: Quantity, *asked: Array) -> Any:
+    """Return numbers masked where one that they ask for is not given."""
+    return np.ma.array(values, mask=np.any(np.isnan(asked), axis=0))
+
+
+def _optional(values: list[float | None], *asked: Array) -> Any:
+    """Return numbers masked where they are None, or where one that they ask for is not given."""
+    found = np.array(values, dtype=float)
+    missing = np.array([value is None for value in values])
+    return np.ma.array(found, mask=missing | np.any(np.isnan(asked), axis=0) if asked else missing)

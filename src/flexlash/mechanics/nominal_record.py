@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["NominalNumbers"]
+__all__ = ["WORDS", "NominalNumbers"]
+
+WORDS = {"governing_section": ("wall", "tooth rim", "disk"), "buckling_range": ("shorter", "yes", "longer")}
+"""The fields that are words, with what they can be."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections import defaultdict
-from collections.abc import Collection
+from collections.abc import Iterable
 from functools import cache
 from typing import NamedTuple
 
+from flexlash.mechanics.elementary import sqrt
 from flexlash.schema import tables
 from flexlash.schema.arrays import Quantity
 
@@ -58,25 +60,25 @@ def lost_motion(stiffness: Quantity, torque: Quantity) -> Quantity:
     return 2 * torque / stiffness
 
 
-def natural_frequency(stiffness: float, inertia: float) -> float:
+def natural_frequency(stiffness: Quantity, inertia: Quantity) -> Quantity:
     """Natural frequency of a load on the flexspline, the other end held [Hz].
 
     Equation: f = √(K/J) / 2π
-    Arguments: stiffness K [N·m/rad], inertia J of the load on the output [kg·m²].
+    Arguments: stiffness K [N·m/rad], inertia J of the load on the output [kg·m²], of any one shape.
     Valid: flexspline without mass; an upper bound, since bearing, teeth and hub bolts yield as well.
     Source: one-mass oscillator.
 
     >>> f"{natural_frequency(1.491835e6, 1.0):.2f}"
     '194.39'
     """
-    return math.sqrt(stiffness / inertia) / (2 * math.pi)
+    return sqrt(stiffness / inertia) / (2 * math.pi)
 
 
-def resonance_speed(frequency: float) -> float:
+def resonance_speed(frequency: Quantity) -> Quantity:
     """Speed of the wave generator at which its ripple meets a natural frequency [rad/s].
 
     Equation: ω = 2π f / 2
-    Arguments: frequency f [Hz].
+    Arguments: frequency f [Hz], of any shape.
     Valid: kinematic error at two waves per turn of the wave generator, its strongest order.
     Source: kinematic error of strain wave gears.
 
@@ -158,12 +160,14 @@ def drive_lost_motion(mean_radius: float, torque: float) -> float | None:
     return 2 * torque / stiffness if torque <= most else None
 
 
-def _nearest(mean_radius: float, listed: Collection[int]) -> int | None:
-    """Return the listed size nearest to a mean radius [m], the smaller of two; None beyond the listed ones."""
-    size = 2 * mean_radius / _METRES_PER_SIZE
-    if not min(listed) - _SLACK <= size <= max(listed) + _SLACK:
+def _nearest(mean_radius: float, listed: Iterable[int]) -> int | None:
+    """Return the size nearest to a mean radius [m] of those listed, which rise; the smaller of two, None beyond all."""
+    size, sizes = 2 * mean_radius / _METRES_PER_SIZE, list(listed)
+    if not sizes[0] - _SLACK <= size <= sizes[-1] + _SLACK:
         return None
-    return min(listed, key=lambda candidate: (abs(candidate - size), candidate))
+    above = bisect_left(sizes, size)
+    beside = sizes[max(above - 1, 0) : above + 1]
+    return min(beside, key=lambda candidate: abs(candidate - size))
 
 
 _SLACK = 1e-9
@@ -190,10 +194,10 @@ def _first_slopes() -> dict[int, tuple[float, float]]:
 
 
 def _listed(table: str, column: str) -> dict[int, list[float]]:
-    """Return the entries of a catalogue column by size, over the ratios that have one."""
+    """Return the entries of a catalogue column by rising size, over the ratios that have one."""
     listed: dict[int, list[float]] = defaultdict(list)
     for row in tables.rows(table):
         entries = listed[int(row["size"])]
         if row[column]:
             entries.append(float(row[column]))
-    return listed
+    return dict(sorted(listed.items()))

@@ -13,7 +13,7 @@ from flexlash.outputs.plan import Output, Plan
 from flexlash.reading.read import ReadReport, Source
 from flexlash.schema.argument_checks import file_path
 
-__all__ = ["Delivery", "delivery"]
+__all__ = ["Delivery", "delivery", "with_file"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,7 +32,7 @@ class Delivery:
         """Return the outcome with what was written for it: these bytes, if any, and the marked copy where one helps."""
         written = Written()
         if self.output is not None and data is not None:
-            written = _with_file(written, self.output, data, role)
+            written = with_file(written, self.output, data, role)
         return replace(outcome, written=self._marked(outcome, written))
 
     def reported(self, outcome: Outcome) -> Outcome:
@@ -54,7 +54,7 @@ class Delivery:
         try:
             self.copy.require()
             data, not_carried = marked(outcome, outcome.options.limits, macros=self.copy.ending == ".xlsm")
-            with_copy = _with_file(written, self.copy, data, "checked")
+            with_copy = with_file(written, self.copy, data, "checked")
         except OSError as fault:
             return replace(written, fault=fault)
         return replace(with_copy, marked_copy=with_copy.paths[-1], not_carried=not_carried)
@@ -78,7 +78,7 @@ def delivery(
     )
 
 
-def _with_file(written: Written, output: Output, data: bytes, role: str) -> Written:
+def with_file(written: Written, output: Output, data: bytes, role: str) -> Written:
     """Write an output; return what was written before and this, with what was left alone in its place."""
     file = output.write(data, role)
     remarks = (file.remark,) if file.remark else ()

@@ -8,12 +8,14 @@ from typing import Any
 from xlsxwriter.utility import quote_sheetname
 
 from flexlash.analysis.outcome import Outcome
+from flexlash.report.extent import MOST_FINDINGS, Extent, extent_of
 from flexlash.report.layout.links import write_link
 from flexlash.report.layout.styles import Book
 from flexlash.report.results_sheet import AS_SUBMITTED, ERROR_DIGITS, SHARE_DECIMALS
 from flexlash.report.wording.verdict import NO_VERDICT, RULES
 from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, SETTINGS
+from flexlash.schema.number_words import grouped
 from flexlash.schema.result_columns import result_columns
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES
 from flexlash.tolerance.engine.line_precision import MOST_LINES, PROBABILITY_PRECISION, SD_PRECISION
@@ -204,10 +206,12 @@ def write_about(book: Book, outcome: Outcome, later: Sequence[str] = ()) -> None
     sheet.write_string(0, 0, "About this report", book.format("title"))
     sheet.set_row(0, 28)
     row = 2
+    extent = extent_of(outcome)
+    sheets = SHEETS | (_of_large(extent) if extent.large else {})
     present = [worksheet.get_name() for worksheet in book.workbook.worksheets()] + list(later)
     sections: tuple[tuple[str, list[tuple[str, str]]], ...] = (
         ("Provenance and settings", list(_identity(outcome).items())),
-        ("Sheets", [*((name, SHEETS.get(name, "")) for name in present), ("", TABS)]),
+        ("Sheets", [*((name, sheets.get(name, "")) for name in present), ("", TABS)]),
         ("Verdict", [("", text) for text in _verdict()]),
         ("Digits and columns", [("", text) for text in _digits()]),
         ("Spread", [("", text) for text in _statistics(outcome)]),
@@ -220,6 +224,19 @@ def write_about(book: Book, outcome: Outcome, later: Sequence[str] = ()) -> None
     )
     for title, entries in sections:
         row = _write_section(book, sheet, row, title, entries)
+
+
+def _of_large(extent: Extent) -> dict[str, str]:
+    """Return what sheets are for in the report of a large submission, where that is something else."""
+    worst = f"the {extent.words} variants" if extent.is_part else f"all {grouped(extent.total)} variants"
+    texts = {
+        "Sensitivity": f"Which dimension causes the spread: tornado of the worst variant, shares of {worst}.",
+        "Findings": f"What was found: each rule with its mend and count, then the first {MOST_FINDINGS} findings.",
+        "Submission": f"Sheet Variants as read, of {worst}, worst first behind their row numbers.",
+    }
+    if extent.results_file:
+        texts["Results"] = f"Every number of {worst}, in submitted order; {extent.elsewhere}."
+    return texts
 
 
 def _write_section(book: Book, sheet: Any, row: int, title: str, entries: Sequence[tuple[str, str]]) -> int:
@@ -256,7 +273,16 @@ def _identity(outcome: Outcome) -> dict[str, str]:
         "Checksums": CHECKSUMS[outcome.submission.kind],
         "flexlash version": __version__,
         **{column.key: _text(settings[column.key]) for column in SETTINGS},
+        **({"Variants shown": _shown(extent_of(outcome))} if extent_of(outcome).large else {}),
     }
+
+
+def _shown(extent: Extent) -> str:
+    """Return what the report of a large submission shows."""
+    if not extent.is_part:
+        return f"All {grouped(extent.total)}; Findings lists the first {MOST_FINDINGS}."
+    findings = f"all findings are in {extent.findings_file}" if extent.findings_file else "Findings counts all findings"
+    return f"{extent.note} Every sheet but Results shows these alone; {findings}."
 
 
 def _text(value: object) -> str:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 
 from flexlash.analysis.outcome import Outcome
+from flexlash.report.extent import extent_of
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import PICTURED, Drawn, ReportData
 from flexlash.report.section_picture import section_png
@@ -41,8 +43,9 @@ _PICTURE_ROWS = 30
 _PICTURE_COLUMNS = 10
 
 
-def write_elasticity(book: Book, outcome: Outcome) -> None:
-    """Write the comparison of all checked variants, in submitted order."""
+def write_elasticity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
+    """Write the comparison of all checked variants, in submitted order; of many, of those drawn, worst first."""
+    extent = extent_of(outcome)
     sheet = book.sheet("Elasticity", landscape=False)
     sheet.write_string(0, 0, "Check by two-dimensional elasticity", book.format("title"))
     sheet.set_row(0, 28)
@@ -53,8 +56,10 @@ def write_elasticity(book: Book, outcome: Outcome) -> None:
         sheet.set_row(row, 32)
     sheet.write_row(_HEADER, 0, ("Variant", *(heading for _, heading, _ in _COLUMNS)), book.format("header"))
     sheet.set_row(_HEADER, 48)
+    if extent.large and extent.note:
+        sheet.write_string(_HEADER - 1, 0, extent.note, book.format("quiet"))
     row = _HEADER
-    for record in outcome.results.iter_rows(named=True):
+    for record in (variant.row for variant in drawn) if extent.large else outcome.results.iter_rows(named=True):
         if record["windup_rad"] is None:
             continue
         row += 1

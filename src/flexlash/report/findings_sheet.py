@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Sequence
 from typing import Any
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.report.layout.links import FIRST_FINDING, finding_list, result_rows, row_of, rules_of, write_link
+from flexlash.report.extent import extent_of
+from flexlash.report.layout.links import (
+    FIRST_FINDING,
+    listed_findings,
+    mirrored,
+    result_rows,
+    row_of,
+    rule_counts,
+    rules_of,
+    write_link,
+)
 from flexlash.report.layout.styles import Book
-from flexlash.report.submission_sheets import titles_of
+from flexlash.report.report_data import Drawn
+from flexlash.report.submission_sheets import SUBMISSION, titles_of
 from flexlash.schema.columns import ENTRY_SHEETS
 from flexlash.schema.finding_explanations import explanation_of
 from flexlash.schema.findings import CATALOGUE, Finding, shown
+from flexlash.schema.number_words import grouped
 from flexlash.schema.result_columns import FINDINGS
 
 __all__ = ["write_findings"]
@@ -30,38 +42,60 @@ _LABELS = {(schema, column.key): column.label for schema, columns in ENTRY_SHEET
 _BY_KEY = {key: label for (_, key), label in reversed(_LABELS.items())}
 
 
-def write_findings(book: Book, outcome: Outcome) -> None:
+def write_findings(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
     """Write the Findings sheet; cells link to the submission as read, variants to Results."""
     sheet = book.sheet("Findings")
     for column_index, column in enumerate(FINDINGS):
         sheet.set_column(column_index, column_index, _WIDTHS.get(column.key, 11))
     sheet.write_string(0, 0, "Findings", book.format("title"))
     sheet.set_row(0, 28)
-    if not outcome.findings:
+    findings = listed_findings(outcome)
+    if not rule_counts(outcome):
         sheet.write_string(1, 0, "Nothing was found.", book.format("quiet"))
         return
-    sheet.write_string(1, 0, _counts(outcome), book.format("quiet"))
-    header = _write_rules(book, sheet, rules_of(outcome))
+    sheet.write_string(1, 0, _counts(outcome, len(findings)), book.format("quiet"))
+    if left_out := _left_out(outcome, len(findings)):
+        sheet.write_string(2, 0, left_out, book.format("quiet"))
+    header = _write_rules(book, sheet, outcome, len(findings))
     for column_index, column in enumerate(FINDINGS):
         sheet.write_string(header, column_index, column.label, book.format("header"))
         sheet.write_comment(header, column_index, column.help)
-    findings, rows, by_name = finding_list(outcome), result_rows(outcome), _rows_by_name(outcome)
+    rows, by_name, variants = result_rows(outcome), _rows_by_name(outcome), mirrored(outcome, drawn)
     titles = titles_of(outcome.submission)
     for row, finding in enumerate(findings, start=header + 1):
         result = rows.get(row_of(outcome, finding), by_name.get(finding.variant))
-        _write_finding(book, sheet, row, finding, title=titles.get(finding.sheet, ""), result=result)
+        title = titles.get(finding.sheet, "")
+        place = finding.address
+        if place and title == SUBMISSION:
+            place = variants.place(place)
+        cell = str(place) if place and title else ""
+        _write_finding(book, sheet, row, finding, title=title, links=(cell, result))
     sheet.autofilter(header, 0, header + len(findings), len(FINDINGS) - 1)
     sheet.freeze_panes(0, 2)
 
 
-def _counts(outcome: Outcome) -> str:
-    """Return how much was found, and where more is told."""
-    levels: Counter[str] = Counter(finding.level for finding in outcome.findings)
-    counts = f"Errors: {levels['error']}, warnings: {levels['warning']}, notes: {levels['info']}."
+def _counts(outcome: Outcome, listed: int) -> str:
+    """Return how much was found, and where more is told; so many findings are listed."""
+    counts, levels = rule_counts(outcome), Counter[str]()
+    for code, count in counts.items():
+        levels[CATALOGUE[code].level] += count
+    errors, warnings, notes = (grouped(levels[level]) for level in ("error", "warning", "info"))
+    which = "every finding" if listed == sum(counts.values()) else "the first findings"
     return (
-        f"{counts} An error keeps its row from being computed, a warning flags it. First each rule once, below every "
-        "finding, with filters. The command flexlash explain CODE says what a rule means."
+        f"Errors: {errors}, warnings: {warnings}, notes: {notes}. An error keeps its row from being computed, a "
+        f"warning flags it. First each rule once, below {which}, with filters. The command flexlash explain CODE says "
+        "what a rule means."
     )
+
+
+def _left_out(outcome: Outcome, listed: int) -> str:
+    """Return how many findings have no line, and where they are; an empty text where all have one."""
+    more = sum(rule_counts(outcome).values()) - listed
+    if more <= 0:
+        return ""
+    file = extent_of(outcome).findings_file
+    where = f"all are in {file}" if file else "flexlash check with --json or --annotate tells all"
+    return f"{grouped(listed)} findings are listed below, {grouped(more)} more are not; {where}."
 
 
 def _rows_by_name(outcome: Outcome) -> dict[str, int]:
@@ -70,8 +104,9 @@ def _rows_by_name(outcome: Outcome) -> dict[str, int]:
     return {name: row for row, name in zip(result_rows(outcome).values(), names, strict=False) if name}
 
 
-def _write_rules(book: Book, sheet: Any, rules: Mapping[str, list[Finding]]) -> int:
-    """Write one line for each rule; return the row of the list's header."""
+def _write_rules(book: Book, sheet: Any, outcome: Outcome, listed: int) -> int:
+    """Write one line for each rule, above a list of so many findings; return the row of the list's header."""
+    rules, counts = rules_of(outcome), rule_counts(outcome)
     row = _RULES_HEADER
     headings = {0: "Level", 1: "Code", 2: "Count", 3: "Rule", 6: "More", 7: "How to mend"}
     last = len(FINDINGS) - 1
@@ -81,10 +116,11 @@ def _write_rules(book: Book, sheet: Any, rules: Mapping[str, list[Finding]]) -> 
     sheet.merge_range(row, 7, row, last, "How to mend", book.format("header"))
     for row, (code, group) in enumerate(rules.items(), start=_RULES_HEADER + 1):
         fixes = {finding.fix for finding in group}
-        mend = fixes.pop() if len(fixes) == 1 else explanation_of(code, {}).mend
-        sheet.write_string(row, 0, group[0].level, book.format(_STYLES[group[0].level]))
+        mend = fixes.pop() if len(fixes) == 1 and len(group) == counts[code] else explanation_of(code, {}).mend
+        level = CATALOGUE[code].level
+        sheet.write_string(row, 0, level, book.format(_STYLES[level]))
         sheet.write_string(row, 1, code, book.format("text"))
-        sheet.write_number(row, 2, len(group), book.format("text"))
+        sheet.write_number(row, 2, counts[code], book.format("text"))
         sheet.merge_range(row, 3, row, 5, "", book.format("text"))
         sheet.write_string(row, 3, CATALOGUE[code].title, book.format("indented"))
         sheet.write_string(row, 6, f"flexlash explain {code}", book.format("text"))
@@ -92,12 +128,19 @@ def _write_rules(book: Book, sheet: Any, rules: Mapping[str, list[Finding]]) -> 
         sheet.write_string(row, 7, mend, book.format("wrap"))
         sheet.set_row(row, _LINE * (1 + len(mend) // _MEND_PER_LINE))
     header = FIRST_FINDING - 1 + len(rules)
-    sheet.write_string(header - 1, 0, "Every finding", book.format("label"))
+    heading = "Every finding" if listed == sum(counts.values()) else "The first findings"
+    sheet.write_string(header - 1, 0, heading, book.format("label"))
     return header
 
 
-def _write_finding(book: Book, sheet: Any, row: int, finding: Finding, *, title: str, result: int | None) -> None:
-    """Write one finding, its level coloured, its variant linked to Results and its cell to the submission."""
+def _write_finding(
+    book: Book, sheet: Any, row: int, finding: Finding, *, title: str, links: tuple[str, int | None]
+) -> None:
+    """Write one finding, its level coloured, its cell linked to the submission and its variant to Results.
+
+    `links` are the address of that cell in the report, empty where it is not shown, and the row of Results.
+    """
+    cell, result = links
     texts = finding.as_dictionary()
     label = _LABELS.get((_schema(title), finding.column)) or _BY_KEY.get(finding.column)
     if label:
@@ -108,8 +151,8 @@ def _write_finding(book: Book, sheet: Any, row: int, finding: Finding, *, title:
     for column_index, (key, text) in enumerate(texts.items()):
         if key == "level":
             sheet.write_string(row, column_index, text, book.format(_STYLES[finding.level]))
-        elif key == "cell" and text and title:
-            write_link(sheet, row, column_index, f"{title}!{text}", text, style=book.format("link"))
+        elif key == "cell" and text and cell:
+            write_link(sheet, row, column_index, f"{title}!{cell}", text, style=book.format("link"))
         elif key == "variant" and text and result is not None:
             write_link(
                 sheet,
@@ -125,4 +168,4 @@ def _write_finding(book: Book, sheet: Any, row: int, finding: Finding, *, title:
 
 def _schema(title: str) -> str:
     """Return the entry sheet that a sheet of the report mirrors."""
-    return "Variants" if title == "Submission" else title
+    return "Variants" if title == SUBMISSION else title

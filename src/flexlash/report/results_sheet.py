@@ -6,12 +6,23 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.report.layout.links import FIRST_ROW, finding_rows, name_cell, result_rows, write_link
+from flexlash.report.extent import extent_of
+from flexlash.report.layout.links import (
+    FIRST_ROW,
+    finding_rows,
+    first_result,
+    mirrored,
+    name_column,
+    result_rows,
+    write_link,
+)
 from flexlash.report.layout.paper import print_readably
 from flexlash.report.layout.raw_cells import write_raw
 from flexlash.report.layout.result_formats import ESTIMATED_SHARES, number_formats, usual_format
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
+from flexlash.report.report_data import Drawn
+from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import Column
 from flexlash.schema.result_columns import result_columns
 
@@ -72,10 +83,13 @@ def _is_detail(column: Column) -> bool:
     return "standard_error" in key or key.startswith("random_") or key.endswith(("_rad", "_arcsec", *_DETAILS))
 
 
-def write_results(book: Book, outcome: Outcome) -> None:
+def write_results(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
     """Write the Results sheet; columns of the submission that flexlash does not use stand at its right end."""
     sheet = book.sheet("Results")
-    results = outcome.results
+    results, first = outcome.results, first_result(outcome)
+    labels = first - FIRST_ROW
+    if labels:
+        sheet.write_string(0, 0, extent_of(outcome).note, book.format("quiet"))
     columns = [column for column in result_columns(cross_check=True, elasticity=True) if column.key in results.columns]
     widths = [_width(results, column) for column in columns]
     for index, (column, width) in enumerate(zip(columns, widths, strict=True)):
@@ -83,20 +97,20 @@ def write_results(book: Book, outcome: Outcome) -> None:
         number = usual_format(column) if column.is_number else ""
         sheet.set_column(index, index, width, book.format("text", number), options)
         text = f"{column.help} {_REMARKS.get(column.key, '')}".strip()
-        _write_heading(book, sheet, index, (column.label, column.key, text))
-    _write_cells(book, sheet, results, columns)
-    _write_links(book, sheet, outcome, columns)
+        _write_heading(book, sheet, (labels, index), (column.label, column.key, text))
+    _write_cells(book, sheet, results, columns, first)
+    _write_links(book, sheet, outcome, columns, drawn)
     right = _write_passed(book, sheet, outcome, len(columns))
-    last = FIRST_ROW + max(results.height, 1) - 1
+    last = first + max(results.height, 1) - 1
     lines = max(lines_of(column.label, width) for column, width in zip(columns, widths, strict=True))
-    sheet.set_row(0, LINE_HEIGHT * lines)
-    sheet.set_row(1, _KEY_HEIGHT)
-    sheet.freeze_panes(FIRST_ROW, 1)
-    sheet.autofilter(1, 0, last, right - 1)
-    sheet.repeat_rows(0, 1)
+    sheet.set_row(labels, LINE_HEIGHT * lines)
+    sheet.set_row(labels + 1, _KEY_HEIGHT)
+    sheet.freeze_panes(first, 1)
+    sheet.autofilter(labels + 1, 0, last, right - 1)
+    sheet.repeat_rows(labels, labels + 1)
     breaks = [index for index, column in enumerate(columns) if column.key in _NEW_PAGE]
     print_readably(sheet, [*widths, *[_PASSED] * (right - len(columns))], breaks=breaks)
-    _write_conditions(book, sheet, columns, last)
+    _write_conditions(book, sheet, columns, (first, last))
 
 
 def _width(results: pl.DataFrame, column: Column) -> float:
@@ -108,22 +122,22 @@ def _width(results: pl.DataFrame, column: Column) -> float:
     return min(max(int(str(longest or 0)) + 2, least), most)
 
 
-def _write_heading(book: Book, sheet: Any, index: int, texts: tuple[str, str, str]) -> None:
+def _write_heading(book: Book, sheet: Any, cell: tuple[int, int], texts: tuple[str, str, str]) -> None:
     """Write label and key of a column and say in a comment what it holds."""
-    label, key, text = texts
-    sheet.write_string(0, index, label, book.format("header"))
-    sheet.write_comment(0, index, text)
-    sheet.write_string(1, index, key, book.format("key"))
+    (row, index), (label, key, text) = cell, texts
+    sheet.write_string(row, index, label, book.format("header"))
+    sheet.write_comment(row, index, text)
+    sheet.write_string(row + 1, index, key, book.format("key"))
 
 
-def _write_cells(book: Book, sheet: Any, results: pl.DataFrame, columns: Sequence[Column]) -> None:
+def _write_cells(book: Book, sheet: Any, results: pl.DataFrame, columns: Sequence[Column], first: int) -> None:
     """Write the table row by row, in which order XlsxWriter is quickest."""
     lists = [stored_values(results, column) for column in columns]
     styles = [_styles(book, results, column) for column in columns]
-    heights = _heights(results, columns)
+    heights = _heights(results, columns, first)
     write_number, write_string = sheet.write_number, sheet.write_string
     for row, (values, formats) in enumerate(
-        zip(zip(*lists, strict=True), zip(*styles, strict=True), strict=True), start=FIRST_ROW
+        zip(zip(*lists, strict=True), zip(*styles, strict=True), strict=True), start=first
     ):
         if row in heights:
             sheet.set_row(row, heights[row])
@@ -136,14 +150,14 @@ def _write_cells(book: Book, sheet: Any, results: pl.DataFrame, columns: Sequenc
                 write_number(row, index, value, formats[index])
 
 
-def _heights(results: pl.DataFrame, columns: Sequence[Column]) -> dict[int, float]:
+def _heights(results: pl.DataFrame, columns: Sequence[Column], first: int) -> dict[int, float]:
     """Return the heights of rows with a text that is longer than its column is wide."""
     lines: dict[int, int] = {}
     for column in columns:
         for row, text in enumerate(results[column.key].to_list() if column.key in _WRAPPED else ()):
             if text is not None and len(text) > _TEXTS[1] - 2:
                 lines[row] = max(lines.get(row, 1), lines_of(text, _TEXTS[1]))
-    return {FIRST_ROW + row: LINE_HEIGHT * count for row, count in lines.items()}
+    return {first + row: LINE_HEIGHT * count for row, count in lines.items()}
 
 
 def stored_values(results: pl.DataFrame, column: Column) -> list[Any]:
@@ -163,16 +177,19 @@ def _styles(book: Book, results: pl.DataFrame, column: Column) -> list[Any]:
     return [book.format("indented wrap" if column.key in _WRAPPED else "indented")] * results.height
 
 
-def _write_links(book: Book, sheet: Any, outcome: Outcome, columns: Sequence[Column]) -> None:
-    """Lead from each variant to its row of the submission, and from its findings to the first of them."""
-    style, letters = book.format("link"), name_cell(outcome)
+def _write_links(book: Book, sheet: Any, outcome: Outcome, columns: Sequence[Column], drawn: Sequence[Drawn]) -> None:
+    """Lead from each variant to its row of the submission, and from its findings to the first of them.
+
+    Those of a large submission that are not repeated in the report have no link.
+    """
+    style, column, variants = book.format("link"), name_column(outcome), mirrored(outcome, drawn)
     findings = finding_rows(outcome)
     findings_index = [column.key for column in columns].index("findings")
     rows = result_rows(outcome)
     texts = outcome.results.select("variant", "findings").iter_rows()
     for (number, row), (name, listed) in zip(rows.items(), texts, strict=False):
-        if name:
-            write_link(sheet, row, 0, f"Submission!{letters}{number}", name, style=style)
+        if name and (place := variants.place(CellAddress(row=number, column=column))):
+            write_link(sheet, row, 0, f"Submission!{place}", name, style=style)
         if listed and number in findings:
             write_link(sheet, row, findings_index, f"Findings!A{findings[number] + 1}", listed, style=style)
 
@@ -184,7 +201,7 @@ def _write_passed(book: Book, sheet: Any, outcome: Outcome, index: int) -> int:
     for column, header in sorted(table.heading.extra.items()) if table is not None else ():
         sheet.set_column(index, index, _PASSED)
         text = f"Column {header} of the submission as read; nothing is computed from it."
-        _write_heading(book, sheet, index, (header, AS_SUBMITTED, text))
+        _write_heading(book, sheet, (first_result(outcome) - FIRST_ROW, index), (header, AS_SUBMITTED, text))
         for number, row in rows.items():
             value = table.cells[number].get(column) if table is not None else None
             if value is not None:
@@ -193,15 +210,16 @@ def _write_passed(book: Book, sheet: Any, outcome: Outcome, index: int) -> int:
     return index
 
 
-def _write_conditions(book: Book, sheet: Any, columns: Sequence[Column], last: int) -> None:
-    """Colour the status and draw shares as bars from 0 to 1."""
+def _write_conditions(book: Book, sheet: Any, columns: Sequence[Column], rows: tuple[int, int]) -> None:
+    """Colour the status and draw shares as bars from 0 to 1, from the first of these rows to the last."""
+    first, last = rows
     keys = [column.key for column in columns]
     index = keys.index("status")
     for status in ("error", "warning", "ok"):
         rule = {"type": "cell", "criteria": "==", "value": f'"{status}"', "format": book.format(status)}
-        sheet.conditional_format(FIRST_ROW, index, last, index, rule)
+        sheet.conditional_format(first, index, last, index, rule)
     ends = {"min_type": "num", "max_type": "num", "min_value": 0, "max_value": 1}
     for key, colour in _BARS.items():
         index = keys.index(key)
         bar = {"type": "data_bar", "bar_color": PALETTE[colour], **ends}
-        sheet.conditional_format(FIRST_ROW, index, last, index, bar)
+        sheet.conditional_format(first, index, last, index, bar)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from flexlash.report.extent import Extent
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
@@ -39,7 +40,7 @@ _SIZES = {True: 80, False: 90}
 """Size of print in per cent with few variants, and with more."""
 
 
-def write_sections(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
+def write_sections(book: Book, drawn: Sequence[Drawn], extent: Extent) -> None:
     """Write what each segment adds to the backlash, worst variants first."""
     sheet = book.sheet("Sections")
     sheet.write_string(0, 0, "Where the backlash arises", book.format("title"))
@@ -47,8 +48,10 @@ def write_sections(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
     note = (
         "Backlash of each segment at the entered dimensions [arcmin], from the open end to the hub; the sum is nominal."
     )
-    if len(drawn) < computed:
-        note += f" The {len(drawn)} worst of {computed} variants."
+    if extent.large and extent.note:
+        sheet.write_string(2, 0, extent.note, book.format("quiet"))
+    elif extent.is_part:
+        note += f" The {extent.words} variants."
     if len(drawn) > _CHARTED:
         note += f" The chart has the {_CHARTED} worst."
     sheet.write_string(1, 0, note, book.format("quiet"))

@@ -7,6 +7,7 @@ from typing import Any
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_summary import dimension_words
+from flexlash.report.extent import extent_of
 from flexlash.report.layout.paper import SMALL, fits, print_readably
 from flexlash.report.layout.result_formats import SHARE_OF_VARIANCE_ERROR
 from flexlash.report.layout.styles import GRID, PALETTE, Book, percent_of
@@ -29,17 +30,17 @@ _PIXELS = 73
 
 
 def write_sensitivity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
-    """Write the tornado of the worst variant above the shares of all variants."""
+    """Write the tornado of the worst variant above the shares of all variants, or of those drawn of many."""
+    extent = extent_of(outcome)
     sheet = book.sheet("Sensitivity")
     sheet.write_string(0, 0, "What causes the spread", book.format("title"))
     sheet.set_row(0, 28)
     sheet.set_column(0, 0, _NAME_WIDTH)
     sheet.set_column(1, 2 * len(DIMENSIONS) + 2, _WIDTH)
-    rows = [
-        (computed.variant.name, computed.spread)
-        for computed in outcome.computed.values()
-        if computed.spread is not None
-    ]
+    variants = [variant.computed for variant in drawn] if extent.large else outcome.computed.values()
+    rows = [(computed.variant.name, computed.spread) for computed in variants if computed.spread is not None]
+    if extent.large and extent.note:
+        sheet.write_string(2, 0, extent.note, book.format("quiet"))
     names = [name for name in DIMENSIONS if any(name in spread.shares for _, spread in rows)]
     widths = [_NAME_WIDTH, *[_WIDTH] * len(names), _GAP, *[_WIDTH] * len(names)]
     totals = len(names) + 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from flexlash.report.extent import Extent
 from flexlash.report.layout.paper import SMALL, print_readably
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import Drawn
@@ -50,16 +51,15 @@ _NOTES = (
 _HEADER = len(_NOTES) + 2
 
 
-def write_strength(book: Book, drawn: Sequence[Drawn], computed: int) -> None:
+def write_strength(book: Book, drawn: Sequence[Drawn], extent: Extent) -> None:
     """Write stresses, limits and stiffness, worst variants first."""
     sheet = book.sheet("Strength")
     sheet.write_string(0, 0, "What the sections bear", book.format("title"))
     sheet.set_row(0, 28)
     for row, note in enumerate(_NOTES, start=1):
         sheet.write_string(row, 0, note, book.format("quiet"))
-    if len(drawn) < computed:
-        text = f"The {len(drawn)} worst of {computed} variants; all are in Results."
-        sheet.write_string(_HEADER - 1, 0, text, book.format("quiet"))
+    if extent.note:
+        sheet.write_string(_HEADER - 1, 0, extent.note, book.format("quiet"))
     sheet.set_column(0, 0, _NAME_WIDTH)
     sheet.set_column(1, len(_COLUMNS), _WIDTH)
     print_readably(sheet, [_NAME_WIDTH, *[_WIDTH] * len(_COLUMNS)], least=SMALL)

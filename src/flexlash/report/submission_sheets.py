@@ -1,4 +1,7 @@
-"""The submission as read: every cell at its own address, so that findings link to it and say there what is wrong."""
+"""The submission as read: every cell at its own address, so that findings link to it and say there what is wrong.
+
+Of a large submission the drawn variants alone stand here, worst first, each behind its row number.
+"""
 
 from __future__ import annotations
 
@@ -8,18 +11,22 @@ from typing import Any, TypeGuard
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.feedback.template.template_workbook import TITLES
-from flexlash.reading.raw import RawSheet, Submission, Unstored
-from flexlash.report.layout.links import finding_list, result_rows, write_link
+from flexlash.reading.raw import RawSheet, RawValue, Submission, Unstored
+from flexlash.report.extent import extent_of
+from flexlash.report.layout.links import Mirrored, finding_list, mirrored, result_rows, write_link
 from flexlash.report.layout.paper import print_readably
 from flexlash.report.layout.raw_cells import raw_text, write_raw
 from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
+from flexlash.report.report_data import Drawn
+from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import ENTRY_SHEETS
+from flexlash.schema.number_words import grouped
 from flexlash.validation.entry_sheets import sheet_names
 from flexlash.validation.headers import STATUS_HEADER, plain
 from flexlash.validation.materials_and_classes import BUILT_IN_SHEETS, built_in_sheet
 
-__all__ = ["MOST_COMMENTS", "titles_of", "write_submission"]
+__all__ = ["MOST_COMMENTS", "SUBMISSION", "titles_of", "write_submission"]
 
 MOST_COMMENTS = 2000
 """Most guilty cells that say in a comment what is wrong; Findings lists all."""
@@ -29,8 +36,14 @@ _MOST_LINES = 14
 _NAME, _LEAST, _MOST = 16.0, 11.0, 90.0
 """Least widths of the first column and the others, and the greatest; longer texts are wrapped."""
 
+_ROW_HEADER = "Row"
+"""Heading of the row numbers before variants that do not stand in their own rows."""
+
 _TEMPLATE_TITLES = frozenset(title for title, _ in TITLES.values())
-_TITLES = {name: "Submission" if name == "Variants" else name for name in ENTRY_SHEETS}
+SUBMISSION = "Submission"
+"""The sheet of the report that mirrors Variants."""
+
+_TITLES = {name: SUBMISSION if name == "Variants" else name for name in ENTRY_SHEETS}
 
 
 def titles_of(submission: Submission) -> dict[str, str]:
@@ -48,22 +61,26 @@ class _Guilt:
 
 @dataclass(frozen=True, kw_only=True)
 class _Mirror:
-    """A sheet to repeat: its cells, its header row (0: none) and its guilty cells by place, from 0.
+    """A sheet to repeat: its cells, its header row (0: none) and its guilty cells by address.
 
-    `linked` is the column whose cells lead to Results, from 0, and `targets` the row of Results by row number.
+    `linked` is the column whose cells lead to Results, and `targets` the row of Results, from 0, by row number. Where
+    cells are moved, `note` says at the top what is left out.
     """
 
     raw: RawSheet
     title: str
     header: int
-    guilty: Mapping[tuple[int, int], _Guilt]
-    linked: int = -1
+    guilty: Mapping[CellAddress, _Guilt]
+    linked: int = 0
     targets: Mapping[int, int] = field(default_factory=dict)
+    places: Mirrored = field(default_factory=Mirrored)
+    note: str = ""
 
 
-def write_submission(book: Book, outcome: Outcome) -> None:
+def write_submission(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
     """Write each entry sheet of the submission as read, guilty cells coloured, or the built-in table used instead."""
     guilty = _guilty(outcome)
+    extent = extent_of(outcome)
     validated = outcome.validated
     headers = validated.header_rows if validated else {}
     table = validated.table if validated else None
@@ -71,24 +88,25 @@ def write_submission(book: Book, outcome: Outcome) -> None:
     for schema, title in _TITLES.items():
         raw = by_title.get(title)
         if raw:
-            of_sheet = {
-                (row - 1, column - 1): guilt for (name, row, column), guilt in guilty.items() if name == raw.name
-            }
+            of_sheet = {address: guilt for (name, address), guilt in guilty.items() if name == raw.name}
             mirror = _Mirror(raw=raw, title=title, header=headers.get(schema, 0), guilty=of_sheet)
             if schema == "Variants" and table is not None:
-                linked = table.heading.columns.get("variant", 0) - 1
-                mirror = replace(mirror, linked=linked, targets=result_rows(outcome))
+                linked = table.heading.columns.get("variant", 0)
+                mirror = replace(mirror, linked=linked, targets=result_rows(outcome), places=mirrored(outcome, drawn))
+                if extent.large:
+                    note = f"{extent.note or f'All {grouped(extent.total)} variants'} Worst first, as read."
+                    mirror = replace(mirror, note=note)
             _write_mirror(book, mirror)
         elif schema in BUILT_IN_SHEETS:
             _write_mirror(book, _Mirror(raw=built_in_sheet(schema), title=title, guilty={}, header=1))
 
 
-def _guilty(outcome: Outcome) -> dict[tuple[str, int, int], _Guilt]:
-    """Return what is wrong with each cell, by sheet, row and column, errors first; the first alone have messages."""
-    guilty: dict[tuple[str, int, int], _Guilt] = {}
+def _guilty(outcome: Outcome) -> dict[tuple[str, CellAddress], _Guilt]:
+    """Return what is wrong with each cell, by sheet and address, errors first; the first alone have messages."""
+    guilty: dict[tuple[str, CellAddress], _Guilt] = {}
     for finding in finding_list(outcome):
-        if finding.address and finding.level != "info":
-            guilt = guilty.setdefault((finding.sheet, *finding.address), _Guilt(level=finding.level))
+        if finding.level != "info" and (address := finding.address):
+            guilt = guilty.setdefault((finding.sheet, address), _Guilt(level=finding.level))
             guilt.messages.append(f"{finding.code} {finding.message}")
     for guilt in list(guilty.values())[MOST_COMMENTS:]:
         guilt.messages.clear()
@@ -96,54 +114,75 @@ def _guilty(outcome: Outcome) -> dict[tuple[str, int, int], _Guilt]:
 
 
 def _write_mirror(book: Book, mirror: _Mirror) -> None:
-    """Write a sheet's cells at their addresses, its header row as such."""
-    raw, header = mirror.raw, mirror.header
+    """Write a sheet's cells in their places, its header row as such."""
+    raw, places = mirror.raw, mirror.places
     sheet = book.sheet(mirror.title)
+    rows = raw.rows if places.rows is None else {row: raw.rows[row] for row in places.rows if row in raw.rows}
     ignored = {
         column
-        for column, value in raw.rows.get(header, {}).items()
+        for column, value in raw.rows.get(mirror.header, {}).items()
         if isinstance(value, str) and plain(value) == plain(STATUS_HEADER)
     }
-    addresses = [(row, column) for row, cells in raw.rows.items() for column in cells if column not in ignored]
+    addresses = [
+        place
+        for row, cells in rows.items()
+        for column in cells
+        if column not in ignored and (place := places.place(CellAddress(row=row, column=column)))
+    ]
     bottom = max((row for row, _ in addresses), default=1)
     last = max((column for _, column in addresses), default=1)
-    widths = _widths(mirror, last)
+    widths = _widths(mirror, rows, last)
     for column, width in enumerate(widths):
         sheet.set_column(column, column, width)
     print_readably(sheet, widths)
     sheet.ignore_errors({"number_stored_as_text": f"A1:XFD{bottom}"})
-    if header:
+    if header := mirror.header and mirror.header + places.shift:
         sheet.set_row(header - 1, 48)
-        sheet.freeze_panes(header, 1)
+        sheet.freeze_panes(header, 1 + places.shift)
         sheet.repeat_rows(header - 1)
         sheet.autofilter(header - 1, 0, bottom - 1, last - 1)
-    for row, cells in raw.rows.items():
-        if row > header:
-            _set_height(
-                sheet, row, [(cells[column], width) for column, width in enumerate(widths, start=1) if column in cells]
-            )
+    if mirror.note:
+        sheet.write_string(0, 0, mirror.note, book.format("quiet"))
+    for row, cells in rows.items():
+        place = places.place(CellAddress(row=row, column=1))
+        if place is None:
+            continue
+        if places.shift and row >= mirror.header:
+            write_raw(book, sheet, (place.row - 1, 0), *((row,) if row > mirror.header else (_ROW_HEADER, "header")))
+        if row > mirror.header:
+            below = enumerate(widths[places.shift :], start=1)
+            _set_height(sheet, place.row, [(cells[column], width) for column, width in below if column in cells])
         for column, value in cells.items():
-            if column not in ignored and not (isinstance(value, Unstored) and row < header):
-                guilt = mirror.guilty.get((row - 1, column - 1))
-                style = guilt.level if guilt else _style(mirror, row, column, value)
-                if column - 1 == mirror.linked and row in mirror.targets and isinstance(value, str):
-                    link = book.format(style if guilt else "link")
-                    write_link(
-                        sheet, row - 1, column - 1, f"Results!A{mirror.targets[row] + 1}", raw_text(value), style=link
-                    )
-                else:
-                    write_raw(book, sheet, (row - 1, column - 1), value, style)
+            if column not in ignored and not (isinstance(value, Unstored) and row < mirror.header):
+                _write_value(book, sheet, mirror, CellAddress(row=row, column=column), value)
     _write_guilt(book, sheet, mirror)
 
 
-def _widths(mirror: _Mirror, last: int) -> list[float]:
+def _write_value(book: Book, sheet: Any, mirror: _Mirror, address: CellAddress, value: RawValue) -> None:
+    """Write one cell of the submission, its variant's name with a link to Results."""
+    row, column = address
+    place, guilt = mirror.places.place(address), mirror.guilty.get(address)
+    if place is None:
+        return
+    cell = (place.row - 1, place.column - 1)
+    style = guilt.level if guilt else _style(mirror, row, column, value)
+    if column == mirror.linked and row in mirror.targets and isinstance(value, str):
+        link = book.format(style if guilt else "link")
+        write_link(sheet, *cell, f"Results!A{mirror.targets[row] + 1}", raw_text(value), style=link)
+    else:
+        write_raw(book, sheet, cell, value, style)
+
+
+def _widths(mirror: _Mirror, rows: Mapping[int, Mapping[int, RawValue]], last: int) -> list[float]:
     """Return the widths of so many columns, each as wide as its longest text below the header."""
-    widths = [_NAME, *[_LEAST] * (last - 1)]
-    for row, cells in mirror.raw.rows.items():
+    shift = mirror.places.shift
+    widths = [*[_LEAST] * shift, _NAME, *[_LEAST] * (last - 1 - shift)]
+    for row, cells in rows.items():
         if row > mirror.header:
             for column, value in cells.items():
-                if isinstance(value, str) and column <= last:
-                    widths[column - 1] = min(max(widths[column - 1], len(value) + 2.0), _MOST)
+                if isinstance(value, str) and column + shift <= last:
+                    place = column + shift - 1
+                    widths[place] = min(max(widths[place], len(value) + 2.0), _MOST)
     return widths
 
 
@@ -170,8 +209,12 @@ def _style(mirror: _Mirror, row: int, column: int, value: object) -> str:
 
 def _write_guilt(book: Book, sheet: Any, mirror: _Mirror) -> None:
     """Colour guilty cells that are blank and say at the guilty cells what is wrong."""
-    for (row, column), guilt in mirror.guilty.items():
-        if column + 1 not in mirror.raw.rows.get(row + 1, {}):
+    for address, guilt in mirror.guilty.items():
+        place = mirror.places.place(address)
+        if place is None:
+            continue
+        row, column = place.row - 1, place.column - 1
+        if address.column not in mirror.raw.rows.get(address.row, {}):
             sheet.write_blank(row, column, None, book.format(guilt.level))
         if guilt.messages:
             text = "\n".join(guilt.messages)

@@ -17,6 +17,7 @@ from flexlash.report.compare.ranking_sheet import write_ranking
 from flexlash.report.elasticity_sheet import write_elasticity, write_stress
 from flexlash.report.explorer.curves_sheet import CURVES_NOTE, stored_curves
 from flexlash.report.explorer.explorer_sheet import write_explorer
+from flexlash.report.extent import extent_of
 from flexlash.report.findings_sheet import write_findings
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import report_data
@@ -46,29 +47,30 @@ def report_bytes(outcome: Outcome) -> bytes:
     data = report_data(outcome)
     drawn = data.drawn
     curves = stored_curves(drawn)
+    extent = extent_of(outcome)
     write_summary(book, outcome, data, curves)
-    write_results(book, outcome)
-    write_explorer(book, curves, len(outcome.computed))
+    write_results(book, outcome, drawn)
+    write_explorer(book, curves, extent)
     compared = compared_variants(drawn)
     write_compare(book, outcome, drawn, compared)
     write_ranking(book, outcome, drawn, compared)
     write_contributions(book, outcome, drawn, compared)
     trace = trace_sheet(book)
     write_sensitivity(book, outcome, drawn)
-    write_sections(book, drawn, len(outcome.computed))
-    write_strength(book, drawn, len(outcome.computed))
+    write_sections(book, drawn, extent)
+    write_strength(book, drawn, extent)
     if "elasticity_windup_rad" in outcome.results.columns:
-        write_elasticity(book, outcome)
+        write_elasticity(book, outcome, drawn)
         write_stress(book, data)
-    write_findings(book, outcome)
-    write_submission(book, outcome)
+    write_findings(book, outcome, drawn)
+    write_submission(book, outcome, drawn)
     inputs = stored_inputs([variant.computed for variant in drawn], outcome.settings.lost_motion_percent)
     steps = (STEPS,) if inputs.rows else ()
     write_about(book, outcome, later=(curves.name, compared.name, inputs.name, *steps))
-    curves.write(book, CURVES_NOTE)
-    compared.write(book, COMPARED_NOTE)
-    inputs.write(book, INPUTS_NOTE)
-    write_trace(book, trace, inputs, len(outcome.computed))
+    part = f"{extent.note} " if extent.large and extent.note else ""
+    for stored, note in ((curves, CURVES_NOTE), (compared, COMPARED_NOTE), (inputs, INPUTS_NOTE)):
+        stored.write(book, f"{part}{note}")
+    write_trace(book, trace, inputs, extent.total)
     write_carried(book, outcome)
     workbook.close()
     return buffer.getvalue()

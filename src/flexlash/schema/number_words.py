@@ -8,10 +8,33 @@ from typing import Any
 
 from flexlash.schema.findings import spelled_out
 
-__all__ = ["ALL_UNITS", "INTERVAL", "angle_words", "glance", "places", "rounded", "share_error", "share_words"]
+__all__ = [
+    "ALL_UNITS",
+    "INTERVAL",
+    "angle_words",
+    "glance",
+    "grouped",
+    "places",
+    "rounded",
+    "share_error",
+    "share_words",
+]
 
 INTERVAL = 1.96
 """Standard errors to either side of a number that make its 95 % interval."""
+
+
+_SHORT = 9999
+"""Greatest number whose digits are not grouped."""
+
+
+def grouped(count: int) -> str:
+    """Return a whole number with its digits in groups of three, where it has five or more.
+
+    >>> grouped(9999), grouped(10_000)
+    ('9999', '10,000')
+    """
+    return f"{count:,}" if count > _SHORT else str(count)
 
 
 def places(error: float) -> int:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import re
+from functools import cache
+
+import numpy as np
 
 from flexlash.schema import tables
+from flexlash.schema.arrays import Array, Quantity
 
-__all__ = ["deviations", "is_grade"]
+__all__ = ["deviations", "deviations_of", "is_grade"]
 
 _GRADE = re.compile(r"(IT|js|JS|h|H)(5|6|7|8|9|10|11|12)")
 _GENERAL = re.compile(r"2768-([fmcv])")
@@ -21,12 +26,22 @@ def is_grade(text: str) -> bool:
     return bool(_GRADE.fullmatch(text) or _GENERAL.fullmatch(text))
 
 
-def _cell(table: str, column: str, size: float) -> float | None:
-    """Entry for a size [mm] over one bound, up to and including the next; None where there is none."""
-    for row in tables.rows(table):
-        if float(row["over_mm"]) < size <= float(row["up_to_mm"]) or size == float(row["over_mm"]) > 0:
-            return float(row[column]) if row[column] else None
-    return None
+@cache
+def _entries(table: str, column: str) -> tuple[Array, Array, Array]:
+    """Return the bounds of a table's sizes [mm], over the first and up to the second, and the entries between them.
+
+    The last, without end, stands for what is beyond the table; an entry that is not there is NaN.
+    """
+    rows = [(float(row["over_mm"]), float(row["up_to_mm"]), float(row[column] or "nan")) for row in tables.rows(table)]
+    over, up_to, entries = np.array([*rows, (np.inf, np.inf, np.nan)]).T
+    return over, up_to, entries
+
+
+def _cell(table: str, column: str, size: Quantity) -> Array:
+    """Entries for sizes [mm] over one bound, up to and including the next; NaN where there is none."""
+    over, up_to, entries = _entries(table, column)
+    place = np.searchsorted(up_to, size)
+    return np.where((over[place] < size) | ((over[place] == size) & (over[place] > 0)), entries[place], np.nan)
 
 
 def deviations(grade: str, size: float) -> tuple[float, float] | None:
@@ -39,17 +54,30 @@ def deviations(grade: str, size: float) -> tuple[float, float] | None:
     >>> deviations("2768-m", 0.0016)
     (-0.0001, 0.0001)
     """
-    millimetres = round(size * 1e3, 9)
+    lower, upper = (float(one) for one in _between(grade, round(size * 1e3, 9)))
+    return None if math.isnan(lower + upper) else (lower, upper)
+
+
+def deviations_of(grade: str, sizes: Array) -> tuple[Array, Array]:
+    """Return lower and upper deviations [m] of many diameters or lengths [m], as `deviations`; NaN if untabulated.
+
+    >>> deviations_of("H7", np.array([0.160, 99.0]))
+    (array([ 0., nan]), array([4.e-05,    nan]))
+    """
+    # Not by NumPy, which rounds a half otherwise.
+    return _between(grade, np.array([round(size, 9) for size in (sizes * 1e3).tolist()]))
+
+
+def _between(grade: str, millimetres: Quantity) -> tuple[Array, Array]:
+    """Return lower and upper deviations [m] at sizes [mm], NaN if untabulated."""
     if general := _GENERAL.fullmatch(grade):
-        half = _cell("iso2768", general[1], millimetres)
-        return None if half is None else (-half / 1e3, half / 1e3)
+        half = _cell("iso2768", general[1], millimetres) / 1e3
+        return -half, half
     fundamental = _GRADE.fullmatch(grade)
     if fundamental is None:
         raise ValueError(f"{grade!r} is not a tolerance grade")
-    width = _cell("iso286", f"IT{fundamental[2]}", millimetres)
-    if width is None:
-        return None
-    metres = width / 1e6
+    width = _cell("iso286", f"IT{fundamental[2]}", millimetres) / 1e6
+    nothing = 0 * width
     if fundamental[1] == "h":
-        return -metres, 0.0
-    return (0.0, metres) if fundamental[1] == "H" else (-metres / 2, metres / 2)
+        return -width, nothing
+    return (nothing, width) if fundamental[1] == "H" else (-width / 2, width / 2)

@@ -7,9 +7,9 @@ from typing import Literal
 
 from flexlash.schema.columns import SETTINGS
 
-__all__ = ["Limits", "Material", "Settings", "ToleranceRow", "Variant"]
+__all__ = ["FAR", "Limits", "Material", "Settings", "ToleranceRow", "Variant"]
 
-_FAR = 8.3
+FAR = 8.3
 """Beyond this many standard deviations a normal has no weight in double precision."""
 
 
@@ -60,7 +60,7 @@ class ToleranceRow:
     limits_sigma: float = 3.0
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Limits:
     """Smallest and largest allowed value of a dimension [SI] and how parts scatter between them."""
 
@@ -84,7 +84,7 @@ class Limits:
     def reach(self) -> tuple[float, float]:
         """Smallest and largest value that the distribution can produce."""
         if self.distribution == "normal":
-            far = _FAR * self.standard_deviation
+            far = FAR * self.standard_deviation
             return self.middle - far, self.middle + far
         return self.low, self.high
 

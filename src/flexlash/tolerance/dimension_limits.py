@@ -5,18 +5,35 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
+from flexlash.schema.arrays import Array
 from flexlash.schema.columns import DIMENSIONS
-from flexlash.schema.tolerance_grades import deviations
-from flexlash.schema.variant import Limits, ToleranceRow, Variant
+from flexlash.schema.tolerance_grades import deviations, deviations_of
+from flexlash.schema.variant import FAR, Limits, ToleranceRow, Variant
 from flexlash.tolerance.distributions import Distribution, Normal, Triangular, Uniform
 from flexlash.tolerance.gaps import Gap, gaps
 from flexlash.tolerance.truncated_normal import TruncatedNormal
 
-__all__ = ["Limits", "LimitsProblem", "distribution_of", "distributions", "limits_of", "shape_problems"]
+__all__ = [
+    "LimitArrays",
+    "Limits",
+    "LimitsProblem",
+    "beyond_doubt",
+    "distribution_of",
+    "distributions",
+    "limits_alike",
+    "limits_of",
+    "shape_problems",
+]
 
 _ROUNDING = 1e-12
 """Decimals become binary with a relative error below this; limits that close count as reached."""
+
+_DOUBT = 1e3 * _ROUNDING
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +59,7 @@ def limits_of(variant: Variant, rows: Iterable[ToleranceRow]) -> tuple[dict[str,
     """Return the limits of the dimensions that vary, in the order of `DIMENSIONS`, and what is wrong."""
     limits = {}
     problems = []
-    for row in sorted(rows, key=lambda row: list(DIMENSIONS).index(row.dimension)):
+    for row in sorted(rows, key=_turn):
         nominal = variant.dimensions.get(row.dimension)
         if nominal is None:
             continue
@@ -59,6 +76,64 @@ def limits_of(variant: Variant, rows: Iterable[ToleranceRow]) -> tuple[dict[str,
         elif found[0]:
             limits[row.dimension] = Limits(low=nominal + found[0], high=nominal + found[1])
     return limits, tuple(problems)
+
+
+_TURNS = {name: turn for turn, name in enumerate(DIMENSIONS)}
+
+
+def _turn(row: ToleranceRow) -> int:
+    return _TURNS[row.dimension]
+
+
+class LimitArrays(NamedTuple):
+    """The limits of a dimension of many variants [SI], each of shape (variants,).
+
+    `tail` is how far parts may lie beyond them; `given` says where `limits_of` gives the dimension limits. What a grade
+    does not tabulate is NaN.
+    """
+
+    low: Array
+    high: Array
+    tail: Array
+    given: npt.NDArray[np.bool_]
+
+
+def limits_alike(sizes: Mapping[str, Array], rows: Iterable[ToleranceRow]) -> dict[str, LimitArrays]:
+    """Return the limits of variants that have the same dimensions, given by name, in one class."""
+    limits = {}
+    for row in rows:
+        if (nominal := sizes.get(row.dimension)) is None:
+            continue
+        if row.grade:
+            parts = 2 if DIMENSIONS[row.dimension].grade_at == "diameter" else 1
+            lower, upper = (found / parts for found in deviations_of(row.grade, parts * nominal))
+        else:
+            lower, upper = (
+                side * nominal if row.relative else np.full(len(nominal), side) for side in (row.lower, row.upper)
+            )
+        low, high = nominal + lower, nominal + upper
+        beyond = (high - low) * (FAR / (2 * row.limits_sigma) - 0.5) if row.distribution == "normal" else 0.0
+        limits[row.dimension] = LimitArrays(low, high, np.maximum(beyond, 0.0), (lower < upper) | (abs(lower) > 0))
+    return limits
+
+
+def beyond_doubt(
+    flexspline_type: str, sizes: Mapping[str, Array], limits: Mapping[str, LimitArrays]
+) -> npt.NDArray[np.bool_]:
+    """Return which of some variants alike `shape_problems` surely leaves alone; of the others it may have to say.
+
+    What comes near to a bound within a thousand times the rounding of numbers is in doubt.
+    """
+    reach = {name: (one.low - one.tail, one.high + one.tail) for name, one in limits.items()}
+    sure = np.ones(len(sizes["torque"]), dtype=bool)
+    for name, (low, high) in reach.items():
+        least, most = _bounds(name)
+        slack = _DOUBT * (abs(low) + abs(high))
+        sure &= (low > least + slack) & (high < most - slack)
+    for gap in gaps(flexspline_type, sizes):
+        ends = [factor * reach.get(name, (sizes[name],) * 2)[factor < 0] for name, factor in gap.factors.items()]
+        sure &= sum(ends) > _DOUBT * sum(map(abs, ends))
+    return sure
 
 
 def shape_problems(
@@ -81,7 +156,7 @@ def shape_problems(
             problems.append(LimitsProblem(kind="cut", dimension=name, detail="0"))
         else:
             kept[name] = limit
-    every = gaps(variant)
+    every = gaps(variant.flexspline_type, variant.dimensions)
     for gap in every:
         if gap.reached.kind == "impossible":
             problems.extend(_keep_open(variant, kept, gap))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
 from flexlash.schema.part_row import PartRow, PartRule, Reached
 from flexlash.schema.part_rules import PART_RULES
-from flexlash.schema.variant import Variant
 
 __all__ = ["Gap", "gaps"]
 
@@ -125,9 +124,9 @@ class _SumRow(PartRow):
         return True if True in conditions else open_ones[0] if open_ones else False
 
 
-def gaps(variant: Variant) -> Sequence[Gap]:
-    """Return what the rules let stand open in a part, of several dimensions; one alone is kept by its own bounds."""
-    return _gaps(variant.flexspline_type, frozenset(variant.dimensions))
+def gaps(flexspline_type: str, names: Iterable[str]) -> Sequence[Gap]:
+    """Return what the rules let stand open in a part with these dimensions; one alone is kept by its own bounds."""
+    return _gaps(flexspline_type, frozenset(names))
 
 
 @cache

@@ -12,10 +12,9 @@ import polars as pl
 from flexlash.reading.raw import Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.cell_addresses import CellAddress
-from flexlash.schema.column import Role
-from flexlash.schema.columns import VARIANTS, columns_of
+from flexlash.schema.columns import columns_of
 from flexlash.schema.spellings import affordable, misspelt, plain, spelt_alike, suggested
-from flexlash.schema.variant import Material, Settings, ToleranceRow, Variant
+from flexlash.schema.variant import Material, Settings, ToleranceRow
 from flexlash.validation.cell_values import is_no_value, no_value_facts
 from flexlash.validation.csv_findings import report_dialect
 from flexlash.validation.entry_sheets import entry_sheets, report_other_names, report_second_tables
@@ -33,6 +32,7 @@ from flexlash.validation.template_versions import TEMPLATE_VERSION, check_versio
 from flexlash.validation.typed_columns import tabulate
 from flexlash.validation.unused_classes import report_unused_classes
 from flexlash.validation.validated import Table, Validated
+from flexlash.validation.variant_rows import VariantRows
 
 __all__ = ["MOST_NAMES", "TEMPLATE_VERSION", "validate"]
 
@@ -70,7 +70,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
         _check_rows(variants, used, ledger)
         report_unused_classes(tables.get("Tolerances"), variants, used.classes, ledger)
     _report_other_sources(submission, ledger)
-    sound = variants.frame.iter_rows(named=True) if variants is not None and not ledger.everything else ()
+    sound = None if variants is None or ledger.everything else _sound(variants.frame, ledger.rows)
     return Validated(
         file=submission.name,
         findings=tuple(ledger.findings),
@@ -78,12 +78,18 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
         unit_mistakes=ledger.unit_mistakes,
         table=variants,
         tolerances=tables.get("Tolerances"),
-        variants=tuple(_variant(record, used) for record in sound if record["row"] not in ledger.rows),
+        variants=VariantRows(frame=sound, materials=used.materials, settings=used.settings),
         classes=used.classes,
         materials=used.materials,
         settings=used.settings,
         header_rows={schema: table.heading.row for schema, table in tables.items()},
     )
+
+
+def _sound(frame: pl.DataFrame, faulty: Collection[int]) -> pl.DataFrame:
+    """Return the rows that can be computed; the frame itself, held once, where all can."""
+    rows = frame["row"].to_list()
+    return frame.filter(pl.Series([row not in faulty for row in rows], dtype=pl.Boolean)) if faulty else frame
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -205,38 +211,3 @@ def _report_other_sources(submission: Submission, ledger: Ledger) -> None:
     for name, sheet in submission.sheets.items():
         if plain(name) == plain(_OTHER_SOURCES) and len(sheet.rows) > 1:
             ledger.add("W406", sheet=name, cell=CellAddress(row=min(sheet.rows), column=1))
-
-
-def _sizes(record: Mapping[str, Any], role: Role) -> dict[str, float]:
-    """Return the numbers of a row in SI by name; those that are blank, or 0 where that says the same, are left out."""
-    return {
-        column.dimension: record[column.key] * column.si_unit.si
-        for column in VARIANTS
-        if column.role == role
-        and column.is_number
-        and record[column.key] is not None
-        and not (column.zero_is_blank and record[column.key] == 0)
-    }
-
-
-def _variant(record: Mapping[str, Any], used: _Used) -> Variant:
-    """Return a sound row as a variant in SI; dimensions that equal another are left out."""
-    requirements = _sizes(record, "requirement")
-    material = used.materials[plain(record["material"])]
-    constants = dict(material.constants)
-    if "shear_modulus" in constants:
-        constants = {"shear_modulus": constants["shear_modulus"]}
-    return Variant(
-        row=record["row"],
-        name=record["variant"],
-        flexspline_type=record["flexspline_type"] or "cup",
-        material=material.name,
-        tolerance_class=record["tolerance_class"] or "standard",
-        dimensions=_sizes(record, "dimension") | constants | used.settings.calibrations,
-        rated_torque=requirements.get("rated_torque"),
-        load_inertia=requirements.get("load_inertia_kg_m2"),
-        backlash_limit=requirements.get("backlash_limit"),
-        yield_strength=material.yield_strength,
-        youngs_modulus=material.constants.get("youngs_modulus"),
-        poisson_ratio=material.constants.get("poisson_ratio"),
-    )

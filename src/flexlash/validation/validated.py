@@ -10,7 +10,8 @@ from flexlash.reading.raw import RawValue
 from flexlash.reading.whole_table import WholeTable
 from flexlash.schema.cell_addresses import CellAddress, cell_ranges
 from flexlash.schema.findings import Finding
-from flexlash.schema.variant import Material, Settings, ToleranceRow, Variant
+from flexlash.schema.variant import Material, Settings, ToleranceRow
+from flexlash.validation.variant_rows import VariantRows
 
 if TYPE_CHECKING:
     import polars as pl
@@ -137,7 +138,7 @@ class Validated:
     unit_mistakes: Mapping[tuple[str, int, str], UnitMistake] = field(default_factory=dict)
     table: Table | None = None
     tolerances: Table | None = None
-    variants: tuple[Variant, ...] = ()
+    variants: VariantRows = field(default_factory=VariantRows)
     classes: Mapping[str, Sequence[ToleranceRow]] = field(default_factory=dict)
     materials: Mapping[str, Material] = field(default_factory=dict)
     settings: Settings = field(default_factory=Settings)

@@ -4,15 +4,26 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from flexlash.analysis.computed import Computed
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_summary import dimension_words, listed
+from flexlash.report.report_data import Drawn
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import shown
 
-__all__ = ["MATTERS", "Cause", "cause_sentences", "causes_of", "left_out", "mean_share", "ranked_dimensions"]
+__all__ = [
+    "MATTERS",
+    "Cause",
+    "cause_sentences",
+    "causes_of",
+    "causes_of_drawn",
+    "left_out",
+    "mean_share",
+    "ranked_dimensions",
+]
 
 MATTERS = 0.005
 """Least share of variance that a dimension needs somewhere to have a row: what prints as 1 %."""
@@ -35,11 +46,19 @@ class Cause:
 def causes_of(outcome: Outcome) -> list[Cause]:
     """Return the causes of all computed variants that scatter, in submitted order."""
     main = dict(zip(outcome.results["variant"], outcome.results["main_contributor"], strict=True))
-    return [
-        Cause(name=computed.variant.name, shares=computed.spread.shares, main=main[computed.variant.name])
-        for computed in outcome.computed.values()
-        if computed.spread is not None and computed.spread.shares
-    ]
+    return list(_causes((computed, main[computed.variant.name]) for computed in outcome.computed.values()))
+
+
+def causes_of_drawn(drawn: Sequence[Drawn]) -> list[Cause]:
+    """Return the causes of the drawn variants that scatter, worst first."""
+    return list(_causes((variant.computed, variant.row["main_contributor"]) for variant in drawn))
+
+
+def _causes(variants: Iterable[tuple[Computed, str | None]]) -> Iterator[Cause]:
+    """Yield the causes of variants, each given with its main contributor, that scatter."""
+    for computed, main in variants:
+        if computed.spread is not None and computed.spread.shares:
+            yield Cause(name=computed.variant.name, shares=computed.spread.shares, main=main)
 
 
 def ranked_dimensions(causes: Sequence[Cause]) -> list[str]:

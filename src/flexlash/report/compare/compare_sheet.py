@@ -8,6 +8,7 @@ from typing import Any
 from xlsxwriter.utility import xl_col_to_name
 
 from flexlash.analysis.outcome import Outcome
+from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, PALETTE, Book
@@ -55,7 +56,7 @@ def write_compare(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
     sheet.print_area(0, 0, _TOP + 2 * _ROWS, _LAST_COLUMN)
     if not drawn:
         return
-    count, total = min(len(drawn), BOXES), len(outcome.computed)
+    count, total = min(len(drawn), BOXES), extent_of(outcome).total
     which = f"All {total} computed variants, worst first" if total > 1 else "The only computed variant"
     if count < total:
         which = f"The {count} worst of {total:,} computed variants, worst first (Ranking lists {len(drawn)})"

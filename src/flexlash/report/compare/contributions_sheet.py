@@ -7,8 +7,17 @@ from typing import Any
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_summary import dimension_words
-from flexlash.report.compare.causes import Cause, cause_sentences, causes_of, left_out, mean_share, ranked_dimensions
+from flexlash.report.compare.causes import (
+    Cause,
+    cause_sentences,
+    causes_of,
+    causes_of_drawn,
+    left_out,
+    mean_share,
+    ranked_dimensions,
+)
 from flexlash.report.compare.compared import CONNECTED, share_heading
+from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, PALETTE, Book
@@ -51,8 +60,12 @@ def write_contributions(book: Book, outcome: Outcome, drawn: Sequence[Drawn], co
     widths = _widths(min(len(drawn), MAPPED))
     for column, pixels in enumerate(widths):
         sheet.set_column_pixels(column, column, pixels)
-    causes = causes_of(outcome)
+    extent = extent_of(outcome)
+    causes = causes_of_drawn(drawn) if extent.large else causes_of(outcome)
     row = 1
+    if extent.large and extent.note:
+        sheet.write_string(row, 0, extent.note, book.format("quiet"))
+        row += 1
     for sentence in cause_sentences(causes):
         sheet.write_string(row, 0, f"•  {sentence}", book.format("text"))
         row += 1

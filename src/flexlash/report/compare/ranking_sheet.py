@@ -9,6 +9,7 @@ from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_summary import dimension_words, share_words
+from flexlash.report.extent import extent_of
 from flexlash.report.formula.functions import IF, ISNUMBER, MAX, match_exactly
 from flexlash.report.formula.live import Live, fill, put
 from flexlash.report.formula.stored import Row, Stored
@@ -64,8 +65,9 @@ def write_ranking(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
     sheet = book.sheet("Ranking", tab="entry")
     sheet.write_string(0, 0, "Ranking, worst first, and difference to a base variant", book.format("title"))
     sheet.set_row(0, 28)
-    count, total = len(drawn), len(outcome.computed)
-    which = f"the {count} worst of {total:,}; all are in Results" if count < total else f"all {total:,} computed"
+    count, extent = len(drawn), extent_of(outcome)
+    total = f"{extent.total:,}"
+    which = f"the {count} worst of {total}; {extent.elsewhere}" if extent.is_part else f"all {total} computed"
     rules = "; ".join(f"{verdict}, {rule}" for verdict, rule in RULES.items())
     notes = (
         f"Variants by share of units over the limit: {which}. Verdict: {rules}.",

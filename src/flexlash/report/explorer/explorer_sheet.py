@@ -12,6 +12,7 @@ from flexlash.report.explorer.curves_sheet import FIGURE_ERRORS
 from flexlash.report.explorer.explorer_charts import write_charts
 from flexlash.report.explorer.explorer_choice import NONE, USUAL_SHARE, Choice
 from flexlash.report.explorer.explorer_working import Read, Working
+from flexlash.report.extent import Extent
 from flexlash.report.formula.functions import (
     AND,
     CONCATENATE,
@@ -81,8 +82,8 @@ _FIGURES = {
 }
 
 
-def write_explorer(book: Book, curves: Stored, total: int) -> None:
-    """Write the Explorer of the stored variants, the worst one picked; `total` counts all computed ones."""
+def write_explorer(book: Book, curves: Stored, extent: Extent) -> None:
+    """Write the Explorer of the stored variants, the worst one picked."""
     sheet = book.sheet("Explorer", landscape=False, pages_tall=1, tab="entry")
     for column, width in enumerate(_WIDTHS):
         sheet.set_column(column, column, width)
@@ -92,8 +93,8 @@ def write_explorer(book: Book, curves: Stored, total: int) -> None:
         sheet.write_string(1, 0, "Nothing was computed, see Findings.", book.format("quiet"))
         return
     note = "Change the four yellow cells; figures and charts follow."
-    if len(curves.rows) < total:
-        note += f" The {len(curves.rows)} worst of {total} variants can be picked; all are in Results."
+    if extent.is_part:
+        note += f" The {extent.words} variants can be picked; {extent.elsewhere}."
     sheet.write_string(1, 0, note, book.format("quiet"))
     for row, first_column, text in _SECTIONS:
         for column in range(first_column, first_column + 3):

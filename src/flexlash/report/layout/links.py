@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from xlsxwriter.url import Url
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.schema.cell_addresses import column_letters
-from flexlash.schema.findings import Finding
+from flexlash.report.extent import MOST_FINDINGS, extent_of
+from flexlash.report.report_data import ROW, Drawn
+from flexlash.schema.cell_addresses import CellAddress
+from flexlash.schema.findings import CATALOGUE, Finding
 
 __all__ = [
     "FIRST_FINDING",
     "FIRST_ROW",
     "MOST_LINKS",
+    "Mirrored",
     "finding_list",
     "finding_rows",
-    "name_cell",
+    "first_result",
+    "listed_findings",
+    "mirrored",
+    "name_column",
     "result_rows",
     "row_of",
+    "rule_counts",
     "rules_of",
     "write_link",
 ]
@@ -49,8 +59,14 @@ def write_link(sheet: Any, row: int, column: int, target: str, text: str, *, sty
 
 def result_rows(outcome: Outcome) -> dict[int, int]:
     """Return the row of Results, from 0, by the row number of the submission."""
-    submitted = outcome.validated.submitted if outcome.validated else []
-    return {row: result_row for result_row, (row, _, _) in enumerate(submitted, start=FIRST_ROW)}
+    table = outcome.validated.table if outcome.validated else None
+    first = first_result(outcome)
+    return {} if table is None else {row: place for place, row in enumerate(table.frame["row"], start=first)}
+
+
+def first_result(outcome: Outcome) -> int:
+    """Return the row of Results, from 0, of its first variant: lower where a sentence above says what is left out."""
+    return FIRST_ROW + bool(outcome.whole)
 
 
 def finding_list(outcome: Outcome) -> list[Finding]:
@@ -58,12 +74,23 @@ def finding_list(outcome: Outcome) -> list[Finding]:
     return sorted(outcome.findings, key=lambda finding: _LEVELS.index(finding.level))
 
 
+def listed_findings(outcome: Outcome) -> list[Finding]:
+    """Return the findings that have a line on the Findings sheet: of a large submission the first alone."""
+    return finding_list(outcome)[: MOST_FINDINGS if extent_of(outcome).large else None]
+
+
+def rule_counts(outcome: Outcome) -> Mapping[str, int]:
+    """Return how many findings of the whole submission each rule has, in the order of the first of each."""
+    own = Counter(finding.code for finding in outcome.findings)
+    return {**own, **outcome.whole.rules} if outcome.whole else own
+
+
 def rules_of(outcome: Outcome) -> dict[str, list[Finding]]:
-    """Return the findings by code, worst level first."""
-    by_code: dict[str, list[Finding]] = {}
-    for finding in finding_list(outcome):
+    """Return the findings of the outcome by code, worst level first; a rule may have none of them."""
+    by_code: dict[str, list[Finding]] = {code: [] for code in rule_counts(outcome)}
+    for finding in outcome.findings:
         by_code.setdefault(finding.code, []).append(finding)
-    return dict(sorted(by_code.items(), key=lambda item: (_LEVELS.index(item[1][0].level), item[0])))
+    return dict(sorted(by_code.items(), key=lambda item: (_LEVELS.index(CATALOGUE[item[0]].level), item[0])))
 
 
 def row_of(outcome: Outcome, finding: Finding) -> int:
@@ -75,12 +102,44 @@ def row_of(outcome: Outcome, finding: Finding) -> int:
 def finding_rows(outcome: Outcome) -> dict[int, int]:
     """Return the row of Findings, from 0, of the first finding of each row of Variants."""
     first: dict[int, int] = {}
-    for row, finding in enumerate(finding_list(outcome), start=FIRST_FINDING + len(rules_of(outcome))):
+    for row, finding in enumerate(listed_findings(outcome), start=FIRST_FINDING + len(rules_of(outcome))):
         first.setdefault(row_of(outcome, finding), row)
     return first
 
 
-def name_cell(outcome: Outcome) -> str:
-    """Return the letters of the column of Submission in which the variants' names stand."""
+def name_column(outcome: Outcome) -> int:
+    """Return the column of Variants in which the variants' names stand."""
     table = outcome.validated.table if outcome.validated else None
-    return column_letters(table.heading.columns.get("variant", 1)) if table is not None else "A"
+    return table.heading.columns.get("variant", 1) if table is not None else 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mirrored:
+    """Where the cells of a sheet stand in the report: at their own addresses.
+
+    With `rows` those of its rows that stand there have other places; before them is a column of row numbers.
+    """
+
+    rows: Mapping[int, int] | None = None
+
+    @property
+    def shift(self) -> int:
+        """How far cells are moved to the right, and header rows down."""
+        return 0 if self.rows is None else 1
+
+    def place(self, address: CellAddress) -> CellAddress | None:
+        """Return where a cell stands in the report, None where it does not."""
+        row = address.row if self.rows is None else self.rows.get(address.row)
+        return None if row is None else CellAddress(row=row, column=address.column + self.shift)
+
+
+def mirrored(outcome: Outcome, drawn: Sequence[Drawn]) -> Mirrored:
+    """Return where the cells of Variants stand on Submission: of a large submission those of the drawn variants.
+
+    A sentence is above them, then what is above the variants in the submission, then the variants, worst first.
+    """
+    if not extent_of(outcome).large or outcome.validated is None:
+        return Mirrored()
+    header = outcome.validated.header_rows.get("Variants", 0)
+    rows = [*range(1, header + 1), *(variant.row[ROW] for variant in drawn)]
+    return Mirrored(rows={row: place for place, row in enumerate(rows, start=2)})

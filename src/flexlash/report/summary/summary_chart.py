@@ -10,6 +10,7 @@ from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.verdict import firm, light
+from flexlash.schema.number_words import grouped
 
 __all__ = ["chart_words", "variants_chart"]
 
@@ -32,7 +33,7 @@ def variants_chart(book: Book, drawn: Sequence[Drawn], curves: Stored, total: in
     look = next(look for most, look in _LOOKS if len(shown) <= most)
     title = "Backlash of 95 % of units (P2.5 to P97.5), median and limit [arcmin]"
     if len(shown) < total:
-        title += f": the {len(shown)} worst of {total}"
+        title += f": the {len(shown)} worst of {grouped(total)}"
     bars = book.chart("column", title, subtype="stacked")
     marks = book.workbook.add_chart({"type": "line"})
     names = curves.series("Label", len(shown))

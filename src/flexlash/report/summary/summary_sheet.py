@@ -9,6 +9,7 @@ from typing import Any
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_summary import counted, dimension_words, points_words
+from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.links import result_rows, write_link
 from flexlash.report.layout.styles import Book, decimals_of
@@ -20,7 +21,7 @@ from flexlash.report.wording.sentences import FINDINGS, sentences
 from flexlash.report.wording.summary_facts import labels_of, rough
 from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, RULES, UNSETTLED, light, verdict_counts
 from flexlash.schema.findings import shown
-from flexlash.schema.number_words import glance, share_words
+from flexlash.schema.number_words import glance, grouped, share_words
 
 __all__ = ["light", "sentences", "write_summary"]
 
@@ -111,10 +112,10 @@ class _Page:
         counts, verdicts = self.outcome.counts, verdict_counts(self.outcome)
         judged = sum(verdicts.values()) - verdicts[NO_VERDICT]
         level = "error" if counts["errors"] else "warning"
-        without = f", {verdicts[NO_VERDICT]} without a limit" if verdicts[NO_VERDICT] else ""
+        without = f", {grouped(verdicts[NO_VERDICT])} without a limit" if verdicts[NO_VERDICT] else ""
         others = f"and {counted(counts['warnings'], 'warning')}; " if counts["errors"] and counts["warnings"] else ""
         figures = [
-            (f"{counts['computed']} of {counts['rows']}", f"variants computed{without}", ""),
+            (f"{grouped(counts['computed'])} of {grouped(counts['rows'])}", f"variants computed{without}", ""),
             *(
                 _verdict_figure(verdict, verdicts) if judged else (f"{NO_VERDICT} {verdict}", RULES[verdict], "")
                 for verdict in RULES
@@ -156,7 +157,8 @@ class _Page:
         for variant in drawn[:_LISTED]:
             name = _fitted(labels[variant.row["variant"]], merged_width(_WIDTHS[:1]))
             self._variant(variant.row, name, targets[variant.computed.variant.row])
-        more = f"The {_LISTED} worst of {len(self.outcome.computed)} are listed; all are in Results. "
+        extent = extent_of(self.outcome)
+        more = f"The {_LISTED} worst of {grouped(extent.total)} are listed; {extent.elsewhere}. "
         note = "Worst first: by share over the limit. The verdict judges the backlash alone."
         if len(drawn) > _LISTED:
             note = more + note
@@ -204,7 +206,7 @@ class _Page:
         height = min(greatest, max(least, _PAGE - self.height - (_LINES + 1) * LINE_HEIGHT))
         rows = math.ceil(height / LINE_HEIGHT)
         size = (_CHART_WIDTH, round(rows * LINE_HEIGHT / 0.75) - 4)
-        chart = variants_chart(self.book, drawn, curves, len(self.outcome.computed))
+        chart = variants_chart(self.book, drawn, curves, extent_of(self.outcome).total)
         self.book.insert(self.sheet, self.row, 0, chart, size=size, text=chart_words(drawn))
         for _ in range(rows):
             self._end_row()
@@ -214,12 +216,13 @@ class _Page:
         from flexlash import __version__
 
         submission, settings = self.outcome.submission, self.outcome.settings
+        shown_here = " shown" if self.outcome.whole else ""
         changed = f"; last changed {submission.modified:%Y-%m-%d}" if submission.modified else ""
         facts = (
             f"Submission {shown(submission.name, longest=100)}{changed}",
             f"sha256 {submission.sha256}",
             f"flexlash {__version__}, method {settings.method}, seed {settings.seed}, "
-            f"{points_words(self.outcome)} per variant. Method and limits of the model: sheet About.",
+            f"{points_words(self.outcome)} per variant{shown_here}. Method and limits of the model: sheet About.",
         )
         for fact in facts:
             self.sheet.write_string(self.row, 0, fact, self.book.format("quiet"))
@@ -237,8 +240,8 @@ def _verdict_figure(verdict: str, counts: Counter[str]) -> tuple[str, str, str]:
     doubtful = counts[f"{verdict}{UNSETTLED}"]
     count = counts[verdict] + doubtful
     word = f"{verdict}{UNSETTLED}" if doubtful else verdict
-    doubt = f"; {doubtful} not settled" if doubtful else ""
-    return f"{count} {word}", f"{RULES[verdict]}{doubt}", word if count else ""
+    doubt = f"; {grouped(doubtful)} not settled" if doubtful else ""
+    return f"{grouped(count)} {word}", f"{RULES[verdict]}{doubt}", word if count else ""
 
 
 def _fitted(label: str, width: float) -> str:

@@ -20,6 +20,7 @@ from flexlash.report.trace.trace_mechanics import write_integrals, write_shape, 
 from flexlash.report.trace.trace_page import CHANGE, HEADER, LEFT_OUT, SHEET, SUBMITTED, VALUE, Page
 from flexlash.report.trace.trace_steps import Steps
 from flexlash.report.trace.trace_strength import write_buckling, write_stresses
+from flexlash.schema.number_words import grouped
 
 __all__ = ["AGREEMENT", "AGREES", "CHANGED", "NOT_LISTED", "NO_PART", "UNREAL", "trace_sheet", "write_trace"]
 
@@ -53,7 +54,7 @@ def write_trace(book: Book, sheet: Any, inputs: Stored, total: int, picked: int 
         f"{LEFT_OUT} leaves an input out, an empty cell takes it as submitted."
     )
     if len(inputs.rows) < total:
-        note = f"The {len(inputs.rows)} worst of {total} variants can be picked. {note}"
+        note = f"The {len(inputs.rows)} worst of {grouped(total)} variants can be picked. {note}"
     if not inputs.rows:
         return {}
     sheet.write_string(1, 0, note, book.format("quiet"))

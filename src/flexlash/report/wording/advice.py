@@ -6,10 +6,12 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import polars as pl
+
 from flexlash.analysis.recommendations import Halving, Recommendation
 from flexlash.analysis.run_summary import counted, dimension_words
 from flexlash.report.wording.summary_facts import Row, SummaryFacts
-from flexlash.report.wording.verdict import BOUNDS, straddled
+from flexlash.report.wording.verdict import BOUNDS
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import spelled_out
 from flexlash.schema.number_words import angle_words, glance, rounded, share_error, share_words
@@ -31,13 +33,13 @@ _LEAST_SLOPE = 0.1
 
 def tightening(facts: SummaryFacts) -> Iterator[str]:
     """Yield which tolerance to halve and what that brings, or why no tolerance helps, or that none needs to."""
-    if not facts.failing:
-        if facts.judged:
+    if facts.failing.is_empty():
+        if facts.judged.height:
             yield from _nothing(facts)
         return
-    hopeless = [row for row in facts.failing if row["p50_arcmin"] > row["backlash_limit_arcmin"]]
+    hopeless = facts.failing.filter(pl.col("p50_arcmin") > pl.col("backlash_limit_arcmin"))["variant"].to_list()
     if hopeless:
-        names = facts.names([row["variant"] for row in hopeless])
+        names = facts.names(hopeless)
         whose = "its backlash is" if len(hopeless) == 1 else "their backlash is"
         yield f"Tighter tolerances cannot help {names}: {whose} over the limit for half of the units or more."
     for recommendation in facts.recommendations:
@@ -58,8 +60,8 @@ def stiffening(facts: SummaryFacts) -> Iterator[str]:
 
 def _nothing(facts: SummaryFacts) -> Iterator[str]:
     """Yield that nothing is to be changed, as far as that is settled."""
-    unsettled = sum(bool(straddled(row)) for row in facts.judged)
-    if unsettled:
+    whole = facts.outcome.whole
+    if unsettled := sum(whole.unsettled.values()) if whole else int(facts.judged["straddled"].sum()):
         yield f"Nothing so far: no variant is found to fail, but {counted(unsettled, 'verdict')} may change."
     else:
         yield "Nothing: no variant with a limit needs a tighter tolerance or a stiffer part."
@@ -67,7 +69,7 @@ def _nothing(facts: SummaryFacts) -> Iterator[str]:
 
 def _row(facts: SummaryFacts, recommendation: Recommendation) -> Row:
     """Return the Results row that a recommendation is for."""
-    return next(row for row in facts.failing if row["variant"] == recommendation.variant)
+    return facts.failing.row(by_predicate=pl.col("variant") == recommendation.variant, named=True)
 
 
 def _halvings(facts: SummaryFacts, recommendation: Recommendation) -> str:

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-from flexlash.analysis.computed import Computed
+import polars as pl
+
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.recommendations import Recommendation
-from flexlash.analysis.run_summary import counted, dimension_words, listed, points_range, spread_notes
+from flexlash.analysis.run_summary import counted, dimension_words, grouped, listed, points_range, spread_notes
+from flexlash.report.layout.links import rule_counts
+from flexlash.report.report_data import ROW
 from flexlash.report.wording.advice import stiffening, tightening
-from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, rough, summary_facts
+from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows, rough, summary_facts
 from flexlash.report.wording.verdict_sentences import failing, sureness
 from flexlash.schema.findings import CATALOGUE, spelled_out
 from flexlash.schema.number_words import angle_words
@@ -23,10 +26,23 @@ FINDINGS = "Findings"
 _DIGITS = 3
 """Digits in which a reserve is told; what is equal in them is alike."""
 
+_NEARLY = 1.1
+"""Times the least reserve beyond which no other one is told in the same digits."""
+
 _CAUSES = 3
 """Most dimensions that are named as the cause of a spread."""
 
 _WHOLE = 100
+
+_OF_THOSE_DRAWN = (
+    "Why",
+    "What to tighten",
+    "What to stiffen",
+    "Cylinder-only formula",
+    "Strength",
+    "Of the calculation",
+)
+"""Topics of which no more than the worst variants are known, where the outcome holds no others."""
 
 _LEAST_CAUSE = 0.01
 """Share of the variance below which a dimension is not named."""
@@ -50,10 +66,11 @@ def sentences(outcome: Outcome, recommendations: Sequence[Recommendation]) -> It
         "Of the calculation": _calculation(outcome),
         FINDINGS: _findings(outcome),
     }
+    of_these = f"Of the {facts.extent.drawn} worst: " if outcome.whole else ""
     for topic, answer in topics.items():
         text = " ".join(answer)
         if text:
-            yield topic, text
+            yield topic, f"{of_these if topic in _OF_THOSE_DRAWN else ''}{text}"
 
 
 def _computed(facts: SummaryFacts) -> Iterator[str]:
@@ -61,7 +78,8 @@ def _computed(facts: SummaryFacts) -> Iterator[str]:
     outcome = facts.outcome
     counts = outcome.counts
     rows, computed = counts["rows"], counts["computed"]
-    yield f"{computed} of {counted(rows, 'variant')} {'was' if computed == 1 else 'were'} computed."
+    yield f"{grouped(computed)} of {counted(rows, 'variant')} {'was' if computed == 1 else 'were'} computed."
+    yield from _shown(facts)
     lost = outcome.results.filter(outcome.results["status"] == "error")["variant"].to_list()
     if lost:
         yield f"Not computed: {listed([facts.named(name) if name else '(no name)' for name in lost], NAMED)}."
@@ -70,13 +88,24 @@ def _computed(facts: SummaryFacts) -> Iterator[str]:
             yield f"The first fault: {first.message}"
 
 
+def _shown(facts: SummaryFacts) -> Iterator[str]:
+    """Yield what the sheets of a large report show, and where everything is."""
+    extent = facts.extent
+    if extent.results_file:
+        findings = f", all findings in {extent.findings_file}" if extent.findings_file else ""
+        yield f"This report shows the {extent.drawn} worst of them; {extent.elsewhere}{findings}."
+    elif extent.large:
+        part = f"; the other sheets show the {extent.drawn} worst" if extent.is_part else ""
+        yield f"Results holds all of them{part}."
+
+
 def _causes(facts: SummaryFacts) -> Iterator[str]:
     """Yield what the spread of the worst variant comes from, and what dominates all of them."""
-    if not facts.rows:
+    worst = facts.worst
+    if worst is None:
         return
-    worst = facts.rows[0]
     name = facts.named(worst["variant"])
-    spread = facts.computed[worst["variant"]].spread
+    spread = facts.computed(worst).spread
     shares = spread.shares if spread else {}
     if not shares:
         yield f"Nothing scatters in {name}: no tolerance applies to its dimensions, so all units are alike."
@@ -87,8 +116,9 @@ def _causes(facts: SummaryFacts) -> Iterator[str]:
     main = Counter(cause for cause in facts.outcome.results["main_contributor"].to_list() if cause is not None)
     if main.total() > 1:
         order = sorted(main, key=lambda cause: (-main[cause], cause))
-        parts = [f"{dimension_words(cause)} in {main[cause]}" for cause in order]
-        where = f"all {main.total()} variants" if len(main) == 1 else f"{main.total()} variants"
+        parts = [f"{dimension_words(cause)} in {grouped(main[cause])}" for cause in order]
+        where = counted(main.total(), "variant")
+        where = f"all {where}" if len(main) == 1 else where
         what = dimension_words(order[0]) if len(main) == 1 else listed(parts, _CAUSES)
         yield f"Main contributor of {where}: {what}."
 
@@ -107,29 +137,22 @@ def _parts(row: Row, shares: dict[str, float]) -> str:
 
 def _classical(facts: SummaryFacts) -> Iterator[str]:
     """Yield what the classical formula would have said of the worst cup or hat, and its range over all of them."""
-    worst = next((row for row in facts.rows if _has_disk(facts.computed[row["variant"]])), None)
-    if worst is None:
+    with_disk = facts.ranked.filter(pl.col("hub_shear_MPa").is_not_null())
+    if with_disk.is_empty():
         return
+    (worst,) = first_rows(with_disk, 1)
     classical, own = worst["cylinder_only_backlash_arcmin"], worst["backlash_arcmin"]
     said, meant = angle_words(classical), angle_words(own)
     yield (
         f"The classical formula, without the disk, would have said {said} for {facts.named(worst['variant'])} "
         f"instead of {meant}: {_off(classical / own)}."
     )
-    ratios = [
-        computed.nominal.cylinder_only_backlash / computed.nominal.backlash
-        for computed in facts.computed.values()
-        if _has_disk(computed)
-    ]
+    ratios = (with_disk["cylinder_only_backlash_arcmin"] / with_disk["backlash_arcmin"]).to_list()
     if len(ratios) > 1:
         least, most = _off(max(ratios)), _off(min(ratios))
         if least.split("%")[1] == most.split("%")[1]:
             least = least.split(" %")[0]
-        yield f"Over all {len(ratios)} cups and hats: {least if least == most else f'{least} to {most}'}."
-
-
-def _has_disk(computed: Computed) -> bool:
-    return computed.variant.flexspline_type != "cylinder"
+        yield f"Over all {grouped(len(ratios))} cups and hats: {least if least == most else f'{least} to {most}'}."
 
 
 def _off(ratio: float) -> str:
@@ -140,15 +163,12 @@ def _off(ratio: float) -> str:
 def _strength(facts: SummaryFacts) -> Iterator[str]:
     """Yield how far the variant nearest to yield is from it, and what else the verdict does not show."""
     reserves: dict[tuple[float, str], list[str]] = {}
-    for row in facts.rows:
-        if row["elastic_limit_torque_Nm"] is not None:
-            computed = facts.computed[row["variant"]]
-            times = float(spelled_out(row["elastic_limit_torque_Nm"] / computed.variant.dimensions["torque"], _DIGITS))
-            reserves.setdefault((times, computed.nominal.governing_section), []).append(row["variant"])
+    for name, section, exact in _nearest_to_yield(facts):
+        reserves.setdefault((float(spelled_out(exact, _DIGITS)), section), []).append(name)
     if reserves:
         times, section = least = min(reserves)
         alike = len(reserves[least])
-        which = f", one of {alike} alike, is" if alike > 1 else " is"
+        which = f", one of {grouped(alike)} alike, is" if alike > 1 else " is"
         yield (
             f"Nearest to yield{which} {facts.named(reserves[least][0])}: its {section} yields at "
             f"{spelled_out(times, _DIGITS)} times the torque, corners not counted."
@@ -159,16 +179,40 @@ def _strength(facts: SummaryFacts) -> Iterator[str]:
             yield f"{CATALOGUE[code].title.capitalize()}: {facts.names(list(names))} ({code})."
 
 
+def _nearest_to_yield(facts: SummaryFacts) -> Iterator[tuple[str, str, float]]:
+    """Yield name, governing section and elastic limit over torque of the variants that may be nearest to yield."""
+    table = facts.outcome.validated.table if facts.outcome.validated else None
+    limited = facts.ranked.filter(pl.col("elastic_limit_torque_Nm").is_not_null())
+    if table is not None and limited.height:
+        torques = table.frame.select(pl.col("row").alias(ROW), torque="torque_Nm")
+        times = pl.col("elastic_limit_torque_Nm") / pl.col("torque")
+        joined = limited.join(torques, on=ROW, maintain_order="left")
+        reserves = joined.select("variant", "governing_section", times=times)
+        # All that the told digits can make equal to the nearest, and some more.
+        yield from reserves.filter(pl.col("times") <= _NEARLY * pl.col("times").min()).iter_rows()
+
+
 def _calculation(outcome: Outcome) -> Iterator[str]:
     """Yield what a reader must know of how the numbers were found."""
     yield from _elasticity(outcome)
     yield from spread_notes(outcome)
-    exact = sum(
-        "shear_modulus" in variant.variant.dimensions and "shear_modulus" not in variant.limits
-        for variant in outcome.computed.values()
-    )
-    if exact:
+    if exact := _exact_moduli(outcome):
         yield f"The shear modulus of {counted(exact, 'variant')} is given and has no tolerance: it does not scatter."
+
+
+def _exact_moduli(outcome: Outcome) -> int:
+    """Return how many variants have a given shear modulus without a tolerance: that of a material in a class."""
+    table = outcome.validated.table if outcome.validated else None
+    if table is None:
+        return 0
+    computed = table.frame.filter(pl.col("row").is_in(list(outcome.computed)))
+    alike = computed.group_by("material", "tolerance_class").agg(pl.col("row").first(), count=pl.len())
+    count = 0
+    for row, rows in alike.select("row", "count").iter_rows():
+        variant = outcome.computed[row]
+        if "shear_modulus" in variant.variant.dimensions and "shear_modulus" not in variant.limits:
+            count += rows
+    return count
 
 
 def _elasticity(outcome: Outcome) -> Iterator[str]:
@@ -194,7 +238,11 @@ def _findings(outcome: Outcome) -> Iterator[str]:
         yield "No error and no warning."
         return
     for level in ("error", "warning"):
-        titles = Counter(CATALOGUE[finding.code].title for finding in outcome.findings if finding.level == level)
+        titles = Counter({
+            CATALOGUE[code].title: count
+            for code, count in rule_counts(outcome).items()
+            if CATALOGUE[code].level == level
+        })  # fmt: skip
         if titles:
-            parts = [f"{title} ({count})" for title, count in titles.most_common()]
+            parts = [f"{title} ({grouped(count)})" for title, count in titles.most_common()]
             yield f"{counted(titles.total(), level)}: {listed(parts, NAMED)}."

@@ -8,16 +8,21 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
 
+import polars as pl
+
 from flexlash.analysis.computed import Computed
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.recommendations import Recommendation
-from flexlash.analysis.run_summary import listed, quoted, worst_first
-from flexlash.report.report_data import DRAWN
+from flexlash.analysis.run_summary import listed, quoted
+from flexlash.analysis.whole_batch import is_straddled, verdict_place
+from flexlash.report.extent import Extent, extent_of
+from flexlash.report.report_data import DRAWN, ROW, ranked
 from flexlash.report.wording.labels import distinct_labels
-from flexlash.report.wording.verdict import firm, light
+from flexlash.report.wording.verdict import LIGHTS
 from flexlash.schema.findings import shown
+from flexlash.schema.limit_verdict import VERDICTS
 
-__all__ = ["NAMED", "Row", "SummaryFacts", "labels_of", "rough", "summary_facts"]
+__all__ = ["NAMED", "Row", "SummaryFacts", "first_rows", "labels_of", "rough", "summary_facts"]
 
 NAMED = 3
 """Most variants that a sentence names."""
@@ -33,27 +38,36 @@ Row: TypeAlias = dict[str, Any]
 
 @dataclass(frozen=True, kw_only=True)
 class SummaryFacts:
-    """An outcome with what several sentences draw on; `rows` are worst first, `labels` are short names by name."""
+    """An outcome with what several sentences draw on.
+
+    `ranked` are the Results of its variants, worst first, each with its verdict and whether that is straddled; `labels`
+    are short names by name; `extent` is how many variants there are and how many of them the report draws.
+    """
 
     outcome: Outcome
     recommendations: Sequence[Recommendation]
-    rows: Sequence[Row]
+    ranked: pl.DataFrame
     labels: dict[str, str]
+    extent: Extent
 
     @cached_property
-    def computed(self) -> dict[str, Computed]:
-        """The computed variants by name."""
-        return {computed.variant.name: computed for computed in self.outcome.computed.values()}
+    def worst(self) -> Row | None:
+        """The worst variant, None where nothing was computed."""
+        return next(iter(first_rows(self.ranked, 1)), None)
 
     @cached_property
-    def failing(self) -> list[Row]:
+    def failing(self) -> pl.DataFrame:
         """The variants whose verdict is red or amber, worst first."""
-        return [row for row in self.judged if firm(light(row)) != "green"]
+        return self.judged.filter(pl.col("verdict") != "green")
 
     @cached_property
-    def judged(self) -> list[Row]:
+    def judged(self) -> pl.DataFrame:
         """The variants with a limit, worst first."""
-        return [row for row in self.rows if row["backlash_limit_arcmin"] is not None]
+        return self.ranked.filter(pl.col("backlash_limit_arcmin").is_not_null())
+
+    def computed(self, row: Row) -> Computed:
+        """Return what was computed of a variant."""
+        return self.outcome.computed[row[ROW]]
 
     def named(self, name: str) -> str:
         """Return a variant's name as a sentence has it: short and in quotation marks."""
@@ -61,14 +75,23 @@ class SummaryFacts:
 
     def names(self, names: Sequence[str]) -> str:
         """Return several names as a sentence lists them, the first few."""
-        return listed([self.named(name) for name in names], NAMED)
+        return listed([self.named(name) for name in names[:NAMED]], NAMED, len(names))
 
 
 def summary_facts(outcome: Outcome, recommendations: Sequence[Recommendation]) -> SummaryFacts:
     """Return what the sentences on an outcome draw on."""
-    rows = worst_first(outcome)
-    labels = labels_of(outcome, [row["variant"] for row in rows[:DRAWN]])
-    return SummaryFacts(outcome=outcome, recommendations=recommendations, rows=rows, labels=labels)
+    colours = {place: LIGHTS[verdict] for place, verdict in enumerate(VERDICTS)}
+    verdict = verdict_place().replace_strict(colours, return_dtype=pl.String)
+    rows = ranked(outcome).with_columns(verdict=verdict, straddled=is_straddled())
+    labels = labels_of(outcome, rows["variant"].head(DRAWN).to_list())
+    return SummaryFacts(
+        outcome=outcome, recommendations=recommendations, ranked=rows, labels=labels, extent=extent_of(outcome)
+    )
+
+
+def first_rows(rows: pl.DataFrame, most: int = NAMED) -> list[Row]:
+    """Return the first few rows."""
+    return rows.head(most).to_dicts()
 
 
 def labels_of(outcome: Outcome, worst: Sequence[str]) -> dict[str, str]:

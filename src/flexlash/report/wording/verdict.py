@@ -6,10 +6,22 @@ from collections import Counter
 from typing import Any
 
 from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.whole_batch import verdicts_of
 from flexlash.schema.limit_verdict import BOUNDS as ALLOWED
 from flexlash.schema.limit_verdict import Verdict, limit_verdict
 
-__all__ = ["BOUNDS", "COLOURS", "NO_VERDICT", "RULES", "UNSETTLED", "firm", "light", "straddled", "verdict_counts"]
+__all__ = [
+    "BOUNDS",
+    "COLOURS",
+    "LIGHTS",
+    "NO_VERDICT",
+    "RULES",
+    "UNSETTLED",
+    "firm",
+    "light",
+    "straddled",
+    "verdict_counts",
+]
 
 NO_VERDICT = "–"
 """What stands in the place of a verdict where there is no limit."""
@@ -29,9 +41,10 @@ _FORMATS = {"red": "error", "amber": "warning", "green": "ok"}
 COLOURS = {**_FORMATS, **{f"{verdict}{UNSETTLED}": look for verdict, look in _FORMATS.items()}, NO_VERDICT: "text"}
 """The cell format of each verdict, settled or not."""
 
-_LIGHTS: dict[Verdict | None, str] = {"meets": "green", "marginal": "amber", "fails": "red", None: NO_VERDICT}
+LIGHTS: dict[Verdict | None, str] = {"meets": "green", "marginal": "amber", "fails": "red", None: NO_VERDICT}
+"""The colour of each verdict."""
 
-BOUNDS = {_LIGHTS[verdict]: most for verdict, most in ALLOWED.items()}
+BOUNDS = {LIGHTS[verdict]: most for verdict, most in ALLOWED.items()}
 """Greatest share of units over the limit that each verdict allows; red allows any."""
 
 _KEYS = tuple(f"probability_over_limit{end}" for end in ("", "_low", "_high"))
@@ -54,13 +67,19 @@ def straddled(row: dict[str, Any]) -> list[float]:
 
 
 def verdict_counts(outcome: Outcome) -> Counter[str]:
-    """Return how many computed variants have each verdict; those with ? are counted apart."""
-    computed = outcome.results.filter(outcome.results["p97_5_arcmin"].is_not_null())
-    return Counter(_verdict(*shares) for shares in computed.select(_KEYS).iter_rows())
+    """Return how many computed variants of the whole submission have each verdict; those with ? are counted apart."""
+    whole = outcome.whole
+    every, doubtful = (whole.verdicts, whole.unsettled) if whole else verdicts_of(outcome.results)
+    computed = whole.computed if whole else outcome.results["p97_5_arcmin"].count()
+    counts = {NO_VERDICT: computed - sum(every.values())}
+    for verdict, count in every.items():
+        unsettled = doubtful.get(verdict, 0)
+        counts |= {LIGHTS[verdict]: count - unsettled, f"{LIGHTS[verdict]}{UNSETTLED}": unsettled}
+    return Counter({verdict: count for verdict, count in counts.items() if count})
 
 
 def _verdict(share: float | None, low: float | None, high: float | None) -> str:
-    verdict = _LIGHTS[limit_verdict(share)]
+    verdict = LIGHTS[limit_verdict(share)]
     return f"{verdict}{UNSETTLED}" if low is not None and high is not None and _straddled(low, high) else verdict
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
-from flexlash.analysis.run_summary import are, counted, listed, points_range
+import polars as pl
+
+from flexlash.analysis.run_summary import are, counted, grouped, listed, points_range
 from flexlash.report.wording.distances import distance_words
-from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts
-from flexlash.report.wording.verdict import firm, light, straddled
+from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows
+from flexlash.report.wording.verdict import NO_VERDICT, RULES, UNSETTLED, firm, light, straddled, verdict_counts
 from flexlash.schema.number_words import angle_words, share_words
 
 __all__ = ["failing", "sureness"]
@@ -17,46 +19,50 @@ _PERCENTILES = {"p97_5": "97.5 %", "p99_865": "99.865 %"}
 
 def failing(facts: SummaryFacts) -> Iterator[str]:
     """Yield which variants fail, by how much; where none does, which is nearest to its limit."""
-    if not facts.rows:
+    worst = facts.worst
+    if worst is None:
         return
-    if not facts.judged:
-        worst = facts.rows[0]
-        greatest = ", the greatest backlash of all" if len(facts.rows) > 1 else ""
+    counts = verdict_counts(facts.outcome)
+    if not (judged := counts.total() - counts[NO_VERDICT]):
+        greatest = ", the greatest backlash of all" if facts.extent.total > 1 else ""
         yield "No limit was given, so nothing is judged."
         yield f"97.5 % of the units of {facts.named(worst['variant'])} stay below {_tail(worst, 'p97_5')}{greatest}."
         return
-    rows = {verdict: [row for row in facts.judged if firm(light(row)) == verdict] for verdict in ("red", "amber")}
-    green = [row for row in facts.judged if firm(light(row)) == "green"]
-    with_limit = counted(len(facts.judged), "variant")
-    for verdict, with_verdict in rows.items():
-        if with_verdict:
-            named = listed([_excess(facts, row, first=index == 0) for index, row in enumerate(with_verdict)], NAMED)
-            count = f"{len(with_verdict)} of {with_limit} with a limit {are(len(with_verdict))}"
-            yield f"{count} {verdict}{_doubt(with_verdict)}: {named}."
-    if not facts.failing:
-        which = "all" if len(green) > 1 else "the"
-        yield f"None: {which} {with_limit} with a limit {are(len(green))} green{_doubt(green)}."
-        nearest = max(green, key=lambda row: row["p99_865_arcmin"] / row["backlash_limit_arcmin"])
-        yield f"Nearest to its limit is {_excess(facts, nearest, first=True)}."
+    with_limit, doubts = counted(judged, "variant"), {colour: counts[f"{colour}{UNSETTLED}"] for colour in RULES}
+    numbers = {colour: counts[colour] + doubts[colour] for colour in RULES}
+    for colour in ("red", "amber"):
+        if number := numbers[colour]:
+            rows = first_rows(facts.judged.filter(pl.col("verdict") == colour))
+            excess = [_excess(facts, row, first=index == 0) for index, row in enumerate(rows)]
+            named = f": {listed(excess, NAMED, number)}" if excess else ""
+            count = f"{grouped(number)} of {with_limit} with a limit {are(number)}"
+            yield f"{count} {colour}{_doubt(doubts[colour], number)}{named}."
+    green = numbers["green"]
+    if green == judged:
+        which = "all" if green > 1 else "the"
+        yield f"None: {which} {with_limit} with a limit {are(green)} green{_doubt(doubts['green'], green)}."
+        reach = pl.col("p99_865_arcmin") / pl.col("backlash_limit_arcmin")
+        nearest = facts.judged.row(facts.judged.select(reach.arg_max()).item(), named=True)
+        whose = f" of the {facts.extent.drawn} worst" if facts.outcome.whole else ""
+        yield f"Nearest to its limit{whose} is {_excess(facts, nearest, first=True)}."
     elif green:
-        yield f"{len(green)} {are(len(green))} green{_doubt(green)}."
-    without = len(facts.rows) - len(facts.judged)
-    if without:
-        yield f"{without} {'has' if without == 1 else 'have'} no limit."
+        yield f"{grouped(green)} {are(green)} green{_doubt(doubts['green'], green)}."
+    if without := counts[NO_VERDICT]:
+        yield f"{grouped(without)} {'has' if without == 1 else 'have'} no limit."
 
 
 def sureness(facts: SummaryFacts) -> Iterator[str]:
     """Yield the share over the limit of the worst variants with its interval, and the bounds of the worst one."""
-    if not facts.rows:
+    worst = facts.worst
+    if worst is None:
         return
-    named = (facts.failing or facts.judged[:1])[:NAMED]
+    named = first_rows(facts.failing) or first_rows(facts.judged, 1)
     shares = [(facts.named(row["variant"]), share_words(row)) for row in named]
     if shares:
         yield f"Units over the limit: {listed([f'{name} {words}' for name, words in shares], NAMED)}."
         if any("(" in words for _, words in shares):
             yield "In brackets the 95 % interval of the calculation, for the tolerances as entered."
     yield from _unsettled(facts)
-    worst = facts.rows[0]
     low, high = worst["worst_case_low_arcmin"], worst["worst_case_high_arcmin"]
     if low < high:
         low, high = angle_words(low), angle_words(high)
@@ -64,28 +70,31 @@ def sureness(facts: SummaryFacts) -> Iterator[str]:
         yield f"With every dimension at a limit the backlash of {name} lies between {low} and {high}."
 
 
-def _doubt(rows: Sequence[Row]) -> str:
+def _doubt(doubtful: int, count: int) -> str:
     """Return how many of some verdicts are not settled, an empty text for none."""
-    count = sum(bool(straddled(row)) for row in rows)
-    if not count:
+    if not doubtful:
         return ""
-    every = ", but not settled" if len(rows) == 1 else ", none of them settled"
-    return every if count == len(rows) else f", {count} of them not settled"
+    every = ", but not settled" if count == 1 else ", none of them settled"
+    return every if doubtful == count else f", {grouped(doubtful)} of them not settled"
 
 
 def _unsettled(facts: SummaryFacts) -> Iterator[str]:
     """Yield how many verdicts are not settled, why, and what would settle them."""
-    rows = [row for row in facts.judged if straddled(row)]
-    if not rows:
+    rows = facts.judged.filter("straddled")
+    whole = facts.outcome.whole
+    count = sum(whole.unsettled.values()) if whole else rows.height
+    if not count:
         return
-    shares = sorted({share for row in rows for share in straddled(row)})
-    bounds = " or ".join(f"{100 * share:g}" for share in shares)
-    lines = all(row["spread_method"] == "line" for row in rows)
-    points = points_range([row["spread_points"] for row in rows], "lines" if lines else "points")
-    yield (
-        f"{counted(len(rows), 'verdict')} with ? {are(len(rows))} not settled: {points} leave open whether more than "
-        f"{bounds} % of units are over the limit."
-    )
+    told = f"{counted(count, 'verdict')} with ? {are(count)} not settled"
+    if rows.is_empty():
+        yield f"{told}."
+    else:
+        ends = rows.select("probability_over_limit_low", "probability_over_limit_high").iter_rows(named=True)
+        shares = sorted({share for row in ends for share in straddled(row)})
+        bounds = " or ".join(f"{100 * share:g}" for share in shares)
+        lines = (rows["spread_method"] == "line").all()
+        points = points_range(rows["spread_points"].to_list(), "lines" if lines else "points")
+        yield f"{told}: {points} leave open whether more than {bounds} % of units are over the limit."
     yield (
         "Run with more samples."
         if facts.outcome.settings.method == "line"

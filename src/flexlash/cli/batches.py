@@ -1,0 +1,150 @@
+"""What `run` and `check` do with the submissions that they are given: started, told in order, summed up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import click
+
+from flexlash.analysis.options import Options
+from flexlash.batch.answer import Command
+from flexlash.batch.ended import Ended
+from flexlash.batch.executor import Executor
+from flexlash.batch.given_files import GivenFiles
+from flexlash.batch.manifest import MANIFEST_NAME, Manifest, options_digest
+from flexlash.cli.submissions import Submissions
+from flexlash.cli.terminal import Bar, complain, named
+from flexlash.outputs.plan import Output
+from flexlash.reading.read import Source
+from flexlash.reading.refusal import Refusal
+from flexlash.schema.exit_codes import ExitCode
+from flexlash.schema.file_faults import reason
+
+__all__ = ["Planned", "carried_out", "to_be_told", "workers"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Planned:
+    """Where outputs go: the report or mended file and the marked copy of each submission, the summary of all."""
+
+    files: Mapping[Path, Output] = field(default_factory=dict)
+    copies: Mapping[Path, Output] = field(default_factory=dict)
+    summary: tuple[Output, Output] | None = None
+
+
+def to_be_told(given: GivenFiles, *, as_json: bool, quiet: bool, verbose: bool, ran: bool = False) -> Submissions:
+    """Return the submissions as they will be told, having said what of a folder is left alone.
+
+    A folder has several, however many are in it.
+    """
+    several = len(given.files) > 1 or bool(given.folders)
+    told = Submissions(several=several, as_json=as_json, quiet=quiet, ran=ran, verbose=verbose)
+    for remark in () if quiet else given.remarks:
+        click.echo(remark, err=True)
+    if not given.submissions:
+        for folder in given.folders:
+            complain(
+                f"{named(folder)}: there is no submission in this folder, no workbook or table (.xlsx, .xlsm, .csv, "
+                ".tsv, .txt, .parquet) that flexlash did not write; --recursive also looks below it."
+            )
+    return told
+
+
+def workers(jobs: int) -> AbstractContextManager[Executor]:
+    """Return the workers that compute: processes of this machine."""
+    from flexlash.batch.local_executor import local_executor
+
+    return local_executor(jobs)
+
+
+def carried_out(
+    command: Command,
+    given: GivenFiles,
+    planned: Planned,
+    options: Options,
+    told: Submissions,
+    *,
+    resume: bool = False,
+) -> ExitCode:
+    """Compute, check or mend submissions side by side, write what is wanted, tell how each ended; return the code."""
+    # Workers load their libraries while this process loads its own.
+    with workers(max(1, min(options.jobs, len(given.submissions)))) as executor:
+        from flexlash.batch.side_by_side import Batch, Wanted, side_by_side, tables_or_why
+
+        tables = tables_or_why(options)
+        bar = Bar(len(given.files), quiet=told.quiet or told.as_json or not told.ran)
+        with _manifest(planned, options, tables, resume=resume) as manifest:
+            batch = Batch(
+                command=command,
+                options=options,
+                wanted=[
+                    Wanted(given=one, file=planned.files.get(one.path), copy=planned.copies.get(one.path))
+                    for one in given.files
+                ],
+                tables=tables,
+                manifest=manifest,
+                several=told.several,
+            )
+            all_ended = _told_in_order(side_by_side(batch, executor, bar.advance), told, bar)
+    return _summed_up(all_ended, planned.summary, told)
+
+
+@contextmanager
+def _manifest(
+    planned: Planned, options: Options, tables: Mapping[str, Source] | OSError | Refusal, *, resume: bool
+) -> Iterator[Manifest | None]:
+    """Give the manifest of a folder of outputs; say where it cannot be written, since then no later run can go on."""
+    manifest, fault = None, None
+    if planned.summary is not None and not isinstance(tables, OSError | Refusal):
+        digest = options_digest(options, tables, marked=bool(planned.copies))
+        try:
+            manifest = Manifest(planned.summary[0].path.parent, digest, resume=resume)
+        except OSError as refused:
+            fault = refused
+    try:
+        yield manifest
+    finally:
+        if manifest is not None:
+            manifest.close()
+            fault = manifest.fault
+        if fault is not None:
+            why = f"{reason(fault)}; a later run cannot go on from here by --resume."
+            click.echo(f"{named(fault.filename or MANIFEST_NAME)} could not be written: {why}", err=True)
+
+
+def _told_in_order(all_ended: Iterator[Ended], told: Submissions, bar: Bar) -> list[Ended]:
+    """Tell how each submission ended, the bar being drawn below what is printed; return them all."""
+    kept = []
+    for ended in all_ended:
+        bar.clear()
+        told.tell(ended)
+        bar.draw()
+        kept.append(ended)
+    bar.clear()
+    return kept
+
+
+def _summed_up(all_ended: Sequence[Ended], summary: tuple[Output, Output] | None, told: Submissions) -> ExitCode:
+    """Write the summary where one is wanted, and say what came of all; return the code."""
+    if summary is None:
+        return told.end()
+    from flexlash.batch.summary_workbook import SUMMARY, summary_lines_file, summary_workbook
+
+    workbook, lines = summary
+    written = []
+    try:
+        for output, data in (
+            (workbook, summary_workbook(all_ended, workbook.path.parent)),
+            (lines, summary_lines_file(all_ended)),
+        ):
+            file = output.write(data, SUMMARY)
+            written.append(file.path)
+            if file.remark:
+                click.echo(click.style(file.remark, fg="yellow"), err=True)
+    except OSError as fault:
+        complain(f"{named(fault.filename)} could not be written: {reason(fault)}")
+        told.codes.append(ExitCode.NO_FILE)
+    return told.end(written)
