@@ -151,7 +151,9 @@ class Submissions:
         if ended.skipped and ended.in_folder:
             self._met[next(iter(ended.by_rule))].append(name)
         elif ended.skipped:
-            yield _Line(f"{name}: {ended.told['findings'][0]['message']}", _COLOURS["info"], is_message=True)
+            (found,) = ended.told["findings"]
+            text = f"{name}: {found['level']} {found['code']} {found['message']}"
+            yield _Line(text, _COLOURS["info"], is_message=self.ran)
         elif ended.words and not ended.refused:
             over = sum(ended.counts[verdict] for verdict in ("marginal", "fails"))
             judged = counted(over + ended.counts["meets"], "variant")

@@ -64,7 +64,10 @@ def report_outputs(
 
 def summary_outputs(plan: Plan, output: Path | None) -> tuple[Output, Output] | None:
     """Return where the summary of all submissions goes, as a workbook and as lines; None where OUT is no folder."""
-    if output is None or not _is_folder(output):
+    if output is None:
+        return None
+    _require_name(output)
+    if not _is_folder(output):
         return None
     _make_folder(output, REPORTS)
     return plan.claim(output / f"{SUMMARY_NAME}.xlsx"), plan.claim(output / f"{SUMMARY_NAME}.jsonl")
