@@ -10,18 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 from flexlash.analysis.outcome import Outcome, Written
 from flexlash.analysis.whole_batch import worst_rows
-from flexlash.schema.cell_addresses import cell_ranges
+from flexlash.schema.cell_addresses import CellAddress, cell_ranges
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.finding_catalogue import Level
 from flexlash.schema.findings import CATALOGUE, Finding, shown
 from flexlash.schema.limit_verdict import BOUNDS, VERDICTS, misses_limit
 from flexlash.schema.number_words import ALL_UNITS, angle_words, grouped, rounded, share_words
-from flexlash.validation.blocking_errors import waiting_rows
+from flexlash.validation.blocking_errors import Waiting, waiting_rows
 
 if TYPE_CHECKING:
     import polars as pl
 
 __all__ = [
+    "SHOWN_MESSAGES",
     "FindingGroup",
     "SpreadNotes",
     "angle_words",
@@ -49,10 +50,13 @@ __all__ = [
     "to_fix_words",
     "words_of_fixes",
     "words_of_state",
+    "words_of_waiting",
     "worst_first",
 ]
 
-_SHOWN_MESSAGES = 3
+SHOWN_MESSAGES = 3
+"""Findings of a rule that are told one by one."""
+
 _NO_MEND = "Nothing to do"
 """How the mend begins of a finding that needs none."""
 
@@ -73,15 +77,24 @@ def dimension_words(name: str) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class FindingGroup:
-    """Findings of one rule in one sheet: how many, at how many cells, the first of these and the first of them."""
+    """Findings of one rule in one sheet: how many, at how many cells, the addresses of these and the first of them.
+
+    Where there are very many cells the first addresses may stand for all.
+    """
 
     level: Level
     code: str
     sheet: str
     count: int
     cells: int
-    ranges: str
+    addresses: tuple[CellAddress, ...]
     first: tuple[Finding, ...]
+
+    @property
+    def ranges(self) -> str:
+        """The cells, with runs in a column drawn together, as many as a line may hold."""
+        ranges = cell_ranges(self.addresses)
+        return f"{ranges.partition(' and ')[0]} and more" if len(self.addresses) < self.cells else ranges
 
 
 def by_rule(findings: Iterable[Finding]) -> list[FindingGroup]:
@@ -93,15 +106,15 @@ def by_rule(findings: Iterable[Finding]) -> list[FindingGroup]:
 
 
 def _group(findings: Sequence[Finding]) -> FindingGroup:
-    cells = {found.address for found in findings if found.address}
+    cells = tuple(dict.fromkeys(found.address for found in findings if found.address))
     return FindingGroup(
         level=findings[0].level,
         code=findings[0].code,
         sheet=findings[0].sheet,
         count=len(findings),
         cells=len(cells),
-        ranges=cell_ranges(cells),
-        first=tuple(findings[:_SHOWN_MESSAGES]),
+        addresses=cells,
+        first=tuple(findings[:SHOWN_MESSAGES]),
     )
 
 
@@ -168,7 +181,12 @@ def closing_lines(
 def _waiting_words(outcome: Outcome) -> Iterator[str]:
     """Yield how many rows wait for which faulty material or class."""
     table = outcome.validated.table if outcome.validated else None
-    for one in waiting_rows(table, outcome.blocked) if table is not None else ():
+    return words_of_waiting(waiting_rows(table, outcome.blocked) if table is not None else ())
+
+
+def words_of_waiting(waiting: Iterable[Waiting]) -> Iterator[str]:
+    """Yield how many rows wait for which faulty material or class."""
+    for one in waiting:
         rows = counted(len(one.rows), "row")
         yield f"{rows} wait{'s' if len(one.rows) == 1 else ''} for {one.kind} {shown(one.name, longest=_NAME)}"
 

@@ -15,8 +15,10 @@ from flexlash.reading.read import Source
 from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.findings import Finding, finding
 from flexlash.schema.limit_verdict import Verdict
+from flexlash.validation.blocking_errors import Waiting
 
 __all__ = [
+    "FIRST_CELLS",
     "FIRST_FINDINGS",
     "ChunkAnswer",
     "ChunkSummary",
@@ -32,6 +34,9 @@ __all__ = [
 
 FIRST_FINDINGS = 1000
 """Most findings of a large table that are told one by one; a table beside its Results holds all of them."""
+
+FIRST_CELLS = 200
+"""Most cells of a rule that are told of a large table."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,9 +77,9 @@ class ChunkSummary:
 
     `refusal` says why it is no readable submission, or is skipped; then there is nothing else. `columns` are those of
     its Results. `own` are the first findings at its rows, by `rules` and `groups` there are more; `before` and `after`
-    are the findings of the whole file that come before and after those. `to_fix` is at how many cells of its rows there
-    are errors; `waiting` says how many of its rows wait for which material or class, by kind and name. `worst` are its
-    worst rows.
+    are the findings of the whole file that come before and after those, without the sentence about the rows that wait
+    for them: `waiting` are those of the chunk, of the sheet of this name. `to_fix` is at how many cells of its rows
+    there are errors, `worst` are its worst rows.
     """
 
     rows: int = 0
@@ -92,7 +97,8 @@ class ChunkSummary:
     own: tuple[Finding, ...] = ()
     after: tuple[Finding, ...] = ()
     to_fix: int = 0
-    waiting: tuple[tuple[str, str, int], ...] = ()
+    sheet: str = ""
+    waiting: tuple[Waiting, ...] = ()
     worst: tuple[WorstRow, ...] = ()
     notes: SpreadNotes = field(default_factory=SpreadNotes)
     cross_checked: bool = False
@@ -107,10 +113,18 @@ class ChunkSummary:
         known = json.loads(data)
         known |= {key: tuple(Finding(**one) for one in known[key]) for key in ("before", "own", "after")}
         known["groups"] = tuple(
-            FindingGroup(**{**one, "first": tuple(Finding(**found) for found in one["first"])})
+            FindingGroup(
+                **one
+                | {
+                    "first": tuple(Finding(**found) for found in one["first"]),
+                    "addresses": tuple(CellAddress(*address) for address in one["addresses"]),
+                }
+            )
             for one in known["groups"]
         )
-        known["waiting"] = tuple((kind, name, rows) for kind, name, rows in known["waiting"])
+        known["waiting"] = tuple(
+            Waiting(**one | {"sources": [(sheet, row) for sheet, row in one["sources"]]}) for one in known["waiting"]
+        )
         known["worst"] = tuple(WorstRow(**one) for one in known["worst"])
         known["columns"], known["notes"] = tuple(known["columns"]), SpreadNotes(**known["notes"])
         known["refusal"] = known["refusal"] and Finding(**known["refusal"])

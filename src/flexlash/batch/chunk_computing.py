@@ -15,6 +15,7 @@ from flexlash.analysis.run_result import outcome_of
 from flexlash.analysis.run_summary import SpreadNotes, by_rule, to_fix
 from flexlash.analysis.whole_batch import DRAWN, verdicts_of, worst_rows
 from flexlash.batch.chunk import (
+    FIRST_CELLS,
     FIRST_FINDINGS,
     ChunkAnswer,
     ChunkSummary,
@@ -31,7 +32,7 @@ from flexlash.report.results_table import results_table
 from flexlash.report.workbook import report_bytes
 from flexlash.schema.findings import Finding, finding
 from flexlash.schema.result_columns import result_columns
-from flexlash.validation.blocking_errors import waiting_rows
+from flexlash.validation.blocking_errors import told_of_waiting, waiting_rows, waiting_sentences
 from flexlash.validation.validated import Table
 
 __all__ = ["answered", "findings_listed", "report_of_worst"]
@@ -60,15 +61,14 @@ def answered(task: ChunkTask) -> ChunkAnswer:
         computed=len(outcome.computed),
         seed=outcome.settings.seed,
         method=outcome.settings.method,
-        rules=Counter(found.code for found in own),
-        groups=tuple(by_rule(own)),
+        rules=dict(Counter(found.code for found in own)),
+        groups=tuple(replace(one, addresses=one.addresses[:FIRST_CELLS]) for one in by_rule(own)),
         before=before,
         own=own[:FIRST_FINDINGS],
         after=after,
         to_fix=to_fix(own)[0],
-        waiting=tuple(
-            (one.kind, one.name, len(one.rows)) for one in (waiting_rows(table, outcome.blocked) if table else ())
-        ),
+        sheet=table.sheet if table else "",
+        waiting=tuple(waiting_rows(table, outcome.blocked)) if table else (),
     )
     results = b""
     if task.spread:
@@ -107,9 +107,12 @@ def _by_place(outcome: Outcome, table: Table | None) -> tuple[tuple[Finding, ...
     sheets = [*outcome.submission.sheets]
     later = {*sheets[sheets.index(table.sheet) + 1 :]}
     places: dict[int, list[Finding]] = {-1: [], 0: [], 1: []}
+    sentences = waiting_sentences(table.sheet, waiting_rows(table, outcome.blocked))
     for found in outcome.findings:
         is_own = found.sheet == table.sheet and found.row > table.last_head_row
-        places[0 if is_own else 1 if found.sheet in later else -1].append(found)
+        sentence = sentences.get((found.sheet, found.row), "") if told_of_waiting(found, table.sheet) else ""
+        told = replace(found, message=found.message.removesuffix(sentence))
+        places[0 if is_own else 1 if found.sheet in later else -1].append(told)
     return tuple(places[-1]), tuple(places[0]), tuple(places[1])
 
 

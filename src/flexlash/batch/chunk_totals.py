@@ -3,28 +3,31 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import chain, islice
 from typing import Any
 
 from flexlash.analysis.outcome import exit_code_of
 from flexlash.analysis.run_summary import (
+    SHOWN_MESSAGES,
     FindingGroup,
     SpreadNotes,
     by_rule,
-    counted,
     group_lines,
     lines_of_limits,
     to_fix,
     words_of_fixes,
     words_of_state,
+    words_of_waiting,
 )
 from flexlash.analysis.whole_batch import DRAWN, WholeBatch
 from flexlash.batch.answer import Answer, WorstVariant
-from flexlash.batch.chunk import FIRST_FINDINGS, ChunkSummary, WorstRow
-from flexlash.schema.findings import Finding, shown
+from flexlash.batch.chunk import FIRST_CELLS, FIRST_FINDINGS, ChunkSummary, WorstRow
+from flexlash.schema.findings import Finding
 from flexlash.schema.limit_verdict import VERDICTS, Verdict
+from flexlash.schema.spellings import plain
+from flexlash.validation.blocking_errors import Waiting, told_of_waiting, waiting_sentences
 
 __all__ = ["Totals"]
 
@@ -32,8 +35,6 @@ _NAMED = 3
 """Worst variants that are named."""
 
 _LEVELS = ("error", "warning", "info")
-_NAME = 30
-"""Most characters of a name in a sentence."""
 
 
 class Totals:
@@ -44,14 +45,15 @@ class Totals:
         self.method = ""
         self.columns: tuple[str, ...] = ()
         self.worst: list[WorstRow] = []
-        self.before: dict[Finding, None] = {}
-        self.after: dict[Finding, None] = {}
+        self._before: dict[Finding, None] = {}
+        self._after: dict[Finding, None] = {}
         self._own: list[Finding] = []
         self._groups: dict[tuple[int, str, str], FindingGroup] = {}
         self._verdicts, self._unsettled = Counter[Verdict](), Counter[Verdict]()
         self._notes, self._cross_checked = SpreadNotes(), False
         self._to_fix = 0
-        self._waiting = Counter[tuple[str, str]]()
+        self._sheet = ""
+        self._waiting: dict[tuple[str, str], Waiting] = {}
 
     def add(self, chunk: ChunkSummary) -> None:
         """Add the chunk that follows."""
@@ -65,11 +67,16 @@ class Totals:
         self._cross_checked |= chunk.cross_checked
         self.worst = sorted((*self.worst, *chunk.worst), key=lambda one: one.order)[:DRAWN]
         # Findings of the whole file come with every chunk.
-        self.before |= dict.fromkeys(chunk.before)
-        self.after |= dict.fromkeys(chunk.after)
+        self._before |= dict.fromkeys(chunk.before)
+        self._after |= dict.fromkeys(chunk.after)
         self._own += chunk.own[: FIRST_FINDINGS - len(self._own)]
         self._to_fix += chunk.to_fix
-        self._waiting.update({(kind, name): rows for kind, name, rows in chunk.waiting})
+        self._sheet = chunk.sheet or self._sheet
+        for waiting in chunk.waiting:
+            owner = (waiting.kind, plain(waiting.name))
+            known = self._waiting.get(owner)
+            rows = [*known.rows, *waiting.rows] if known else waiting.rows
+            self._waiting[owner] = replace(known or waiting, rows=rows)
         for group in chunk.groups:
             self._add_group(group)
 
@@ -81,6 +88,26 @@ class Totals:
         key = (_LEVELS.index(group.level), group.code, group.sheet)
         known = self._groups.get(key)
         self._groups[key] = group if known is None else _joined(known, group)
+
+    @property
+    def before(self) -> list[Finding]:
+        """Findings of the whole file that come before those at its rows."""
+        return self._told(self._before)
+
+    @property
+    def after(self) -> list[Finding]:
+        """Findings of the whole file that come after those at its rows."""
+        return self._told(self._after)
+
+    def _told(self, findings: Iterable[Finding]) -> list[Finding]:
+        """Return findings with what they say of the rows that wait for them."""
+        sentences = waiting_sentences(self._sheet, self._waiting.values())
+        return [
+            replace(found, message=found.message + sentences.get((found.sheet, found.row), ""))
+            if told_of_waiting(found, self._sheet)
+            else found
+            for found in findings
+        ]
 
     @property
     def findings(self) -> list[Finding]:
@@ -169,17 +196,15 @@ class Totals:
         return [group for _, group in sorted(groups.items())]
 
     def _waiting_words(self) -> Iterator[str]:
-        for (kind, name), rows in self._waiting.items():
-            yield f"{counted(rows, 'row')} wait{'s' if rows == 1 else ''} for {kind} {shown(name, longest=_NAME)}"
+        return words_of_waiting(self._waiting.values())
 
 
 def _joined(group: FindingGroup, later: FindingGroup) -> FindingGroup:
     """Return findings of one rule in one sheet and those that follow as one group."""
-    more = f"{group.ranges.partition(' and ')[0]} and more" if group.cells and later.cells else ""
     return replace(
         group,
         count=group.count + later.count,
         cells=group.cells + later.cells,
-        ranges=more or group.ranges or later.ranges,
-        first=(*group.first, *later.first)[: max(len(group.first), len(later.first))],
+        addresses=(*group.addresses, *later.addresses)[:FIRST_CELLS],
+        first=(*group.first, *later.first)[:SHOWN_MESSAGES],
     )

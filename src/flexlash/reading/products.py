@@ -17,7 +17,7 @@ from pathlib import Path
 
 from flexlash.reading.raw import Submission
 from flexlash.reading.refusal import Refusal
-from flexlash.schema.result_columns import result_columns
+from flexlash.schema.result_columns import FINDINGS, result_columns
 
 __all__ = [
     "CHECKED_NAME",
@@ -47,6 +47,7 @@ _PRODUCTS = {"report": "I508", "summary": "I508", "results": "I527", "checked": 
 """By its role, the finding that says why a file that flexlash wrote is skipped."""
 
 _RESULTS = tuple(column.key for column in result_columns(cross_check=False, elasticity=False))
+_FINDINGS = tuple(column.key for column in FINDINGS)
 _LARGEST = 2**27
 """Largest file whose digest is taken to find out whether it is the original of a fixed one [bytes]."""
 
@@ -57,9 +58,9 @@ def fixed_role(original: bytes) -> str:
 
 
 def results_header(keys: Iterable[object]) -> bool:
-    """Whether a header row is that of Results as flexlash writes them; further columns may follow."""
+    """Whether a header row is that of Results, behind which further columns may follow, or of findings beside them."""
     header = list(keys)
-    return tuple(header[:2]) == _RESULTS[:2] and set(_RESULTS) <= set(header)
+    return tuple(header) == _FINDINGS or (tuple(header[:2]) == _RESULTS[:2] and set(_RESULTS) <= set(header))
 
 
 def is_made_by_name(path: Path) -> bool:

@@ -13,7 +13,7 @@ from flexlash.schema.findings import Finding, shown
 from flexlash.schema.spellings import plain
 from flexlash.validation.validated import Blocked, Owner, Table
 
-__all__ = ["Waiting", "stopped_by", "waiting_rows", "with_waiting_rows"]
+__all__ = ["Waiting", "stopped_by", "told_of_waiting", "waiting_rows", "waiting_sentences", "with_waiting_rows"]
 
 
 def stopped_by(table: Table, blocked: Blocked, findings: Iterable[Finding]) -> dict[int, list[Finding]]:
@@ -71,18 +71,28 @@ def waiting_rows(table: Table, blocked: Blocked) -> list[Waiting]:
 
 def with_waiting_rows(findings: Sequence[Finding], table: Table, blocked: Blocked) -> list[Finding]:
     """Return findings of which errors in a material or class, or that stop everything, say which rows wait."""
-    sheet = shown(table.sheet)
-    sentences: dict[tuple[str, int], str] = {}
-    for waiting in waiting_rows(table, blocked):
-        wait = f"{_rows_words(waiting.rows)} of {sheet} wait{'s' if len(waiting.rows) == 1 else ''}"
-        sentences |= dict.fromkeys(waiting.sources, f" {wait} for {waiting.kind} {shown(waiting.name)}.")
-    every = f" All rows of {sheet} wait for it." if blocked.everything and table.has_entries else ""
+    sentences = waiting_sentences(table.sheet, waiting_rows(table, blocked))
+    every = f" All rows of {shown(table.sheet)} wait for it." if blocked.everything and table.has_entries else ""
     return [
         replace(finding, message=finding.message + sentences.get((finding.sheet, finding.row), every))
-        if finding.level == "error" and finding.cell and finding.sheet != table.sheet
+        if told_of_waiting(finding, table.sheet)
         else finding
         for finding in findings
     ]
+
+
+def told_of_waiting(finding: Finding, sheet: str) -> bool:
+    """Whether a finding says which rows of Variants, the sheet of this name, wait for it."""
+    return finding.level == "error" and bool(finding.cell) and finding.sheet != sheet
+
+
+def waiting_sentences(sheet: str, waiting: Iterable[Waiting]) -> dict[tuple[str, int], str]:
+    """Return which rows wait for a material or class, for the errors in it, by the sheet and row of these."""
+    sentences: dict[tuple[str, int], str] = {}
+    for one in waiting:
+        wait = f"{_rows_words(one.rows)} of {shown(sheet)} wait{'s' if len(one.rows) == 1 else ''}"
+        sentences |= dict.fromkeys(one.sources, f" {wait} for {one.kind} {shown(one.name)}.")
+    return sentences
 
 
 def _rows_words(rows: Sequence[int], most: int = 5) -> str:

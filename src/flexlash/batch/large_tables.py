@@ -1,0 +1,430 @@
+"""A table that is too large for one process: surveyed once, computed in chunks by the workers, joined at the end.
+
+This process hands over bytes and writes files; it parses nothing of the table and holds none of its Results. What came
+of each chunk is kept in a working folder beside the output, so that a run that was stopped can be resumed. The bytes
+that come out are the same for any size of the chunks, any workers and any number of resumptions.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import BinaryIO, NamedTuple, TypeVar
+
+from flexlash import __version__
+from flexlash.analysis.options import Options, Progress
+from flexlash.analysis.outcome import Written
+from flexlash.analysis.run_summary import counted
+from flexlash.batch.answer import Answer
+from flexlash.batch.chunk import (
+    ChunkAnswer,
+    ChunkSummary,
+    ChunkTask,
+    FindingsTask,
+    ReportTask,
+    blank_row,
+    compute_chunk,
+    list_findings,
+    report_worst,
+)
+from flexlash.batch.chunk_totals import Totals
+from flexlash.batch.executor import Executor, Work, WorkerLostError
+from flexlash.outputs.plan import Output, WrittenFile
+from flexlash.outputs.working_folder import Parts, WorkingFolder, working_folder
+from flexlash.outputs.writing import Filling
+from flexlash.reading.excerpt import excerpt
+from flexlash.reading.limited_process import ask
+from flexlash.reading.products import CHECKED_NAME, REPORT_NAME, Companions, made_of
+from flexlash.reading.read import Source
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.reading.refusal import Refusal
+from flexlash.reading.survey import Survey, limits_of_survey, survey
+from flexlash.schema.findings import finding, readable
+
+__all__ = ["CHUNK_ROWS", "LargeTable", "large_table"]
+
+_Result = TypeVar("_Result")
+
+CHUNK_ROWS = 5000
+"""Rows of a chunk: a worker needs about 220 MiB for them."""
+
+_AHEAD = 2
+"""Chunks for each worker that are handed over or finished and not yet taken, so that none waits for this process."""
+
+_LIMIT = "E110"
+"""Code of a file that exceeds a limit: fewer rows may not."""
+
+_RESULTS, _FINDINGS = "-results", "-findings"
+"""What is put behind the name of a large table for what its report has no room for."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LargeTable:
+    """A large table and what is to be done with it.
+
+    `ran` says that its spread is computed, not merely that it is checked. `tables` stand beside it, by the sheet that
+    each replaces, `companions` are the files given with it. `report` is where its Results go, `copy` where its findings
+    go as a workbook, None for each that is not wanted. With `resume` what a stopped run has done is taken up.
+    """
+
+    path: Path
+    ran: bool
+    options: Options
+    tables: Mapping[str, Source] = field(default_factory=dict)
+    companions: Companions | None = None
+    report: Output | None = None
+    copy: Output | None = None
+    resume: bool = False
+
+
+def large_table(
+    table: LargeTable,
+    executor: Executor,
+    progress: Progress | None = None,
+    *,
+    chunk_rows: int = CHUNK_ROWS,
+    work: Work = compute_chunk,
+) -> tuple[Answer, Written]:
+    """Return what came of a large table, and what was written for it; `progress` is told of its rows.
+
+    A report holds the worst rows and names the files beside it that hold all Results and all findings. `work` computes
+    a chunk. A file that is no table, or that changes meanwhile, is answered as refused. Raises OSError when it cannot
+    be opened or an output cannot be written, ProcessFaultError for a fault of the program. Of a marked copy that cannot
+    be written the `fault` of what was written says why.
+    """
+    for output in (table.report, table.copy):
+        if output is not None:
+            output.require()
+    limits = table.options.limits
+    try:
+        found = _asked(table, survey, limits_of_survey(limits, table.path.stat().st_size), table.path, limits)
+    except _RefusedError as refused:
+        with table.path.open("rb") as file:
+            digest = hashlib.file_digest(file, "sha256").hexdigest()
+        return _refused(table, digest, refused.chunk), Written()
+    run = _Run(table, found, executor, progress=progress, chunk_rows=chunk_rows, work=work)
+    return run.carried_out()
+
+
+def _asked(table: LargeTable, task: Callable[..., _Result], limits: ReadingLimits, *arguments: object) -> _Result:
+    """Return what the limited process says of a table; raise _RefusedError where it is refused."""
+    try:
+        return ask(task, limits, *arguments)
+    except Refusal as refusal:
+        found = finding(refusal.code, **{"file": readable(table.path.name), **refusal.facts})
+        raise _RefusedError(ChunkSummary(refusal=found, skipped=found.level == "info")) from refusal
+
+
+def _refused(table: LargeTable, sha256: str, chunk: ChunkSummary) -> Answer:
+    """Return what is said of a table that is no readable submission, or that flexlash itself wrote."""
+    from flexlash.analysis.outcome import Outcome
+    from flexlash.analysis.results import empty_results
+    from flexlash.batch.compute import answer_of
+    from flexlash.reading.raw import Submission
+
+    submission = Submission(name=readable(table.path.name), sha256=sha256, kind="refused")
+    findings = () if chunk.refusal is None else (chunk.refusal,)
+    outcome = Outcome(submission=submission, results=empty_results(), findings=findings, skipped=chunk.skipped)
+    return answer_of(outcome, ran=table.ran)
+
+
+class _Piece(NamedTuple):
+    """What came of rows that were computed together: of a chunk, or of a part of one that was halved."""
+
+    summary: ChunkSummary
+    parts: Mapping[str, bytes]
+
+    @classmethod
+    def of(cls, data: bytes) -> _Piece:
+        """Return what a worker says; raise _RefusedError where the rows are no readable submission."""
+        answer = ChunkAnswer.of(data)
+        summary = ChunkSummary.of(answer.summary)
+        if summary.refusal is not None:
+            raise _RefusedError(summary)
+        parts = {"summary": answer.summary, "results": answer.results, "findings": answer.findings}
+        return cls(summary, {what: part for what, part in parts.items() if part})
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Files:
+    """What was written: the report, the file of all Results where that is another, all findings, their workbook."""
+
+    report: WrittenFile | None = None
+    results: WrittenFile | None = None
+    findings: WrittenFile | None = None
+    copy: WrittenFile | None = None
+    fault: OSError | None = None
+
+    def told(self) -> Written:
+        """Return the files in order, and sentences about what stood in their way."""
+        files = [file for file in (self.report, self.results, self.findings, self.copy) if file is not None]
+        return Written(
+            paths=tuple(file.path for file in files),
+            remarks=tuple(file.remark for file in files if file.remark),
+            marked_copy=self.copy.path if self.copy else None,
+            not_carried=None if self.copy else (),
+            fault=self.fault,
+        )
+
+
+class _RefusedError(Exception):
+    """A chunk is no readable submission, so that the whole table is none."""
+
+    def __init__(self, chunk: ChunkSummary) -> None:
+        super().__init__()
+        self.chunk = chunk
+
+
+class _Run:
+    """One large table on its way; `kept` is what came of its chunks in the last pass, in order."""
+
+    def __init__(
+        self,
+        table: LargeTable,
+        found: Survey,
+        executor: Executor,
+        *,
+        progress: Progress | None,
+        chunk_rows: int,
+        work: Work,
+    ) -> None:
+        self.table = table
+        self.survey = found
+        self.executor = executor
+        self.progress = progress
+        self.chunk_rows = chunk_rows
+        self.work = work
+        self.kept: list[Parts] = []
+
+    @cached_property
+    def _options(self) -> Options:
+        """What a worker is told of the options: nothing of this machine, and nothing that looks at all rows."""
+        return replace(
+            self.table.options, progress=None, marked_copy=None, given=(), jobs=1, strict=False, tolerances=None,
+            materials=None,
+        )  # fmt: skip
+
+    @cached_property
+    def _limits(self) -> ReadingLimits:
+        return limits_of_survey(self.table.options.limits, self.survey.size)
+
+    @property
+    def _ending(self) -> str:
+        """How the file of all Results ends, an empty text where there is none."""
+        report = self.table.report
+        return "" if report is None or not self.table.ran else report.ending if report.ending != ".xlsx" else ".parquet"
+
+    def carried_out(self) -> tuple[Answer, Written]:
+        """Return what came of the table, and what was written for it."""
+        with ExitStack() as stack:
+            target = self.table.report or self.table.copy
+            folder = None
+            if target is not None:
+                folder = stack.enter_context(working_folder(target.path, self._what(), resume=self.table.resume))
+            try:
+                totals = self._computed(folder)
+            except _RefusedError as refused:
+                return _refused(self.table, self.survey.sha256, refused.chunk), Written()
+            files = self._written(totals, folder) if folder else _Files()
+        answer = totals.answer(
+            {"submission": self.survey.name, "sha256": self.survey.sha256, "version": __version__},
+            ran=self.table.ran,
+            fail_over_limit=self.table.options.fail_over_limit,
+            findings_file=files.findings.path.name if files.findings else "",
+        )
+        return answer, files.told()
+
+    def _what(self) -> dict[str, object]:
+        """Return what the parts in a working folder are parts of."""
+        options = {key: value for key, value in vars(self._options).items() if key not in {"fail_over_limit", "limits"}}
+        options |= {"limits": vars(self._options.limits), "strict": self.table.options.strict}
+        sums = {name: hashlib.sha256(source.data).hexdigest() for name, source in self.table.tables.items()}
+        return {
+            "flexlash": __version__,
+            "source": self.survey.sha256,
+            "name": self.survey.name,
+            "options": json.loads(json.dumps(options, default=str, sort_keys=True)),
+            "tables": sums,
+            "ran": self.table.ran,
+            "results": self._ending,
+            "rows": self.chunk_rows,
+        }
+
+    def _computed(self, folder: WorkingFolder | None) -> Totals:
+        """Return what came of all rows; with `strict` they are checked first, and computed if none has an error."""
+        if self.table.ran and self.table.options.strict:
+            totals = self._pass(folder, "check-", spread=False)
+            if totals.computed < totals.rows:
+                totals.hold_back()
+                return totals
+        return self._pass(folder, "", spread=self.table.ran)
+
+    def _pass(self, folder: WorkingFolder | None, prefix: str, *, spread: bool) -> Totals:
+        """Return what came of all chunks, in order; their parts are kept."""
+        totals, done = Totals(), folder.done if folder else {}
+        self.kept.clear()
+        waiting: deque[tuple[range, Future[bytes] | None]] = deque()
+        chunks = self.survey.chunks(self.chunk_rows)
+        try:
+            while True:
+                while len(waiting) < _AHEAD * self.executor.workers and (rows := next(chunks, None)) is not None:
+                    known = _name(prefix, rows) in done
+                    waiting.append((rows, None if known else self._submitted(rows, spread=spread)))
+                if not waiting:
+                    return totals
+                rows, future = waiting.popleft()
+                name = _name(prefix, rows)
+                if future is not None:
+                    pieces = list(self._pieces(rows, future, spread=spread))
+                    summaries = [piece.summary for piece in pieces]
+                    parts = folder.keep(name, [piece.parts for piece in pieces]) if folder else ()
+                else:
+                    parts = done[name]
+                    summaries = [ChunkSummary.of(part["summary"].read_bytes()) for part in parts]
+                self.kept += parts
+                for summary in summaries:
+                    totals.add(summary)
+                if self.progress:
+                    self.progress(min(totals.rows, self.survey.rows), self.survey.rows)
+        finally:
+            for _, future in waiting:
+                if future is not None:
+                    future.cancel()
+
+    def _submitted(self, rows: Sequence[int], *, spread: bool, passed_over: bool = False) -> Future[bytes]:
+        """Return what will come of some rows."""
+        task = ChunkTask(
+            source=self._source(rows),
+            options=self._options,
+            tables=self.table.tables,
+            spread=spread and not passed_over,
+            ending=self._ending if spread else "",
+            passed_over=passed_over,
+        )
+        return self.executor.submit(self.work, task.as_bytes())
+
+    def _source(self, rows: Sequence[int]) -> Source:
+        data = _asked(self.table, excerpt, self._limits, self.table.path, self.survey, rows)
+        return Source(name=self.survey.name, data=data, companions=self.table.companions)
+
+    def _pieces(self, rows: range, future: Future[bytes], *, spread: bool) -> Iterator[_Piece]:
+        """Yield what came of some rows; of their halves where together they stop their process or exceed a limit."""
+        piece = None
+        try:
+            piece = _Piece.of(future.result())
+        except WorkerLostError:
+            if len(rows) <= 1:
+                piece = self._passed_over(rows)
+        except _RefusedError as refused:
+            if len(rows) <= 1 or refused.chunk.refusal is None or refused.chunk.refusal.code != _LIMIT:
+                raise
+        if piece is not None:
+            yield piece
+            return
+        middle = len(rows) // 2
+        halves = [(half, self._submitted(half, spread=spread)) for half in (rows[:middle], rows[middle:])]
+        for half, of_half in halves:
+            yield from self._pieces(half, of_half, spread=spread)
+
+    def _passed_over(self, rows: range) -> _Piece:
+        """Return what is known of a row that stops its process, which may be no more than where it stands."""
+        try:
+            return _Piece.of(self._submitted(rows, spread=self.table.ran, passed_over=True).result())
+        except WorkerLostError:
+            summary, place, findings = blank_row(rows[0])
+            return _Piece(summary, {"summary": summary.as_bytes(), "blank": place, "findings": findings})
+
+    def _written(self, totals: Totals, folder: WorkingFolder) -> _Files:
+        """Write what is wanted of a table that was computed; the report last, since it names the others."""
+        report, copy = self.table.report, self.table.copy
+        files = _Files()
+        if report is not None and self.table.ran and totals.computed:
+            results = report if report.ending == self._ending else self._beside(_RESULTS, self._ending)
+            if results is not None:
+                files = replace(files, results=results.write(self._all_results(totals, folder), "results"))
+        if totals.rules and (beside := self._beside(_FINDINGS, ".csv")) is not None:
+            files = replace(files, findings=beside.write(self._all_findings(totals)))
+        if report is not None and files.results is not None and report.ending != self._ending:
+            files = replace(files, report=report.write(self._report(totals, files), "report"))
+        levels = totals.whole().levels
+        if copy is None or not levels["error"] + levels["warning"]:
+            return files
+        try:
+            copy.require()
+            return replace(files, copy=copy.write(self._listed(totals, files, copy), "checked"))
+        except OSError as fault:
+            return replace(files, fault=fault)
+
+    def _beside(self, what: str, ending: str) -> Output | None:
+        """Return a place beside the report, or beside the workbook of findings, under its name."""
+        output, name = (self.table.report, REPORT_NAME) if self.table.report else (self.table.copy, CHECKED_NAME)
+        if output is None:
+            return None
+        return output.plan.claim(output.path.with_name(f"{made_of(output.wanted, name)}{what}{ending}"))
+
+    def _all_findings(self, totals: Totals) -> Filling:
+        """Return what writes all findings as a table, in the order of the submission."""
+        from flexlash.report.findings_table import findings_header, findings_rows
+
+        def fill(file: BinaryIO) -> None:
+            file.write(findings_header())
+            file.write(findings_rows([*totals.before]))
+            for part in self.kept:
+                if "findings" in part:
+                    with part["findings"].open("rb") as rows:
+                        shutil.copyfileobj(rows, file)
+            file.write(findings_rows([*totals.after]))
+
+        return fill
+
+    def _all_results(self, totals: Totals, folder: WorkingFolder) -> Filling:
+        """Return what writes all Results, joined from their parts."""
+        from flexlash.report.results_pieces import blank_piece, joined
+
+        pieces = []
+        for number, part in enumerate(self.kept):
+            if "blank" in part:
+                known = {"variant": "", "status": "error", "findings": part["blank"].read_text()}
+                pieces.append(folder.put(f"blank-{number}.part", blank_piece(known, totals.columns, self._ending)))
+            elif "results" in part:
+                pieces.append(part["results"])
+        model = next(part["results"] for part in self.kept if "results" in part)
+        findings = [found.as_dictionary() for found in totals.findings]
+        further = {"findings": findings, "findings_by_rule": dict(sorted(totals.rules.items()))}
+        return joined(self._ending, pieces, model, totals.columns, further)
+
+    def _report(self, totals: Totals, files: _Files) -> bytes:
+        """Return the report of the worst rows."""
+        names = [file.path.name if file else "" for file in (files.results, files.findings)]
+        task = ReportTask(
+            source=self._source(sorted(one.row for one in totals.worst)),
+            options=self._options,
+            tables=self.table.tables,
+            whole=totals.whole(*names),
+        )
+        return self.executor.submit(report_worst, task.as_bytes()).result()
+
+    def _listed(self, totals: Totals, files: _Files, copy: Output) -> bytes:
+        """Return the first findings as a workbook that says where the rest is."""
+        levels = totals.whole().levels
+        task = FindingsTask(
+            name=self.survey.name,
+            findings=tuple(totals.findings),
+            counted=", ".join(counted(levels[level], level) for level in ("error", "warning") if levels[level]),
+            findings_file=files.findings.path.name if files.findings else "",
+            macros=copy.ending == ".xlsm",
+        )
+        return self.executor.submit(list_findings, task.as_bytes()).result()
+
+
+def _name(prefix: str, rows: range) -> str:
+    """Return by which name what came of a chunk is kept."""
+    return f"{prefix}{rows.start}-{rows.stop}"
