@@ -9,6 +9,8 @@ from importlib.metadata import version
 
 from flexlash.reading.archive import packed
 from flexlash.reading.elements import MAIN
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.reading.worksheet import Worksheet
 
 __all__ = ["ChangedLibrary", "require_known_libraries"]
 
@@ -54,7 +56,11 @@ def _read() -> object:
     """Return the cells of a small workbook."""
     from flexlash.reading.sheet_cells import SheetCells
 
-    return list(SheetCells(packed(_parts()), None).rows(_SHEET))
+    reader, written = SheetCells(packed(_parts()), None), Worksheet(_SHEET, ReadingLimits(), 1, 0).rows
+    return [
+        (row, [(column, reader.value(kind, style, held)) for column, kind, style, held in cells])
+        for row, cells in written.items()
+    ]
 
 
 def _parts() -> dict[str, bytes]:

@@ -1,4 +1,4 @@
-"""The cells of worksheets, read with openpyxl.
+"""The values of cells, read with openpyxl.
 
 Of openpyxl the parser of cells is used, not its sheets: those fill every gap before a far cell with blank cells.
 """
@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator
 from typing import Any
-from xml.etree.ElementTree import iterparse
+from xml.etree.ElementTree import Element, iterparse
 
 from openpyxl.cell.text import Text
 from openpyxl.reader.excel import ExcelReader
@@ -22,7 +21,6 @@ from flexlash.reading.raw import Percentage
 
 __all__ = ["SheetCells"]
 
-_ROWS, _ROW, _CELL = f"{{{MAIN}}}sheetData", f"{{{MAIN}}}row", f"{{{MAIN}}}c"
 _QUOTED = re.compile(r'"[^"]*"|\\.')
 """Parts of a number format that are shown as they are."""
 
@@ -41,6 +39,25 @@ class _Part:
         return self.file.read(_PIECE)
 
 
+class _Cell:
+    """A cell as an element, of which openpyxl's parser asks no more than this."""
+
+    __slots__ = ("_attributes", "_held")
+
+    def __init__(self, kind: str, style: int, held: str | Element) -> None:
+        self._attributes = {"t": kind, "s": style}
+        self._held = held
+
+    def get(self, name: str, default: object = None) -> object:
+        return self._attributes.get(name, default)
+
+    def findtext(self, *_: object) -> object:
+        return self._held
+
+    def find(self, _: str) -> object:
+        return self._held
+
+
 class SheetCells:
     """A workbook opened for its cells; `strings` is the part of the texts that its cells share."""
 
@@ -53,21 +70,26 @@ class SheetCells:
         apply_stylesheet(reader.archive, self.workbook)
         self.strings = _texts(strings) if strings else []
         self.percentages = _percent_styles(self.workbook)
+        self.parser = WorkSheetParser(
+            None,
+            self.strings,
+            data_only=True,
+            epoch=self.workbook.epoch,
+            date_formats=self.workbook._date_formats,  # noqa: SLF001
+            timedelta_formats=self.workbook._timedelta_formats,  # noqa: SLF001
+        )
 
     def properties(self) -> dict[str, str]:
         """Return the document properties that are no standard ones, by name."""
         return {property_.name: str(property_.value) for property_ in self.workbook.custom_doc_props.props}
 
-    def rows(self, part: bytes) -> Iterator[tuple[int, list[tuple[int, Any]]]]:
-        """Yield the rows of a worksheet that hold cells: a number, and each non-blank cell's column and value."""
-        for number, cells in _Parser(_Part(part), self.strings, self.workbook).parse():
-            if filled := [(cell["column"], self._value(cell)) for cell in cells if cell["value"] is not None]:
-                yield number, filled
-
-    def _value(self, cell: dict[str, Any]) -> Any:
-        """Return a cell's value; one that is shown as a percentage knows it."""
-        is_number = cell["data_type"] == "n" and isinstance(cell["value"], int | float)
-        return Percentage(cell["value"]) if is_number and cell["style_id"] in self.percentages else cell["value"]
+    def value(self, kind: str, style: int, held: str | Element) -> Any:
+        """Return the value of a cell as it is written; one that is shown as a percentage knows it, None is blank."""
+        cell = self.parser.parse_cell(_Cell(kind, style, held))
+        value = cell["value"]
+        if style in self.percentages and cell["data_type"] == "n" and isinstance(value, int | float):
+            return Percentage(value)
+        return value
 
 
 def _texts(part: bytes) -> list[str]:
@@ -92,36 +114,3 @@ def _percent_styles(workbook: Any) -> frozenset[int]:
         if "%" in _QUOTED.sub("", shape):
             percentages.add(index)
     return frozenset(percentages)
-
-
-class _Parser(WorkSheetParser):  # type: ignore[misc]
-    """Reads the cells of a worksheet, and nothing else of it."""
-
-    def __init__(self, part: _Part, strings: list[str], book: Any) -> None:
-        super().__init__(
-            part,
-            strings,
-            data_only=True,
-            epoch=book.epoch,
-            date_formats=book._date_formats,  # noqa: SLF001
-            timedelta_formats=book._timedelta_formats,  # noqa: SLF001
-        )
-
-    def parse(self) -> Iterator[tuple[int, list[dict[str, Any]]]]:
-        """Yield each row's number and cells."""
-        is_over = False
-        # The walk has refused document types and rows elsewhere; the guarded parser that openpyxl takes is slow.
-        for _, element in iterparse(self.source):  # noqa: S314
-            if element.tag == _ROW:
-                yield self.parse_row(element)
-                element.clear()
-            is_over = is_over or element.tag == _ROWS
-            if is_over:
-                element.clear()
-
-    def parse_row(self, row: Any) -> tuple[int, list[dict[str, Any]]]:
-        """Return a row's number and its cells; a row's looks are not kept."""
-        number = row.get("r")
-        self.row_counter: int = self.row_counter + 1 if number is None else int(number)
-        self.col_counter = 0
-        return self.row_counter, [self.parse_cell(cell) for cell in row.iterfind(_CELL)]

@@ -5,9 +5,9 @@ from __future__ import annotations
 import datetime
 import re
 import warnings
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flexlash.reading.archive import packed, unpacked
 from flexlash.reading.libraries import require_known_libraries
@@ -15,7 +15,10 @@ from flexlash.reading.package import Package, open_package
 from flexlash.reading.raw import ERROR_WORDS, ErrorCell, RawSheet, RawValue, Unstored
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
-from flexlash.reading.worksheet import Worksheet
+from flexlash.reading.worksheet import Worksheet, WrittenCell
+
+if TYPE_CHECKING:
+    from flexlash.reading.sheet_cells import SheetCells
 
 __all__ = ["PROPERTY", "Cells", "look_at", "read_workbook"]
 
@@ -72,7 +75,8 @@ def look_at(package: Package, limits: ReadingLimits) -> dict[str, Worksheet]:
     worksheets = {}
     cells = 0
     for sheet in package.sheets:
-        worksheets[sheet.title] = Worksheet(package.parts[sheet.part], limits, package.styles, package.texts)
+        most = limits.cells - cells
+        worksheets[sheet.title] = Worksheet(package.parts[sheet.part], limits, package.styles, package.texts, most)
         cells += worksheets[sheet.title].cells
         limits.require("cells", cells)
     return worksheets
@@ -86,10 +90,7 @@ def _read(data: bytes, package: Package, looked_at: dict[str, Worksheet]) -> Cel
     sheets = []
     for part in package.sheets:
         seen = looked_at[part.title]
-        rows = {
-            row: {column: _plain(value) for column, value in cells}
-            for row, cells in reader.rows(package.parts[part.part])
-        }
+        rows = {row: cells for row, written in seen.rows.items() if (cells := _values(reader, written))}
         for (row, column), text in seen.texts.items():
             rows.setdefault(row, {})[column] = _plain(text)
         for row, column in seen.errors:
@@ -113,6 +114,12 @@ def _read(data: bytes, package: Package, looked_at: dict[str, Worksheet]) -> Cel
         role=properties.get(PROPERTY, ""),
         template_version=properties.get(f"{PROPERTY}_template_version", ""),
     )
+
+
+def _values(reader: SheetCells, written: Iterable[WrittenCell]) -> dict[int, RawValue]:
+    """Return the values of a row's cells by column."""
+    values = ((column, reader.value(kind, style, held)) for column, kind, style, held in written)
+    return {column: _plain(value) for column, value in values if value is not None}
 
 
 def _plain(value: Any) -> RawValue:
