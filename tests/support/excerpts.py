@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from dataclasses import replace
 
@@ -18,15 +17,13 @@ from flexlash.reading.read import Source
 from flexlash.reading.refusal import Refusal
 from flexlash.reading.survey import survey
 from flexlash.report.results_table import results_table
+from flexlash.validation.blocking_errors import waiting_rows, waiting_sentences
+from flexlash.validation.consolidation import shared_by_excerpts
 
 __all__ = ["at_once", "in_excerpts"]
 
 _OF_UNITS = frozenset({"I515", "E219"})
 """What is told of a row of units, which every excerpt holds."""
-
-_EXACT = re.compile(r"has no row for (.*), which class")
-
-_WAITING = re.compile(r" Rows? [\d, to]+(?: and \d+ more)? of Variants waits? for .*")
 
 
 def at_once(path, **options):
@@ -60,24 +57,16 @@ def _merged(outcomes):
     if first.validated is None:
         return first.findings[0].code
     results = pl.concat([results_table(outcome) for outcome in outcomes])
-    own, shared = [], {}
+    own, shared = [], []
     for outcome in outcomes:
         table = outcome.validated.table
+        sentences = waiting_sentences("Variants", waiting_rows(table, outcome.blocked)) if table else {}
         for found in outcome.findings:
             if table and found.sheet == table.sheet and found.row > table.last_head_row and found.code not in _OF_UNITS:
                 own.append(found)
                 continue
-            one = replace(found, message=_WAITING.sub("", found.message))
-            key = (one.code, one.sheet, one.cell, one.column)
-            known = shared.setdefault(key, one)
-            if one.code == "W438":
-                shared[key] = _exact(known, one)
+            sentence = sentences.get((found.sheet, found.row), "")
+            shared = shared_by_excerpts(shared, [replace(found, message=found.message.removesuffix(sentence))])
     submission = first.submission
     facts = (submission.name, submission.kind, submission.sha256, submission.delimiter, submission.encoding)
-    return results, Counter(own), [*shared.values()], facts, sum(len(one.computed) for one in outcomes)
-
-
-def _exact(*found):
-    """Return the warning of a class with all dimensions that it leaves exact, in any order."""
-    words = sorted({word for one in found for word in _EXACT.search(one.message)[1].split(", ")})
-    return replace(found[0], message=_EXACT.sub(f"has no row for {', '.join(words)}, which class", found[0].message))
+    return results, Counter(own), shared, facts, sum(len(one.computed) for one in outcomes)

@@ -181,3 +181,41 @@ def test_every_table_with_findings(name, tmp_path):
     if path.suffix not in {".csv", ".parquet"} or {"elasticity", "from_report", "limits"} & options.keys():
         pytest.skip("no table")
     _same(path, SIZES[:4], **options)
+
+
+BESIDE = "tolerance_class,dimension,lower_deviation,upper_deviation,deviation_unit,grade\n"
+STANDARD = (
+    "standard,wall_thickness,-0.02,0.02,mm,\nstandard,shear_modulus,-1,1,%,\nstandard,hub_fillet_radius,-0.1,0.1,mm,\n"
+)
+CLASSES = {
+    "nearly the name of one in use": STANDARD + "fin,wall_thickness,-0.01,0.01,mm,\n",
+    "leaves dimensions exact": STANDARD + "fine,mean_radius,-0.01,0.01,mm,\n",
+    "faulty": STANDARD + "fine,wall_thickness,0.01,-0.01,mm,\n",
+    "standard is faulty": "standard,wall_thickness,0.01,-0.01,mm,\nfine,wall_thickness,-0.01,0.01,mm,\n",
+}
+MATERIALS = {
+    "faulty": "material,shear_modulus_GPa,yield_MPa\n20Cr2Ni4,,835\n",
+    "in another unit": "material,shear_modulus_GPa,yield_MPa\n20Cr2Ni4,7.99e-7,835\nx,80,800\n",
+}
+
+
+@pytest.mark.parametrize("classes", CLASSES)
+@pytest.mark.parametrize("materials", [None, *MATERIALS])
+def test_with_tables_beside_it(classes, materials, tmp_path):
+    """What classes and materials of tables beside it say of the whole table, its excerpts say together."""
+    changes = (
+        {},
+        {"tolerance_class": "fine"},
+        {"tolerance_class": "fine", "hub_fillet_radius_mm": 1},
+        {},
+        {"torque_Nm": 900},
+    )
+    records = _cups(*changes, {"tolerance_class": "Fine", "material": "x"}, {"tolerance_class": "other"})
+    path, beside, named = tmp_path / "study.csv", tmp_path / "classes.csv", tmp_path / "materials.csv"
+    path.write_text(_text(records), encoding="utf-8")
+    beside.write_text(BESIDE + CLASSES[classes], encoding="utf-8")
+    options = {"tolerances": beside}
+    if materials:
+        named.write_text(MATERIALS[materials], encoding="utf-8")
+        options["materials"] = named
+    _same(path, SIZES[:3], **options)

@@ -28,6 +28,7 @@ from flexlash.schema.findings import Finding
 from flexlash.schema.limit_verdict import VERDICTS, Verdict
 from flexlash.schema.spellings import plain
 from flexlash.validation.blocking_errors import Waiting, told_of_waiting, waiting_sentences
+from flexlash.validation.consolidation import shared_by_excerpts
 
 __all__ = ["Totals"]
 
@@ -45,8 +46,8 @@ class Totals:
         self.method = ""
         self.columns: tuple[str, ...] = ()
         self.worst: list[WorstRow] = []
-        self._before: dict[Finding, None] = {}
-        self._after: dict[Finding, None] = {}
+        self._before: list[Finding] = []
+        self._after: list[Finding] = []
         self._own: list[Finding] = []
         self._groups: dict[tuple[int, str, str], FindingGroup] = {}
         self._verdicts, self._unsettled = Counter[Verdict](), Counter[Verdict]()
@@ -67,8 +68,8 @@ class Totals:
         self._cross_checked |= chunk.cross_checked
         self.worst = sorted((*self.worst, *chunk.worst), key=lambda one: one.order)[:DRAWN]
         # Findings of the whole file come with every chunk.
-        self._before |= dict.fromkeys(chunk.before)
-        self._after |= dict.fromkeys(chunk.after)
+        self._before = shared_by_excerpts(self._before, chunk.before)
+        self._after = shared_by_excerpts(self._after, chunk.after)
         self._own += chunk.own[: FIRST_FINDINGS - len(self._own)]
         self._to_fix += chunk.to_fix
         self._sheet = chunk.sheet or self._sheet

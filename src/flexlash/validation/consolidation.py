@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
-from flexlash.schema.findings import Finding
+from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.findings import CATALOGUE, Finding
 from flexlash.validation.blocking_errors import with_waiting_rows
 from flexlash.validation.unit_mistakes import settled
 from flexlash.validation.validated import Blocked, Validated
 
-__all__ = ["consolidated", "in_order"]
+__all__ = ["consolidated", "in_order", "shared_by_excerpts"]
 
 _UNKNOWN = frozenset({"E209", "E210", "E211", "E307", "E309"})
 """Codes of names that are unknown however they are spelt."""
@@ -60,6 +61,30 @@ def _with_variants(findings: Sequence[Finding], validated: Validated) -> list[Fi
         else found
         for found in findings
     ]
+
+
+def shared_by_excerpts(earlier: Iterable[Finding], later: Iterable[Finding]) -> list[Finding]:
+    """Return the findings that are not at rows of excerpts of one table, each once, in the order of the excerpts.
+
+    A backlash that no flexspline has is told, at its material, of the first row that shows it; a class that leaves
+    dimensions exact leaves those that it leaves in any excerpt.
+    """
+    found: dict[object, Finding] = {}
+    for one in (*earlier, *later):
+        key = (one.code, one.sheet, one.cell) if one.code in {"E324", "W438"} else one
+        known = found.setdefault(key, one)
+        if one.code == "W438" and known != one:
+            found[key] = _both_exact(known, one)
+    return list(found.values())
+
+
+def _both_exact(known: Finding, other: Finding) -> Finding:
+    """Return the warning of a class with the dimensions of two such warnings."""
+    before, _, after = CATALOGUE["W438"].message.partition("{detail}")
+    start = len(before.format(place=known.place, value=known.value))
+    words = {word for one in (known, other) for word in one.message[start : -len(after)].split(", ")}
+    ordered = ", ".join(column.plain_name for column in DIMENSIONS.values() if column.plain_name in words)
+    return replace(known, message=known.message[:start] + ordered + after)
 
 
 def in_order(findings: Iterable[Finding], sheets: Iterable[str]) -> tuple[Finding, ...]:
