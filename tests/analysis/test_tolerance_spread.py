@@ -38,7 +38,7 @@ def test_every_index_is_yielded_once_with_its_own_row(here):
 
 def test_no_worker_is_started_where_rows_or_jobs_are_few(here, monkeypatch):
     """Rows fewer than a worker is worth start none whatever jobs says, and one job none however many they are."""
-    monkeypatch.setattr(workers, "started", None)
+    monkeypatch.setattr(workers, "Workers", None)
     assert _statistics(jobs=8) == here
     monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 1)
     assert _statistics(jobs=1) == here
@@ -51,8 +51,8 @@ def test_worker_processes_give_the_same_bits(monkeypatch, sampling):
     """Two worker processes give every row the bits that it has here."""
     monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 1)
     asked = []
-    start = workers.started
-    monkeypatch.setattr(workers, "started", lambda count: asked.append(count) or start(count))
+    start = workers.Workers
+    monkeypatch.setattr(workers, "Workers", lambda count: asked.append(count) or start(count))
     elsewhere = _statistics(sampling, jobs=2)
     assert asked == [2]
     assert elsewhere == _statistics(sampling)
@@ -64,9 +64,9 @@ def test_workers_are_no_more_than_are_worth_it(monkeypatch):
 
     def refuse(count):
         asked.append(count)
-        raise OSError
+        raise workers.WorkerLostError("none can be started")
 
-    monkeypatch.setattr(workers, "started", refuse)
+    monkeypatch.setattr(workers, "Workers", refuse)
     monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 7)
     for jobs in (2, 3, 8):
         list(row_statistics(ROWS, plan("sobol", 16), jobs))

@@ -87,9 +87,9 @@ def test_worker_processes_change_no_bit(table, sound, monkeypatch, how):
     path = table(_many(sound))
     here = run(path, **HOW[how]).results
     asked = []
-    start = workers.started
+    start = workers.Workers
     monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 1)
-    monkeypatch.setattr(workers, "started", lambda count: asked.append(count) or start(count))
+    monkeypatch.setattr(workers, "Workers", lambda count: asked.append(count) or start(count))
     assert run(path, **HOW[how], jobs=2).results.equals(here)
     assert asked == [2]
 

@@ -156,7 +156,8 @@ async def _connected(
         client: Any = Client(at, asynchronous=True, set_as_default=False, timeout=_CONNECTING)  # type: ignore[no-untyped-call]
         stack.push_async_callback(client.close)
         await client
-    except OSError as fault:
+    except (OSError, TypeError) as fault:
+        # A TypeError says that tls:// was asked for without certificates.
         raise ClusterError(f"the Dask scheduler at {address} is not reachable: {fault}") from fault
     try:
         await client.wait_for_workers(1, timeout=_CONNECTING)
