@@ -39,6 +39,6 @@ class HereExecutor:
 
 
 @contextmanager
-def workers_here(jobs):  # noqa: ARG001
+def workers_here(jobs, scheduler=None):  # noqa: ARG001
     """Take the place of worker processes."""
     yield HereExecutor()

@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 
 from flexlash import __version__
 from flexlash.batch.dask_work import OtherVersion, carried_out_here, end_processes
-from flexlash.batch.executor import Executor, Work, WorkerLostError
+from flexlash.batch.executor import ClusterError, Executor, Work, WorkerLostError
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.findings import shown
 
@@ -56,10 +56,6 @@ class MissingDaskError(ModuleNotFoundError):
 
     def __init__(self) -> None:
         super().__init__("A scheduler needs Dask: pip install 'flexlash[dask]'.")
-
-
-class ClusterError(OSError):
-    """A scheduler or its workers cannot be reached or cannot do the work."""
 
 
 @dataclass(frozen=True, kw_only=True)

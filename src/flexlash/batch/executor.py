@@ -9,10 +9,14 @@ from typing import Protocol
 
 from flexlash.workers import WorkerLostError
 
-__all__ = ["Executor", "Work", "WorkerLostError", "in_order"]
+__all__ = ["ClusterError", "Executor", "Work", "WorkerLostError", "in_order"]
 
 Work = Callable[[bytes], bytes]
 """A function of a module, so that it can travel by its name."""
+
+
+class ClusterError(OSError):
+    """A scheduler or its workers cannot be reached or cannot do the work."""
 
 
 class Executor(Protocol):

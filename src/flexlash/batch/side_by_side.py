@@ -18,7 +18,7 @@ from flexlash.analysis.options import Options
 from flexlash.analysis.outcome import Written
 from flexlash.batch.answer import Answer, Command, Task
 from flexlash.batch.ended import Ended, fault_of, fault_words
-from flexlash.batch.executor import Executor, WorkerLostError
+from flexlash.batch.executor import ClusterError, Executor, WorkerLostError
 from flexlash.batch.given_files import Given
 from flexlash.batch.manifest import Manifest
 from flexlash.outputs.delivery import with_file
@@ -140,6 +140,9 @@ class _SideBySide:
         path = wanted.given.path
         try:
             ended = step()
+        except ClusterError:
+            # Nobody is there to compute the others either.
+            raise
         except Refusal as refusal:
             found = finding(refusal.code, **{"file": readable(path.name), **refusal.facts})
             ended = Ended.failing(path, refusal.exit_code, found.message, found)

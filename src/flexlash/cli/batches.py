@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -53,11 +53,23 @@ def to_be_told(given: GivenFiles, *, as_json: bool, quiet: bool, verbose: bool, 
     return told
 
 
-def workers(jobs: int) -> AbstractContextManager[Executor]:
-    """Return the workers that compute: processes of this machine."""
-    from flexlash.batch.local_executor import local_executor
+@contextmanager
+def workers(jobs: int, scheduler: str | None = None) -> Iterator[Executor]:
+    """Give the workers that compute: so many processes of this machine, or those of a Dask scheduler."""
+    if scheduler is None:
+        from flexlash.batch.local_executor import local_executor
 
-    return local_executor(jobs)
+        with local_executor(jobs) as executor:
+            yield executor
+        return
+    from flexlash.batch.dask_executor import MissingDaskError, dask_executor
+
+    with ExitStack() as stack:
+        try:
+            executor = stack.enter_context(dask_executor(scheduler, jobs))
+        except (ValueError, MissingDaskError) as fault:
+            raise click.UsageError(f"--scheduler: {fault}.".replace("..", ".")) from fault
+        yield executor
 
 
 def carried_out(
@@ -68,10 +80,11 @@ def carried_out(
     told: Submissions,
     *,
     resume: bool = False,
+    scheduler: str | None = None,
 ) -> ExitCode:
     """Compute, check or mend submissions side by side, write what is wanted, tell how each ended; return the code."""
     # Workers load their libraries while this process loads its own.
-    with workers(max(1, min(options.jobs, len(given.submissions)))) as executor:
+    with workers(max(1, min(options.jobs, len(given.submissions))), scheduler) as executor:
         from flexlash.batch.side_by_side import Batch, Wanted, side_by_side, tables_or_why
 
         tables = tables_or_why(options)

@@ -39,6 +39,10 @@ __all__ = ["run"]
 @click.option(
     "--resume", is_flag=True, help="Go on in the folder OUT where an earlier run was stopped; what is done stays."
 )
+@click.option(
+    "--scheduler", metavar="ADDRESS",
+    help="Compute on the workers of a Dask scheduler, such as tcp://10.0.0.1:8786; local starts one here.",
+)  # fmt: skip
 @JSON
 @option("from_report")
 @QUIET
@@ -58,6 +62,7 @@ def run(
     from_report: bool,
     recursive: bool,
     resume: bool,
+    scheduler: str | None,
     as_json: bool,
     quiet: bool,
     verbose: bool,
@@ -89,7 +94,7 @@ def run(
         raise click.UsageError("--resume needs a folder as OUT, in which an earlier run was stopped.")
     told = to_be_told(given, as_json=as_json, quiet=quiet, verbose=verbose, ran=True)
     chosen = Options.of("run()", options)
-    sys.exit(carried_out("run", given, outputs, chosen, told, resume=resume))
+    sys.exit(carried_out("run", given, outputs, chosen, told, resume=resume, scheduler=scheduler))
 
 
 def _outputs(
