@@ -119,7 +119,7 @@ def _remarks(
     for found in findings:
         if found.sheet == table.sheet and found.cell and found.level != "info":
             own[found.row].append(found)
-    records = []
+    records, computed = [], frozenset(computed)
     for row in table.frame["row"]:
         named = [f"{found.code} {found.cell}" for found in own[row]]
         if row not in computed and not any(found.level == "error" for found in own[row]):

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 import re
+from bisect import bisect_left
+from collections.abc import Callable
 from functools import cache
+from typing import TypeVar
 
 import numpy as np
 
 from flexlash.schema import tables
-from flexlash.schema.arrays import Array, Quantity
+from flexlash.schema.arrays import Array
 
 __all__ = ["deviations", "deviations_of", "is_grade"]
 
@@ -27,21 +30,28 @@ def is_grade(text: str) -> bool:
 
 
 @cache
-def _entries(table: str, column: str) -> tuple[Array, Array, Array]:
+def _entries(table: str, column: str) -> tuple[list[float], list[float], list[float]]:
     """Return the bounds of a table's sizes [mm], over the first and up to the second, and the entries between them.
 
     The last, without end, stands for what is beyond the table; an entry that is not there is NaN.
     """
     rows = [(float(row["over_mm"]), float(row["up_to_mm"]), float(row[column] or "nan")) for row in tables.rows(table)]
-    over, up_to, entries = np.array([*rows, (np.inf, np.inf, np.nan)]).T
-    return over, up_to, entries
+    over, up_to, entries = zip(*rows, (math.inf, math.inf, math.nan), strict=True)
+    return [*over], [*up_to], [*entries]
 
 
-def _cell(table: str, column: str, size: Quantity) -> Array:
-    """Entries for sizes [mm] over one bound, up to and including the next; NaN where there is none."""
+def _cell(table: str, column: str, size: float) -> float:
+    """Entry for a size [mm] over one bound, up to and including the next; NaN where there is none."""
     over, up_to, entries = _entries(table, column)
-    place = np.searchsorted(up_to, size)
-    return np.where((over[place] < size) | ((over[place] == size) & (over[place] > 0)), entries[place], np.nan)
+    place = bisect_left(up_to, size)
+    return entries[place] if over[place] < size or over[place] == size > 0 else math.nan
+
+
+def _cells(table: str, column: str, sizes: Array) -> Array:
+    """Entries for many sizes [mm], as `_cell`."""
+    over, up_to, entries = (np.array(bounds) for bounds in _entries(table, column))
+    place = np.searchsorted(up_to, sizes)
+    return np.where((over[place] < sizes) | ((over[place] == sizes) & (sizes > 0)), entries[place], np.nan)
 
 
 def deviations(grade: str, size: float) -> tuple[float, float] | None:
@@ -54,7 +64,7 @@ def deviations(grade: str, size: float) -> tuple[float, float] | None:
     >>> deviations("2768-m", 0.0016)
     (-0.0001, 0.0001)
     """
-    lower, upper = (float(one) for one in _between(grade, round(size * 1e3, 9)))
+    lower, upper = _between(grade, _cell, round(size * 1e3, 9))
     return None if math.isnan(lower + upper) else (lower, upper)
 
 
@@ -65,18 +75,21 @@ def deviations_of(grade: str, sizes: Array) -> tuple[Array, Array]:
     (array([ 0., nan]), array([4.e-05,    nan]))
     """
     # Not by NumPy, which rounds a half otherwise.
-    return _between(grade, np.array([round(size, 9) for size in (sizes * 1e3).tolist()]))
+    return _between(grade, _cells, np.array([round(size, 9) for size in (sizes * 1e3).tolist()]))
 
 
-def _between(grade: str, millimetres: Quantity) -> tuple[Array, Array]:
+_Sizes = TypeVar("_Sizes", float, Array)
+
+
+def _between(grade: str, entries: Callable[[str, str, _Sizes], _Sizes], millimetres: _Sizes) -> tuple[_Sizes, _Sizes]:
     """Return lower and upper deviations [m] at sizes [mm], NaN if untabulated."""
     if general := _GENERAL.fullmatch(grade):
-        half = _cell("iso2768", general[1], millimetres) / 1e3
+        half = entries("iso2768", general[1], millimetres) / 1e3
         return -half, half
     fundamental = _GRADE.fullmatch(grade)
     if fundamental is None:
         raise ValueError(f"{grade!r} is not a tolerance grade")
-    width = _cell("iso286", f"IT{fundamental[2]}", millimetres) / 1e6
+    width = entries("iso286", f"IT{fundamental[2]}", millimetres) / 1e6
     nothing = 0 * width
     if fundamental[1] == "h":
         return -width, nothing

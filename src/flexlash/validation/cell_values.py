@@ -13,7 +13,7 @@ from flexlash.reading.raw import CommaNumber, DoubtfulNumber, ErrorCell, Percent
 from flexlash.schema.columns import Column
 from flexlash.validation.number_texts import Meant, Measure, meant_number
 
-__all__ = ["Fault", "as_number", "as_text", "is_no_value", "no_value_facts"]
+__all__ = ["Fault", "as_number", "as_text", "is_no_value", "no_value_facts", "plain_number"]
 
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII)
 _TYPED_THIS_YEAR = 2020
@@ -86,6 +86,15 @@ def _typed_before(value: object) -> str:
     return f"{value.month}.{value.year % 100:02d}" if value.day == 1 else ""
 
 
+def plain_number(value: RawValue, *, from_text: bool) -> float | None:
+    """Return a cell that is a finite number and nothing else; None for one that takes a closer look."""
+    kind = type(value)
+    if not (kind is float or kind is int or (from_text and kind is str and _NUMBER.fullmatch(str(value).strip()))):
+        return None
+    number = float(value)  # type: ignore[arg-type]
+    return number if math.isfinite(number) else None
+
+
 def as_number(
     value: RawValue, column: Column | None = None, *, from_text: bool, measure: Measure | None = None
 ) -> float | Fault:
@@ -145,8 +154,12 @@ def as_text(value: RawValue, longest: int) -> str | Fault:
         if not math.isfinite(value):
             return Fault(code="E212", value=value)
         return str(int(value)) if value == int(value) else repr(value)
-    spaced = " ".join(unicodedata.normalize("NFC", str(value)).split())
-    text = "".join(character for character in spaced if unicodedata.category(character) not in {"Cc", "Cf", "Cs"})
+    text = str(value)
+    if text.isascii() and text.isprintable():
+        text = " ".join(text.split())
+    else:
+        spaced = " ".join(unicodedata.normalize("NFC", text).split())
+        text = "".join(character for character in spaced if unicodedata.category(character) not in {"Cc", "Cf", "Cs"})
     if len(text) <= longest:
         return text
     return Fault(code="E222", value=text, facts={"found": f"{len(text):,}", "limit": f"{longest:,}"})

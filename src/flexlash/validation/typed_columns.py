@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,7 +14,7 @@ from flexlash.schema.cell_addresses import CellAddress, column_letters
 from flexlash.schema.columns import DIMENSIONS, Column, columns_of, naming_column
 from flexlash.schema.header_names import BLANK
 from flexlash.schema.units import find_unit
-from flexlash.validation.cell_values import Fault, as_number, as_text
+from flexlash.validation.cell_values import Fault, as_number, as_text, plain_number
 from flexlash.validation.headers import find_headings, plain
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.number_texts import Measure
@@ -49,6 +49,7 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
         whole=sheet.whole,
     )
     read = {index: columns[key] for key, index in heading.columns.items()}
+    exact = {index for index, column in read.items() if column.is_number and heading.factors[column.key] == 1}
     records: list[dict[str, Any]] = []
     first_key = naming_column(schema).key
     for number, cells, bare in entries_of(table, sheet, units, ledger):
@@ -62,9 +63,13 @@ def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
         for index, value in cells.items():
             if surplus and index != heading.columns.get(first_key):
                 continue
-            if index in read:
-                cell = _Cell(table=table, column=read[index], row=number, value=value, beside=cells)
-                record[read[index].key] = _typed(cell, ledger)
+            if (column := read.get(index)) is not None:
+                plainly = plain_number(value, from_text=table.numbers_are_texts) if index in exact else None
+                record[column.key] = (
+                    _typed(_Cell(table=table, column=column, row=number, value=value, beside=cells), ledger)
+                    if plainly is None
+                    else plainly
+                )
             elif index in heading.doubtful:
                 _spoil(ledger, schema, number)
                 table.faulty.add((number, heading.doubtful[index]))
@@ -140,7 +145,8 @@ def _data_rows(
             and not (isinstance(value, str) and not value.strip(BLANK))
             and not (isinstance(value, Unstored) and index not in ours)
         }
-        entered = {index: value for index, value in cells.items() if index in named}
+        # Held once with the sheet where nothing is left out.
+        entered = every if every.keys() <= named and len(cells) == len(every) else _only(cells, named)
         if len(entered) > 1 or first in entered:
             for index in cells.keys() - named - {*surplus_of(sheet, heading, number)}:
                 nameless.setdefault(index, number)
@@ -154,6 +160,10 @@ def _data_rows(
     for index, number in sorted(nameless.items()) if first_key != _MEANT_BESIDE else ():
         address = CellAddress(row=number, column=index)
         ledger.add("I509", sheet=sheet.name, cell=address, value=column_letters(index))
+
+
+def _only(cells: Mapping[int, RawValue], columns: Collection[int]) -> dict[int, RawValue]:
+    return {index: value for index, value in cells.items() if index in columns}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -239,6 +249,8 @@ def longest_text(column: Column) -> int:
 
 def _choice(column: Column, text: str) -> str:
     """Return the list entry that a text names in other case or spacing, or the text itself."""
+    if text in column.choices:
+        return text
     for choice in column.choices:
         if plain(choice) == plain(text):
             return choice

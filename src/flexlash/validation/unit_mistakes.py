@@ -7,6 +7,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
+import polars as pl
+
 from flexlash.schema.columns import columns_of
 from flexlash.schema.findings import Finding, finding, spelled_out
 from flexlash.schema.spellings import plain
@@ -83,10 +85,24 @@ def find_unit_mistakes(table: Table, ledger: Ledger) -> None:
     faulty: dict[int, dict[str, None]] = defaultdict(dict)
     for row, key in table.faulty:
         faulty[row][key] = None
-    for record in table.frame.iter_rows(named=True):
+    frame = (
+        table.frame
+        if table.schema == "Materials"
+        else table.frame.filter(_may_be_mistaken() | pl.col("row").is_in([*faulty]))
+    )
+    for record in frame.iter_rows(named=True):
         sound = {**record, **faulty.get(record["row"], {})}
         for mistaken in find(sound):
             ledger.unit_mistakes[table.sheet, record["row"], mistaken[0]] = _unit_mistake(table, sound, mistaken)
+
+
+def _may_be_mistaken() -> pl.Expr:
+    """Return where `_variant_factors` may find a cell of a row: its numbers are not all what they can be."""
+    radius = pl.coalesce(pl.col(key) * share for key, share in _RADII.items())
+    beside = [(pl.col(key) / radius).is_between(*span) | (pl.col(key) == 0) for key, span in SHARES.items()]
+    torques = [pl.col(key) / radius.pow(3) for key in _TORQUES]
+    usual = [(torque > 2 * _FEEBLE[1]) & (torque < _UNUSUAL_TORQUE / 2) for torque in torques]
+    return ~pl.all_horizontal(radius.is_between(*_REACH), *(one.fill_null(value=True) for one in (*beside, *usual)))
 
 
 def _facts(mistake: UnitMistake) -> dict[str, Any]:

@@ -144,10 +144,11 @@ def _check_references(table: Table, ledger: Ledger, key: str, code: str, names: 
     known, faulty = spelt_alike(names), ledger.materials if key == "material" else ledger.classes
     named = table.whole.named[key] if table.whole else table.frame[key].drop_nulls().n_unique()
     meant = _Meant(names, known, few=named <= min(affordable(names), MOST_NAMES))
+    spellings = {name: plain(name) for name in table.frame[key].drop_nulls().unique()}
     for row, value in table.frame.select("row", key).iter_rows():
         if value is None or (row, key) in table.faulty:
             continue
-        spelling = plain(value)
+        spelling = spellings[value]
         if spelling not in known:
             _report(table, ledger, row=row, key=key, value=value, **_unknown(key, code, value, meant))
         elif spelling in faulty:

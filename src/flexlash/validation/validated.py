@@ -80,9 +80,9 @@ class Table:
 
     def partners(self, rows: Sequence[int], key: str) -> Iterator[tuple[int, str]]:
         """Yield rows that hold the same entry, each with the addresses of the others; of many rows, those of all."""
-        every = cell_ranges([self.address(row, key) for row in rows])
+        few = len(rows) <= MANY
+        every = "" if few else cell_ranges([self.address(row, key) for row in rows])
         for row in rows if len(rows) > 1 else ():
-            few = len(rows) <= MANY
             yield row, cell_ranges([self.address(other, key) for other in rows if other != row]) if few else every
 
 
