@@ -15,12 +15,14 @@ from pathlib import Path
 import openpyxl
 import polars as pl
 import pytest
-from executors import Here
 from filled import SOUND
+from here import HereExecutor
 from poisoned import POISON, lost_at_poison, lost_at_reading_poison
 
 from flexlash.analysis.examination import tables_beside
 from flexlash.analysis.options import Options
+from flexlash.analysis.run_summary import worst_first
+from flexlash.batch.compute import answer_of
 from flexlash.batch.large_tables import LargeTable, large_table
 from flexlash.batch.local_executor import local_executor
 from flexlash.outputs.plan import Plan
@@ -101,7 +103,7 @@ def _table(path, output=None, *, ran=True, copy=None, resume=False, **options):
 
 
 def _in_chunks(path, output, rows, executor=None, **wanted):
-    return large_table(_table(path, output, **wanted), executor or Here(), chunk_rows=rows)
+    return large_table(_table(path, output, **wanted), executor or HereExecutor(), chunk_rows=rows)
 
 
 def _names(folder):
@@ -163,12 +165,9 @@ def test_the_screen_says_the_same(tmp_path):
     assert lines[0] == lines[1]
     for name in ("words", "details", "worst", "by_rule", "exit_code"):
         assert getattr(answers[0], name) == getattr(answers[1], name), name
-    from flexlash.analysis.run_summary import detail_lines, state_words, worst_first
-
-    whole = run(path, **FEW)
-    assert answers[0].words == state_words(whole, ran=True)
-    assert list(answers[0].details) == detail_lines(whole, ran=True)
-    assert [one.variant for one in answers[0].worst] == [row["variant"] for row in worst_first(whole)[:3]]
+    expected = answer_of(run(path, **FEW), ran=True)
+    for name in ("words", "details", "worst", "by_rule", "exit_code"):
+        assert getattr(answers[0], name) == getattr(expected, name), name
 
 
 def test_cross_check_and_tables_beside(tmp_path):
@@ -213,8 +212,6 @@ def test_a_report_of_the_worst_with_everything_beside(tmp_path, monkeypatch):
     assert [stamp_at(tmp_path / name) for name in beside[:2]] == ["report", "results"]
     text = zipfile.ZipFile(report).read("xl/sharedStrings.xml").decode()
     assert "gears-results.parquet" in text
-    from flexlash.analysis.run_summary import worst_first
-
     for row in worst_first(whole)[:10]:
         assert f">{row['variant']}<" in text
     assert f">{worst_first(whole)[12]['variant']}<" not in text
@@ -319,7 +316,7 @@ def test_progress_is_told_in_rows(tmp_path):
     """Progress rises in rows and ends with all of them."""
     path = _written(tmp_path / "gears.csv", _rows(30, faulty=False))
     told = []
-    large_table(_table(path, tmp_path / "out.csv"), Here(), lambda *steps: told.append(steps), chunk_rows=7)
+    large_table(_table(path, tmp_path / "out.csv"), HereExecutor(), lambda *steps: told.append(steps), chunk_rows=7)
     assert told == [(7, 30), (14, 30), (21, 30), (28, 30), (30, 30)]
 
 
@@ -335,7 +332,7 @@ def test_a_table_that_changes_between_the_passes_is_refused(how, tmp_path):
         text = path.read_text(encoding="utf-8")
         path.write_text(text.replace("V-39", "W-39") if how == "altered" else text + text.splitlines()[-1] + "\n")
 
-    answer, written = large_table(_table(path, tmp_path / "out.csv"), Here(), change, chunk_rows=7)
+    answer, written = large_table(_table(path, tmp_path / "out.csv"), HereExecutor(), change, chunk_rows=7)
     (found,) = answer.told["findings"]
     assert "gears.csv cannot be read as a submission: it has changed since its first reading" in found["message"]
     assert (answer.refused, answer.exit_code, written.paths) == (True, ExitCode.NOTHING, ())

@@ -12,6 +12,7 @@ from flexlash.feedback.fixing.fix import Fix
 from flexlash.reading.inside_limits import Fault
 from flexlash.reading.read import Source
 from flexlash.schema.exit_codes import ExitCode
+from flexlash.schema.number_words import share_words
 
 __all__ = ["Answer", "Command", "FileBytes", "Task", "Travelling", "WorstVariant"]
 
@@ -72,6 +73,18 @@ class WorstVariant:
     backlash_limit_arcmin: float | None
     probability_over_limit: float | None
     over_limit: str = ""
+
+    @classmethod
+    def of(cls, row: Mapping[str, Any]) -> Self:
+        """Return the variant of a row of Results."""
+        limit = row["backlash_limit_arcmin"]
+        return cls(
+            variant=row["variant"],
+            p99_865_arcmin=row["p99_865_arcmin"],
+            backlash_limit_arcmin=limit,
+            probability_over_limit=None if limit is None else row["probability_over_limit"],
+            over_limit="" if limit is None else share_words(row),
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

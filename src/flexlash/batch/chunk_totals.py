@@ -169,17 +169,7 @@ class Totals:
             words=words_of_state(counts, fixes, self._waiting_words(), ran=ran),
             details=tuple(details),
             by_rule=self.rules,
-            worst=tuple(
-                WorstVariant(
-                    variant=row["variant"],
-                    p99_865_arcmin=row["p99_865_arcmin"],
-                    backlash_limit_arcmin=row["backlash_limit_arcmin"],
-                    probability_over_limit=None
-                    if row["backlash_limit_arcmin"] is None
-                    else row["probability_over_limit"],
-                )
-                for row in self._named()
-            ),
+            worst=tuple(map(WorstVariant.of, self._named())),
         )
 
     def _named(self) -> list[dict[str, Any]]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
 
 from flexlash.analysis.examination import examined
 from flexlash.analysis.outcome import Outcome
@@ -16,7 +15,6 @@ from flexlash.pipeline import computed
 from flexlash.reading.inside_limits import Fault
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.schema.exit_codes import ExitCode
-from flexlash.schema.number_words import share_words
 
 __all__ = ["answer_of", "compute"]
 
@@ -69,7 +67,7 @@ def answer_of(
         words=state_words(outcome, ran=ran),
         details=tuple(detail_lines(outcome, ran=ran)),
         by_rule=Counter(found.code for found in outcome.findings),
-        worst=tuple(_worst(outcome)) if ran else (),
+        worst=tuple(map(WorstVariant.of, worst_first(outcome, _WORST))) if ran else (),
         file=file,
         copy=copy,
         fixes=fixes,
@@ -94,16 +92,3 @@ def _copy(outcome: Outcome, task: Task) -> FileBytes | None:
         return None
     data, not_carried = marked(outcome, task.options.limits, macros=task.copy == ".xlsm")
     return FileBytes(data=data, role="checked", not_carried=not_carried)
-
-
-def _worst(outcome: Outcome) -> Iterator[WorstVariant]:
-    """Yield the worst of the computed variants."""
-    for row in worst_first(outcome, _WORST):
-        limit = row["backlash_limit_arcmin"]
-        yield WorstVariant(
-            variant=row["variant"],
-            p99_865_arcmin=row["p99_865_arcmin"],
-            backlash_limit_arcmin=limit,
-            probability_over_limit=None if limit is None else row["probability_over_limit"],
-            over_limit="" if limit is None else share_words(row),
-        )
