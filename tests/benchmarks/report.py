@@ -30,6 +30,7 @@ from xlsxwriter.url import Url
 from flexlash.analysis.outcome import Outcome
 from flexlash.feedback.template.template_workbook import study
 from flexlash.pipeline import run
+from flexlash.report.layout.given_rows import GivenRows
 from flexlash.report.workbook import report_bytes
 
 RUNS = 3
@@ -66,12 +67,14 @@ class Noted:
                 self.formats.append(dict(properties))
             return made
 
-        def noting_sheet(workbook: Any, name: str) -> Any:
-            sheet = add_worksheet(workbook, name)
+        def noting_sheet(workbook: Any, name: str, kind: Any = None) -> Any:
+            sheet = add_worksheet(workbook, name, kind)
             calls: list[tuple[Any, ...]] = []
             self.sheets.append((name, calls))
             for writer in WRITERS:
                 setattr(sheet, writer, self._noting(getattr(sheet, writer), calls, writer))
+            if isinstance(sheet, GivenRows):
+                sheet.give = self._noting_rows(sheet.give, calls)
             return sheet
 
         xlsxwriter.Workbook.add_format, xlsxwriter.Workbook.add_worksheet = noting_format, noting_sheet
@@ -88,6 +91,21 @@ class Noted:
             calls.append((name, row, column, kept, self._places.get(id(style), -1), more))
             self.cells += 1
             return write(row, column, value, style, *rest)
+
+        return noting
+
+    def _noting_rows(self, give: Callable[..., None], calls: list[tuple[Any, ...]]) -> Callable[..., None]:
+        """Return what takes rows at once and notes their cells, row by row."""
+
+        def noting(first: int, columns: Any, heights: Any) -> None:
+            for offset in range(len(columns[0][0])):
+                for column, (values, styles) in enumerate(columns):
+                    if (value := values[offset]) is not None:
+                        writer = "write_string" if isinstance(value, str) else "write_number"
+                        place = self._places[id(styles[offset])]
+                        calls.append((writer, first + offset, column, value, place, ()))
+                        self.cells += 1
+            give(first, columns, heights)
 
         return noting
 

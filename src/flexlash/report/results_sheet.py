@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.extent import extent_of
+from flexlash.report.layout.given_rows import GivenRows
 from flexlash.report.layout.links import (
     FIRST_ROW,
     finding_rows,
@@ -85,11 +86,11 @@ def _is_detail(column: Column) -> bool:
 
 def write_results(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
     """Write the Results sheet; columns of the submission that flexlash does not use stand at its right end."""
-    sheet = book.sheet("Results")
-    results, first = outcome.results, first_result(outcome)
+    results, first, extent = outcome.results, first_result(outcome), extent_of(outcome)
+    sheet = book.sheet("Results", kind=GivenRows) if extent.large else book.sheet("Results")
     labels = first - FIRST_ROW
     if labels:
-        sheet.write_string(0, 0, extent_of(outcome).note, book.format("quiet"))
+        sheet.write_string(0, 0, extent.note, book.format("quiet"))
     columns = [column for column in result_columns(cross_check=True, elasticity=True) if column.key in results.columns]
     widths = [_width(results, column) for column in columns]
     for index, (column, width) in enumerate(zip(columns, widths, strict=True)):
@@ -131,10 +132,13 @@ def _write_heading(book: Book, sheet: Any, cell: tuple[int, int], texts: tuple[s
 
 
 def _write_cells(book: Book, sheet: Any, results: pl.DataFrame, columns: Sequence[Column], first: int) -> None:
-    """Write the table row by row, in which order XlsxWriter is quickest."""
+    """Write the table: all rows of a large one at once, else row by row, in which order XlsxWriter is quickest."""
     lists = [stored_values(results, column) for column in columns]
     styles = [_styles(book, results, column) for column in columns]
     heights = _heights(results, columns, first)
+    if isinstance(sheet, GivenRows):
+        sheet.give(first, list(zip(lists, styles, strict=True)), heights)
+        return
     write_number, write_string = sheet.write_number, sheet.write_string
     for row, (values, formats) in enumerate(
         zip(zip(*lists, strict=True), zip(*styles, strict=True), strict=True), start=first

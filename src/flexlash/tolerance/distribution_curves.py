@@ -81,9 +81,9 @@ def _level(output: float) -> Curve:
 
 def _of_lines(spread: Spread, median_error: float) -> Curve:
     """Return the curve that lines give; their errors are widened as that of the row's median was."""
-    outputs = spread.quantile(_PROBABILITIES)
+    outputs, errors = spread.quantile(_PROBABILITIES), spread.standard_error(_PROBABILITIES)
     plain_error = spread.standard_error(0.5)
-    errors = spread.standard_error(_PROBABILITIES) * (median_error / plain_error if plain_error > 0 else 1.0)
+    errors = errors * (median_error / plain_error if plain_error > 0 else 1.0)
     low, high = np.interp(ndtri([_HISTOGRAM_CUT, 1 - _HISTOGRAM_CUT]), _SCORES, outputs).tolist()
     edges = np.linspace(low, high, HISTOGRAM_BINS + 1)
     return Curve(

@@ -73,7 +73,8 @@ def number_formats(book: Book, results: pl.DataFrame, column: Column) -> list[An
     if column.key.startswith(("probability", "ppm")):
         return _of_shares(book, results, column.key, values)
     if column.key in _WORKED_OUT:
-        errors = [_WORKED_OUT[column.key](row) for row in results.iter_rows(named=True)]
+        work_out, needed = _WORKED_OUT[column.key]
+        errors = [work_out(row) for row in results.select(column.key, *needed).iter_rows(named=True)]
         if usual == "share":
             return [book.format("text", percent_of(error)) for error in errors]
         return [book.format("text", min(decimals_of(error, usual), _PPK, key=len)) for error in errors]
@@ -115,12 +116,15 @@ def _counted_error(row: dict[str, Any]) -> float | None:
     return None if share is None else math.sqrt(float(share * (1 - share) / row["random_points"]))
 
 
-_WORKED_OUT: dict[str, Callable[[dict[str, Any]], float | None]] = {
-    "ppk": _ppk_error,
-    "ppk_normal": _ppk_normal_error,
-    "random_probability_over_limit": _counted_error,
+_OF_PERCENTILES = tuple(f"{one}{error}_arcmin" for one in ("p50", "p99_865") for error in ("", "_standard_error"))
+_OF_MOMENTS = ("sd_arcmin", "mean_standard_error_arcmin", "sd_standard_error_arcmin")
+
+_WORKED_OUT: dict[str, tuple[Callable[[dict[str, Any]], float | None], tuple[str, ...]]] = {
+    "ppk": (_ppk_error, _OF_PERCENTILES),
+    "ppk_normal": (_ppk_normal_error, _OF_MOMENTS),
+    "random_probability_over_limit": (_counted_error, ("random_points",)),
 }
-"""Numbers whose standard error follows from those of others."""
+"""Numbers whose standard error follows from those of others, and the keys of these."""
 
 
 def _of_error(error: float | None) -> str:

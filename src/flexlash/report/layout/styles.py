@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import xlsxwriter
+from xlsxwriter.worksheet import Worksheet
 
 from flexlash.schema.number_words import places
 
@@ -158,9 +159,17 @@ class Book:
             self._formats[key] = self.workbook.add_format(properties)
         return self._formats[key]
 
-    def sheet(self, name: str, *, landscape: bool = True, pages_tall: int = 0, tab: str = "") -> Any:
+    def sheet(
+        self,
+        name: str,
+        *,
+        landscape: bool = True,
+        pages_tall: int = 0,
+        tab: str = "",
+        kind: type[Worksheet] = Worksheet,
+    ) -> Any:
         """Return a new sheet set up to print one page wide; `tab` says what is special: `entry` or `stored`."""
-        sheet = self.workbook.add_worksheet(name)
+        sheet = self.workbook.add_worksheet(name, kind)
         if tab:
             sheet.set_tab_color(_TABS[tab])
         if landscape:
