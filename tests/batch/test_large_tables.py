@@ -15,6 +15,7 @@ from pathlib import Path
 import openpyxl
 import polars as pl
 import pytest
+from dask_cluster import dask_cluster
 from filled import SOUND
 from here import HereExecutor
 from poisoned import POISON, lost_at_poison, lost_at_reading_poison
@@ -366,23 +367,23 @@ def test_a_row_that_stops_its_process_is_found(work, ending, tmp_path):
 
     Where it kills those that merely read it as well, nothing is known of it but its place.
     """
-    rows = _rows(30, faulty=False)
+    rows = _rows(12, faulty=False)
     sound = run(_written(tmp_path / "sound.csv", rows), **FEW).results
-    rows[17]["variant"] = POISON
+    rows[7]["variant"] = POISON
     path = _written(tmp_path / "gears.csv", rows)
     output = tmp_path / f"out{ending}"
     with local_executor(2) as executor:
-        answer, _ = large_table(_table(path, output), executor, chunk_rows=5, work=work)
+        answer, _ = large_table(_table(path, output), executor, chunk_rows=2, work=work)
     results = pl.read_csv(output) if ending == ".csv" else pl.read_parquet(output)
     assert answer.told["counts"] | {"warnings": 0} == {
-        **answer.told["counts"], "rows": 30, "computed": 29, "errors": 1, "warnings": 0,
+        **answer.told["counts"], "rows": 12, "computed": 11, "errors": 1, "warnings": 0,
     }  # fmt: skip
     (error,) = (one for one in answer.told["findings"] if one["level"] == "error")
-    assert (error["code"], error["cell"]) == ("E334", "A19")
-    row = results.row(17, named=True)
-    assert (row["status"], row["findings"], row["backlash_rad"]) == ("error", "E334 A19", None)
+    assert (error["code"], error["cell"]) == ("E334", "A9")
+    row = results.row(7, named=True)
+    assert (row["status"], row["findings"], row["backlash_rad"]) == ("error", "E334 A9", None)
     assert (row["variant"] or "") == (POISON if work is lost_at_poison else "")
-    kept = [number for number in range(30) if number != 17]
+    kept = [number for number in range(12) if number != 7]
     assert results[kept]["p99_865_arcmin"].to_list() == sound[kept]["p99_865_arcmin"].to_list()
     assert answer.exit_code == ExitCode.SOME_ROWS
 
@@ -503,3 +504,34 @@ def _children(number):
         ["ps", "-o", "pid=,args=", "--ppid", str(number)], capture_output=True, text=True, check=False
     )
     return [line.split()[0] for line in listed.stdout.splitlines() if "spawn_main" in line]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_over_dask_with_a_worker_and_then_the_scheduler_killed(tmp_path):
+    """Over Dask a killed worker costs time alone; of a killed scheduler a resumed run makes the same bytes."""
+    pytest.importorskip("distributed")
+    from flexlash.batch.dask_executor import ClusterError, dask_executor
+
+    folder = tmp_path / "tables"
+    folder.mkdir()
+    path = _written(folder / "gears.csv", _rows())
+    expected = run(path, tmp_path / "whole.csv", **FEW).outputs[0].read_bytes()
+    output, told = folder / "out.csv", []
+    with dask_cluster(tmp_path) as cluster:
+        victim, _ = cluster.worker("--no-nanny"), cluster.worker()
+
+        def disturb(done, _):
+            told.append(done)
+            if len(told) == 2:
+                victim.kill()
+            if len(told) == 5:
+                cluster.scheduler.kill()
+
+        with dask_executor(cluster.address) as executor, pytest.raises(ClusterError):
+            large_table(_table(path, output), executor, disturb, chunk_rows=6)
+    assert 5 <= len(told) < 10
+    assert _names(folder) == [".out.csv.flexlash-parts", "gears.csv"]
+    large_table(_table(path, output, resume=True), HereExecutor(), chunk_rows=6)
+    assert output.read_bytes() == expected
+    assert _names(folder) == ["gears.csv", "out-findings.csv", "out.csv"]
