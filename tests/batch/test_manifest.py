@@ -54,17 +54,18 @@ def _resumed(folder, outputs, sha=SHA, options="o", below=Path()):
         manifest.close()
 
 
-def _kept(folder, ended, options="o"):
+def _kept(folder, outputs, options="o", **changed):
+    ended = _ended(outputs, **changed)
     manifest = Manifest(folder, options, resume=False)
-    manifest.keep(ended, SHA)
+    manifest.keep(ended, SHA, *outputs)
     manifest.close()
     assert manifest.fault is None
+    return ended
 
 
 def test_what_was_done_is_told_as_it_was(tmp_path, outputs):
     """A line gives back all that is printed and summed up, with every digit, and says that it was done before."""
-    ended = _ended(outputs)
-    _kept(tmp_path, ended)
+    ended = _kept(tmp_path, outputs)
     found = _resumed(tmp_path, outputs)
     assert found.done_before
     assert found.as_dictionary() == ended.as_dictionary()
@@ -75,7 +76,7 @@ def test_what_was_done_is_told_as_it_was(tmp_path, outputs):
 @pytest.mark.parametrize("change", ["content", "options", "report", "copy", "gone", "place", "name"])
 def test_nothing_is_believed_that_is_not_proven(tmp_path, outputs, change):
     """Other content, options or names, a file that was changed, is gone or would go elsewhere: it is done again."""
-    _kept(tmp_path, _ended(outputs))
+    _kept(tmp_path, outputs)
     wanted, asked = outputs, {}
     if change == "content":
         asked["sha"] = "6" * 64
@@ -103,20 +104,20 @@ AGAIN = {
 @pytest.mark.parametrize("why", AGAIN)
 def test_what_failed_is_done_again(tmp_path, outputs, why):
     """What may have been the computer's fault, and what costs nothing, has no line."""
-    _kept(tmp_path, _ended(outputs, **AGAIN[why]))
+    _kept(tmp_path, outputs, **AGAIN[why])
     assert _resumed(tmp_path, outputs) is None
 
 
 def test_a_run_that_does_not_resume_begins_anew(tmp_path, outputs):
     """Without --resume the lines of earlier runs are forgotten."""
-    _kept(tmp_path, _ended(outputs))
+    _kept(tmp_path, outputs)
     Manifest(tmp_path, "o", resume=False).close()
     assert _resumed(tmp_path, outputs) is None
 
 
 def test_a_line_that_was_cut_is_none_and_the_next_is_whole(tmp_path, outputs):
     """Wherever a killed run was stopped within a line, that line is none, the others stay, and new ones are read."""
-    _kept(tmp_path, _ended(outputs))
+    _kept(tmp_path, outputs)
     path = tmp_path / MANIFEST_NAME
     whole = path.read_bytes()
     title = whole.index(b"\n") + 1
@@ -124,7 +125,7 @@ def test_a_line_that_was_cut_is_none_and_the_next_is_whole(tmp_path, outputs):
         path.write_bytes(whole[:length])
         assert _resumed(tmp_path, outputs) is None, length
         manifest = Manifest(tmp_path, "o", resume=True)
-        manifest.keep(_ended(outputs), SHA)
+        manifest.keep(_ended(outputs), SHA, *outputs)
         manifest.close()
         assert path.read_bytes() == whole, length
         assert _resumed(tmp_path, outputs) is not None, length

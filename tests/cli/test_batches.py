@@ -208,8 +208,8 @@ def test_resume_computes_what_is_not_done(folder, monkeypatch):
 @pytest.mark.usefixtures("folder")
 def test_resume_needs_a_folder():
     """Where no manifest can be, --resume is a usage error that says so."""
-    for output in ([], ["-o", "x.xlsx"]):
-        said = _call("run", "in/a.csv", "--resume", *output)
+    for submissions in (["in"], ["in/a.csv", "in/b.csv"]):
+        said = _call("run", *submissions, "--resume")
         assert (said.exit_code, "--resume needs a folder as OUT" in said.stderr) == (2, True)
 
 
@@ -254,6 +254,24 @@ def test_a_summary_that_somebody_edited_stays():
     assert "flexlash-summary.jsonl was left alone" in said.stderr
     assert Path("out/flexlash-summary.jsonl").read_bytes() == mine
     assert Path("out/flexlash-summary (2).jsonl").exists()
+
+
+def test_a_large_table_is_one_submission_among_others(folder, table, sound, monkeypatch):
+    """It goes in chunks through the same workers, has its line, its files and its place in what --resume believes."""
+    monkeypatch.setattr("flexlash.reading.survey.LARGE_ROWS", 5)
+    monkeypatch.setattr("flexlash.batch.side_by_side._LEAST_OF_LARGE", 0)
+    table([{**sound, "variant": f"v{row}"} for row in range(8)], "large.csv").rename("in/a.csv")
+    whole = _call(*RUN)
+    assert whole.stdout.startswith("in/a.csv: 8 of 8 rows computed. Limit not met by 8 of 8 variants. Written: ")
+    straight = outputs(folder)
+    assert {"out/a-report.xlsx", "out/a-results.parquet", "out/b-report.xlsx"} <= set(straight)
+    again = _call(*RUN, "--resume")
+    assert "3 submissions done by an earlier run" in again.stderr
+    assert (again.stdout, outputs(folder)) == (whole.stdout, straight)
+    Path("out/a-results.parquet").unlink()
+    once_more = _call(*RUN, "--resume")
+    assert "2 submissions done by an earlier run" in once_more.stderr
+    assert (once_more.stdout, outputs(folder)) == (whole.stdout, straight)
 
 
 @pytest.fixture(scope="module")

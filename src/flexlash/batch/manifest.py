@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
@@ -65,13 +65,11 @@ class Manifest:
     def done(self, path: Path, below: Path, sha256: str, *outputs: Output | None) -> Ended | None:
         """Return how a submission ended whose report and marked copy are to go there; None where that is not proven."""
         entry = self._done.get((_name(path, below), sha256, self._options))
-        if entry is None:
+        if entry is None or entry["planned"] != self._places(outputs):
             return None
-        planned = [None if output is None else output.path for output in outputs]
-        paths = [None if name is None else self._folder / name for name, _ in entry["files"]]
-        for place, wanted, (_, digest) in zip(paths, planned, entry["files"], strict=True):
-            if place is not None and (place != wanted or _digest(place) != digest):
-                return None
+        paths = [self._folder / name for name, _ in entry["files"]]
+        if any(_digest(place) != digest for place, (_, digest) in zip(paths, entry["files"], strict=True)):
+            return None
         ended = entry["ended"]
         return Ended(
             path=path,
@@ -84,42 +82,49 @@ class Manifest:
             by_rule=ended["by_rule"],
             worst=tuple(WorstVariant(**one) for one in ended["worst"]),
             written=Written(
-                paths=tuple(place for place in paths if place is not None),
+                paths=tuple(paths),
                 remarks=tuple(entry["remarks"]),
-                marked_copy=paths[-1],
+                marked_copy=None if entry["copy"] is None else paths[entry["copy"]],
                 not_carried=None if entry["not_carried"] is None else tuple(entry["not_carried"]),
             ),
             done_before=True,
         )
 
-    def keep(self, ended: Ended, sha256: str) -> None:
-        """Write down how a submission ended, unless it is to be looked at again; where that fails, `fault` says why."""
+    def keep(self, ended: Ended, sha256: str, *outputs: Output | None) -> None:
+        """Write down how a submission ended, unless it is to be looked at again; where that fails, `fault` says why.
+
+        `outputs` are those that were planned for it.
+        """
         again = ended.refused or ended.skipped or ended.code in {ExitCode.INTERNAL, ExitCode.NO_FILE}
         if again or self.fault is not None:
             return
         try:
-            self._file.append(json.dumps(self._entry(ended, sha256)))
+            self._file.append(json.dumps(self._entry(ended, sha256, outputs)))
         except OSError as fault:
             self.fault = fault
 
-    def _entry(self, ended: Ended, sha256: str) -> dict[str, Any]:
+    def _entry(self, ended: Ended, sha256: str, outputs: Sequence[Output | None]) -> dict[str, Any]:
         """Return a submission's line."""
         written = ended.written
-        report = next((path for path in written.paths if path != written.marked_copy), None)
-        files = [
-            (None, "") if path is None else (path.relative_to(self._folder).as_posix(), _digest(path))
-            for path in (report, written.marked_copy)
-        ]
         return {
             "submission": _name(ended.path, ended.below),
             "sha256": sha256,
             "options": self._options,
-            "files": files,
+            "planned": self._places(outputs),
+            "files": [(self._place(path), _digest(path)) for path in written.paths],
+            "copy": None if written.marked_copy is None else written.paths.index(written.marked_copy),
             "remarks": written.remarks,
             "not_carried": written.not_carried,
             "code": ended.code,
             "ended": {name: getattr(ended, name) for name in _TOLD} | {"worst": [asdict(one) for one in ended.worst]},
         }
+
+    def _places(self, outputs: Sequence[Output | None]) -> list[str | None]:
+        return [None if output is None else self._place(output.path) for output in outputs]
+
+    def _place(self, path: Path) -> str:
+        """Return where a file lies in the folder."""
+        return path.relative_to(self._folder).as_posix()
 
 
 def _name(path: Path, below: Path) -> str:

@@ -10,11 +10,13 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
+from pathlib import Path
 
 from flexlash.analysis.examination import tables_beside
-from flexlash.analysis.options import Options
+from flexlash.analysis.options import Options, Progress
 from flexlash.analysis.outcome import Written
 from flexlash.batch.answer import Answer, Command, Task
 from flexlash.batch.ended import Ended, fault_of, fault_words
@@ -30,10 +32,13 @@ from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.file_faults import unusable
 from flexlash.schema.findings import finding, readable, shown
 
-__all__ = ["Batch", "Wanted", "computed_apart", "side_by_side", "tables_or_why"]
+__all__ = ["Batch", "Wanted", "computed_apart", "large_tables", "side_by_side", "tables_or_why"]
 
 _AHEAD = 2
 """Tasks for each worker that are handed over, so that none waits while answers are written."""
+
+_LEAST_OF_LARGE = 40_000
+"""Bytes below which no table has so many rows that it is computed in chunks."""
 
 Advance = Callable[[Ended], None]
 """Called with each submission when it has ended, whichever is first."""
@@ -53,7 +58,8 @@ class Batch:
     """What is to be done with submissions.
 
     `tables` are those beside each of them, by the sheet that each replaces, or why they cannot be used; `manifest` is
-    where it is written down what is done. `several` says that a skipped one is no failure.
+    where it is written down what is done, `resume` that an earlier run has left something. `several` says that a
+    skipped one is no failure; `progress` is told of the rows of a large table.
     """
 
     command: Command
@@ -61,7 +67,9 @@ class Batch:
     wanted: Sequence[Wanted]
     tables: Mapping[str, Source] | OSError | Refusal = field(default_factory=dict)
     manifest: Manifest | None = None
+    resume: bool = False
     several: bool = False
+    progress: Progress | None = None
 
 
 def side_by_side(batch: Batch, executor: Executor, advance: Advance) -> Iterator[Ended]:
@@ -75,6 +83,18 @@ def tables_or_why(options: Options) -> dict[str, Source] | OSError | Refusal:
         return tables_beside(options)
     except (OSError, Refusal) as why:
         return why
+
+
+def large_tables(options: Options, paths: Sequence[Path]) -> bool:
+    """Return whether one of these files is a table that is computed in chunks."""
+    found = False
+    for path in paths:
+        with suppress(OSError):
+            if path.stat().st_size >= _LEAST_OF_LARGE:
+                from flexlash.reading.survey import is_large
+
+                found = found or is_large(path, options.limits)
+    return found
 
 
 def computed_apart(task: bytes) -> bytes:
@@ -167,6 +187,8 @@ class _SideBySide:
         if wanted.given.fault is not None:
             why = readable(wanted.given.fault.strerror or wanted.given.fault)
             return Ended.failing(path, ExitCode.NO_FILE, f"{shown(path, 4096)} could not be opened: {why}")
+        if batch.command != "mend" and large_tables(batch.options, [path]):
+            return self._large(wanted)
         try:
             source = Source.at(path, batch.options.limits)
         except Refusal as refusal:
@@ -176,9 +198,7 @@ class _SideBySide:
         if isinstance(batch.tables, OSError | Refusal):
             raise batch.tables
         sha256 = hashlib.sha256(source.data).hexdigest()
-        if batch.manifest and (
-            ended := batch.manifest.done(path, wanted.given.below, sha256, wanted.file, wanted.copy)
-        ):
+        if ended := self._done(wanted, sha256):
             return ended
         companions = Companions.of(path, self._given, self._digests)
         task = Task(
@@ -201,9 +221,46 @@ class _SideBySide:
         except WorkerLostError as lost:
             refusal = batch.options.limits.exceeded(lost.setting) if lost.setting else Refusal("E118")
             return Ended.refusing(path, refusal, several=batch.several, sha256=one.sha256)
-        ended = Ended.answered(path, answer, _written(wanted, answer), several=batch.several)
+        return self._kept(wanted, answer, _written(wanted, answer), one.sha256)
+
+    def _large(self, wanted: Wanted) -> Ended:
+        """Compute a large table, whose chunks go through the workers beside the other submissions."""
+        from flexlash.batch.large_tables import LargeTable, large_table
+
+        batch, path = self._batch, wanted.given.path
+        if isinstance(batch.tables, OSError | Refusal):
+            raise batch.tables
         if batch.manifest:
-            batch.manifest.keep(replace(ended, below=wanted.given.below), one.sha256)
+            with path.open("rb") as file:
+                sha256 = hashlib.file_digest(file, "sha256").hexdigest()
+            if ended := self._done(wanted, sha256):
+                return ended
+        table = LargeTable(
+            path=path,
+            ran=batch.command == "run",
+            options=batch.options,
+            tables=batch.tables,
+            companions=Companions.of(path, self._given, self._digests),
+            report=wanted.file,
+            copy=wanted.copy,
+            resume=batch.resume,
+        )
+        answer, written = large_table(table, self._executor, self._batch.progress)
+        return self._kept(wanted, answer, written, answer.told.get("sha256", ""))
+
+    def _done(self, wanted: Wanted, sha256: str) -> Ended | None:
+        """Return how a submission ended in an earlier run, where that is proven."""
+        if self._batch.manifest is None:
+            return None
+        given = wanted.given
+        return self._batch.manifest.done(given.path, given.below, sha256, wanted.file, wanted.copy)
+
+    def _kept(self, wanted: Wanted, answer: Answer, written: Written, sha256: str) -> Ended:
+        """Return how a submission ended, and write it down for a later run."""
+        given, several = wanted.given, self._batch.several
+        ended = replace(Ended.answered(given.path, answer, written, several=several), below=given.below)
+        if self._batch.manifest is not None:
+            self._batch.manifest.keep(ended, sha256, wanted.file, wanted.copy)
         return ended
 
 

@@ -84,7 +84,7 @@ def carried_out(
 ) -> ExitCode:
     """Compute, check or mend submissions side by side, write what is wanted, tell how each ended; return the code."""
     # Workers load their libraries while this process loads its own.
-    with workers(max(1, min(options.jobs, len(given.submissions))), scheduler) as executor:
+    with workers(_side_by_side(options, given.submissions), scheduler) as executor:
         from flexlash.batch.side_by_side import Batch, Wanted, side_by_side, tables_or_why
 
         tables = tables_or_why(options)
@@ -99,10 +99,21 @@ def carried_out(
                 ],
                 tables=tables,
                 manifest=manifest,
+                resume=resume,
                 several=told.several,
+                progress=bar.advance_rows,
             )
             all_ended = _told_in_order(side_by_side(batch, executor, bar.advance), told, bar)
     return _summed_up(all_ended, planned.summary, told)
+
+
+def _side_by_side(options: Options, paths: Sequence[Path]) -> int:
+    """Return how many workers there is something to do for."""
+    if len(paths) < options.jobs:
+        from flexlash.batch.side_by_side import large_tables
+
+        return options.jobs if large_tables(options, paths) else max(1, len(paths))
+    return options.jobs
 
 
 @contextmanager

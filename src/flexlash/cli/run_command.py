@@ -90,7 +90,7 @@ def run(
         marked_copies=options["marked_copies"],
     )
     outputs = _outputs(given, beside, output, annotate=annotate, marked_copies=options["marked_copies"])
-    if resume and outputs.summary is None:
+    if resume and outputs.summary is None and (given.folders or len(given.files) > 1):
         raise click.UsageError("--resume needs a folder as OUT, in which an earlier run was stopped.")
     told = to_be_told(given, as_json=as_json, quiet=quiet, verbose=verbose, ran=True)
     chosen = Options.of("run()", options)

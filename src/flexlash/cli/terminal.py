@@ -72,6 +72,7 @@ class Bar:
         self._files = files
         self._is_drawn = not quiet and sys.stderr.isatty() and _can_draw()
         self._done = self._rows = self._known = 0
+        self._part = (0, 1)
         self._start = time.perf_counter()
         self.draw()
 
@@ -80,6 +81,12 @@ class Bar:
         self._done += 1
         self._known += ended.done_before
         self._rows += 0 if ended.done_before else ended.counts["rows"]
+        self._part = (0, 1)
+        self.draw()
+
+    def advance_rows(self, done: int, rows: int) -> None:
+        """Draw how many rows of a large table are done."""
+        self._part = (done, max(rows, 1))
         self.draw()
 
     def draw(self) -> None:
@@ -87,11 +94,13 @@ class Bar:
         if not self._is_drawn:
             return
         seconds = time.perf_counter() - self._start
-        filled = round(_BAR * self._done / self._files) if self._files else _BAR
+        rows, of_table = self._part
+        ended = self._done + rows / of_table
+        filled = round(_BAR * ended / self._files) if self._files else _BAR
         text = f"Computing [{'#' * filled}{'-' * (_BAR - filled)}] {self._done} of {self._files} files"
-        if new := self._done - self._known:
-            left = round(seconds / new * (self._files - self._done))
-            text += f", {self._rows:,} rows, {self._rows / seconds:,.0f} rows/s, {left // 60}:{left % 60:02} left"
+        if new := ended - self._known:
+            left, rows = round(seconds / new * (self._files - ended)), rows + self._rows
+            text += f", {rows:,} rows, {rows / seconds:,.0f} rows/s, {left // 60}:{left % 60:02} left"
         width = shutil.get_terminal_size().columns - 1
         click.echo(f"{_ERASED}{text[:width]}", nl=False, err=True)
 
