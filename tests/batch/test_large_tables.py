@@ -280,21 +280,31 @@ def test_check_writes_nothing_unless_asked(tmp_path):
     assert [one.name for one in written.paths] == ["gears-findings.csv", "gears-checked.xlsx"]
 
 
-@pytest.mark.parametrize("what", ["header", "results"])
+def test_a_workbook_of_findings_that_cannot_be_written_loses_nothing_else(tmp_path):
+    """Where the marked copy cannot be written the table is checked or computed all the same, and the fault is told."""
+    path = _written(tmp_path / "gears.csv", _rows())
+    for ran, report in ((False, None), (True, tmp_path / "out.csv")):
+        answer, written = _in_chunks(path, report, 25, ran=ran, copy=tmp_path / "none" / "gears-checked.xlsx")
+        assert answer.told["counts"]["rows"] == ROWS - 1
+        assert "there is no folder" in written.fault.strerror
+        assert [one.name for one in written.paths] == (["out.csv", "out-findings.csv"] if ran else [])
+
+
+@pytest.mark.parametrize("what", ["header", "results", "findings"])
 def test_what_is_no_submission_ends_like_any_other(what, tmp_path):
-    """A table without the headers, and Results that flexlash wrote, are refused or skipped in the same words."""
+    """A table without headers, and Results and findings that flexlash wrote, are refused or skipped in the same words."""
     path = tmp_path / "gears.csv"
     if what == "header":
         path.write_text("a,b\n" + "1,2\n" * 50)
     else:
-        run(_written(tmp_path / "source.csv", _rows()), tmp_path / "results.csv", **FEW)
-        path = tmp_path / "results.csv"
+        _in_chunks(_written(tmp_path / "source.csv", _rows()), tmp_path / "results.csv", 25)
+        path = tmp_path / {"results": "results.csv", "findings": "results-findings.csv"}[what]
     before = _names(tmp_path)
     expected = check(path)
     answer, written = _in_chunks(path, tmp_path / "out.csv", 7)
     assert answer.told["findings"] == expected.as_dictionary()["findings"]
     assert (answer.skipped, answer.exit_code) == (expected.skipped, expected.exit_code)
-    assert written.paths == (() if what == "results" else (tmp_path / "out-findings.csv",))
+    assert written.paths == ((tmp_path / "out-findings.csv",) if what == "header" else ())
     assert [name for name in _names(tmp_path) if name != "out-findings.csv"] == before
 
 

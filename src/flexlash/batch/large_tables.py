@@ -100,9 +100,8 @@ def large_table(
     be opened or an output cannot be written, ProcessFaultError for a fault of the program. Of a marked copy that cannot
     be written the `fault` of what was written says why.
     """
-    for output in (table.report, table.copy):
-        if output is not None:
-            output.require()
+    if table.report is not None:
+        table.report.require()
     limits = table.options.limits
     try:
         found = _asked(table, survey, limits_of_survey(limits, table.path.stat().st_size), table.path, limits)
@@ -224,8 +223,9 @@ class _Run:
 
     def carried_out(self) -> tuple[Answer, Written]:
         """Return what came of the table, and what was written for it."""
+        copy = self.table.copy if self.table.copy is None or self.table.copy.fault is None else None
         with ExitStack() as stack:
-            target = self.table.report or self.table.copy
+            target = self.table.report or copy
             folder = None
             if target is not None:
                 folder = stack.enter_context(working_folder(target.path, self._what(), resume=self.table.resume))
@@ -233,7 +233,7 @@ class _Run:
                 totals = self._computed(folder)
             except _RefusedError as refused:
                 return _refused(self.table, self.survey.sha256, refused.chunk), Written()
-            files = self._written(totals, folder) if folder else _Files()
+            files = self._written(totals, folder)
         answer = totals.answer(
             {"submission": self.survey.name, "sha256": self.survey.sha256, "version": __version__},
             ran=self.table.ran,
@@ -342,15 +342,15 @@ class _Run:
             summary, place, findings = blank_row(rows[0])
             return _Piece(summary, {"summary": summary.as_bytes(), "blank": place, "findings": findings})
 
-    def _written(self, totals: Totals, folder: WorkingFolder) -> _Files:
+    def _written(self, totals: Totals, folder: WorkingFolder | None) -> _Files:
         """Write what is wanted of a table that was computed; the report last, since it names the others."""
         report, copy = self.table.report, self.table.copy
         files = _Files()
-        if report is not None and self.table.ran and totals.computed:
+        if folder is not None and report is not None and self.table.ran and totals.computed:
             results = report if report.ending == self._ending else self._beside(_RESULTS, self._ending)
             if results is not None:
                 files = replace(files, results=results.write(self._all_results(totals, folder), "results"))
-        if totals.rules and (beside := self._beside(_FINDINGS, ".csv")) is not None:
+        if folder is not None and totals.rules and (beside := self._beside(_FINDINGS, ".csv")) is not None:
             files = replace(files, findings=beside.write(self._all_findings(totals)))
         if report is not None and files.results is not None and report.ending != self._ending:
             files = replace(files, report=report.write(self._report(totals, files), "report"))
