@@ -292,7 +292,7 @@ def test_a_workbook_of_findings_that_cannot_be_written_loses_nothing_else(tmp_pa
 
 @pytest.mark.parametrize("what", ["header", "results", "findings"])
 def test_what_is_no_submission_ends_like_any_other(what, tmp_path):
-    """A table without headers, and Results and findings that flexlash wrote, are refused or skipped in the same words."""
+    """A table without headers, and what flexlash itself wrote, are refused or skipped in the same words."""
     path = tmp_path / "gears.csv"
     if what == "header":
         path.write_text("a,b\n" + "1,2\n" * 50)

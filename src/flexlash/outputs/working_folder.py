@@ -153,6 +153,9 @@ def working_folder(output: Path, what: Mapping[str, Any], *, resume: bool) -> It
         working.remove()
     finally:
         os.close(manifest)
+    if os.name == "nt":
+        # There no file can be removed while it is open.
+        working.remove()
 
 
 def _may_be_ours(folder: Path) -> bool:
