@@ -9,8 +9,9 @@ bounds a calibration.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Mapping
+from functools import cache, partial
+from types import MappingProxyType
 
 from flexlash.schema.column import FACTOR, PERCENT, POSITIVE, STRESS, Column
 from flexlash.schema.variant_columns import VARIANTS
@@ -254,9 +255,10 @@ ENTRY_SHEETS = {
 }
 
 
-def columns_of(sheet: str) -> dict[str, Column]:
+@cache
+def columns_of(sheet: str) -> Mapping[str, Column]:
     """Return the columns of an entry sheet by key."""
-    return {column.key: column for column in ENTRY_SHEETS[sheet]}
+    return MappingProxyType({column.key: column for column in ENTRY_SHEETS[sheet]})
 
 
 def naming_column(sheet: str) -> Column:
