@@ -11,6 +11,7 @@ from flexlash.analysis.examination import examined
 from flexlash.analysis.options import Options
 from flexlash.analysis.run_result import outcome_of
 from flexlash.reading import survey as surveys
+from flexlash.reading import survey_parquet
 from flexlash.reading.excerpt import excerpt
 from flexlash.reading.products import Companions
 from flexlash.reading.read import Source
@@ -40,13 +41,14 @@ def in_excerpts(path, rows, block=1000, **options):
     """Return the same of a table surveyed in blocks and read in excerpts of so many rows."""
     chosen = Options.of("check()", options)
     before, surveys._ROWS = surveys._ROWS, block
+    slices, survey_parquet._SLICE = survey_parquet._SLICE, block
     try:
         surveyed = survey(path, chosen.limits)
         excerpts = [excerpt(path, surveyed, chunk) for chunk in surveyed.chunks(rows)]
     except Refusal as refusal:
         return refusal.code
     finally:
-        surveys._ROWS = before
+        surveys._ROWS, survey_parquet._SLICE = before, slices
     sources = [Source(name=surveyed.name, data=data, companions=Companions()) for data in excerpts]
     return _merged([outcome_of(examined(source, chosen)) for source in sources])
 

@@ -160,7 +160,7 @@ def is_large(path: Path, limits: ReadingLimits) -> bool:  # noqa: ARG001
             return False
         if kind == "parquet":
             try:
-                return sum(group.rows for group in row_groups(file)) >= LARGE_ROWS
+                return sum(group.rows for group in row_groups(file)) > LARGE_ROWS
             except Refusal:
                 return False
         if kind != "csv":
@@ -182,19 +182,28 @@ def survey(path: Path, limits: ReadingLimits) -> Survey:
     Refusal when it is no table, or holds what no table of variants can.
     """
     with opened_file(path) as file:
-        size = os.fstat(file.fileno()).st_size
+        status = os.fstat(file.fileno())
         head = file.read(_HEAD)
         if not head:
             raise Refusal("E101", found="the file is empty")
         kind = kind_of(head)
         name = readable(path.name)
         if kind == "csv":
-            return _of_text(file, size, name, limits)
-        if kind == "parquet":
+            found = _of_text(file, status.st_size, name, limits)
+        elif kind == "parquet":
             from flexlash.reading.survey_parquet import of_parquet
 
-            return of_parquet(file, path, size, name, limits)
-    raise Refusal("E101", found="a table as .csv or .parquet is required here")
+            found = of_parquet(file, path, status.st_size, name, limits)
+        else:
+            raise Refusal("E101", found="a table as .csv or .parquet is required here")
+        if not _is_unchanged(status, os.fstat(file.fileno())) or not _is_unchanged(status, path.stat()):
+            raise Refusal("E101", found=CHANGED)
+        return found
+
+
+def _is_unchanged(one: os.stat_result, other: os.stat_result) -> bool:
+    """Whether a file is still the one that it was."""
+    return os.path.samestat(one, other) and (one.st_size, one.st_mtime_ns) == (other.st_size, other.st_mtime_ns)
 
 
 def _of_text(file: BinaryIO, size: int, name: str, limits: ReadingLimits) -> Survey:

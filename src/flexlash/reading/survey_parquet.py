@@ -207,9 +207,11 @@ def rows_of(path: Path, file: BinaryIO, survey: Survey, wanted: Sequence[int]) -
     for block in survey.blocks:
         own = [row - block.first for row in wanted if block.first <= row < block.first + block.rows]
         if own:
-            if len(groups) != len(survey.blocks) or check_group(file, groups[block.start])[1] != block.digest:
-                raise Refusal("E101", found=CHANGED)
             frame = _kept(path, survey.sha256, block.digest, block.first - _HEADER - 1, block.rows)
+            # What was decoded is what is there: a file that changed meanwhile is told afterwards.
+            if len(groups) != len(survey.blocks) or check_group(file, groups[block.start])[1] != block.digest:
+                _kept.cache_clear()
+                raise Refusal("E101", found=CHANGED)
             whole = own[-1] - own[0] == len(own) - 1
             pieces.append(_plain(frame.slice(own[0], len(own)) if whole else frame[own], survey.inexact))
     buffer = io.BytesIO()

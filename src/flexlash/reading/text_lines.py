@@ -15,7 +15,7 @@ from flexlash.reading.refusal import Refusal
 __all__ = ["Lines", "TextForm", "longest_line", "text_form"]
 
 _CHUNK = 2**20
-_LINE = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)")
+_LINE_END = re.compile(r"\r\n|\r|\n")
 _ASCII = frozenset({"utf-8", "cp1252"})
 """Codecs in which a line ends with the same bytes as in ASCII, and nowhere else."""
 
@@ -62,43 +62,35 @@ def text_form(file: BinaryIO, size: int) -> TextForm:
         form = TextForm(codec=codec, encoding="UTF-16", start=0)
     else:
         form = TextForm(codec="utf-8", encoding="UTF-8", start=0)
-    form = replace(form, has_quotes=_has_quotes(file))
-    if _is_in(file, form):
-        return form
+    if found := _in_form(file, form):
+        return found
     if mark or form.codec != "utf-8":
         raise Refusal("E107")
-    return _windows(file, has_quotes=form.has_quotes)
+    return _windows(file)
 
 
-def _has_quotes(file: BinaryIO) -> bool:
-    """Whether a byte that may be a quote stands in a text."""
-    file.seek(0)
-    while chunk := file.read(_CHUNK):
-        if b'"' in chunk:
-            return True
-    return False
-
-
-def _is_in(file: BinaryIO, form: TextForm) -> bool:
-    """Whether all bytes of a text have a meaning in a form; raise Refusal for one that holds a zero."""
+def _in_form(file: BinaryIO, form: TextForm) -> TextForm | None:
+    """Return a form in which all bytes of a text have a meaning, else None; raise Refusal at a zero."""
     file.seek(form.start)
     decoder = codecs.getincrementaldecoder(form.codec)()
-    has_zero = False
+    has_quotes = False
     try:
         while chunk := file.read(_CHUNK):
-            has_zero = "\0" in decoder.decode(chunk) or has_zero
+            has_quotes = has_quotes or b'"' in chunk
+            if "\0" in decoder.decode(chunk):
+                raise Refusal("E102")
         decoder.decode(b"", final=True)
     except UnicodeDecodeError:
-        return False
-    if has_zero:
-        raise Refusal("E102")
-    return True
+        return None
+    return replace(form, has_quotes=has_quotes)
 
 
-def _windows(file: BinaryIO, *, has_quotes: bool) -> TextForm:
+def _windows(file: BinaryIO) -> TextForm:
     """Return the form of Excel's plain CSV, when every byte has a meaning there; else raise Refusal."""
     file.seek(0)
+    has_quotes = False
     while chunk := file.read(_CHUNK):
+        has_quotes = has_quotes or b'"' in chunk
         try:
             text = chunk.decode("cp1252")
         except UnicodeDecodeError as fault:
@@ -163,15 +155,20 @@ class Lines:
         codec = self.form.codec
         decoder = codecs.getincrementaldecoder(codec)()
         rest, most = "", longest_line(self.limits)
-        while chunk := self.file.read(_CHUNK):
-            text = rest + decoder.decode(chunk)
+        is_last = False
+        while not is_last:
+            chunk = self.file.read(_CHUNK)
+            is_last = not chunk
+            text = rest + decoder.decode(chunk, final=is_last)
+            start = 0
             # What follows a return that stands last may belong to it.
-            end = len(text) - text.endswith("\r")
-            lines = [match[0] for match in _LINE.finditer(text, 0, end)]
-            rest = text[sum(map(len, lines)) :]
-            yield from (line.encode(codec) for line in lines)
+            for end in _LINE_END.finditer(text, 0, len(text) - (text.endswith("\r") and not is_last)):
+                yield text[start : end.end()].encode(codec)
+                start = end.end()
+            rest = text[start:]
             self._require(len(rest), most)
-        yield from (line.encode(codec) for line in re.findall(r"[^\r\n]*(?:\r\n|\r|\n)|[^\r\n]+", rest))
+        if rest:
+            yield rest.encode(codec)
 
     def _require(self, length: int, most: int) -> None:
         if length > most:

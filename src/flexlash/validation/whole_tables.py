@@ -35,7 +35,7 @@ __all__ = ["Assumed", "Block", "Gathered", "Gatherer"]
 
 _SCHEMA = "Variants"
 _NAMES = ("material", "tolerance_class")
-_MOST_CLASSES = 1_000_000
+_MOST_CLASSES = MOST_NAMES
 """Most tolerance classes that a table may name: each excerpt carries all of them."""
 
 _SHAPE = str.maketrans("23456789", "11111111")
