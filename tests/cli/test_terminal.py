@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 
@@ -72,3 +73,16 @@ def test_json_and_quiet_draw_nothing(table, sound):
     """--json and --quiet keep a terminal free of the bar."""
     for option in ("--json", "--quiet"):
         assert BAR not in _on_a_terminal("run", table([sound]), option, "--samples", 64, TERM="xterm")[0]
+
+
+def test_the_bar_says_files_rows_and_time_left_and_leaves_the_lines_alone(table, sound):
+    """It tells files, rows, rows a second and time left, is taken away before a line is printed, and at the end."""
+    paths = [table([{**sound, "variant": f"v{row}"} for row in range(3)], f"{name}.csv") for name in "ab"]
+    shown, code = _on_a_terminal("run", *paths, "--samples", 64, TERM="xterm", COLUMNS="200")
+    assert code == 0
+    drawn = shown.decode().split("\r\x1b[2K")
+    assert drawn[1].startswith("Computing [------------------------] 0 of 2 files")
+    assert re.search(r"\[#{12}-{12}\] 1 of 2 files, 3 rows, \d+ rows/s, \d+:\d\d left", shown.decode())
+    lines = [line for piece in drawn for line in piece.splitlines() if line and not line.startswith("Computing")]
+    assert [line.split(": ")[0] for line in lines[:2]] == [str(path) for path in paths]
+    assert lines[2].startswith("Total of 2 submissions")

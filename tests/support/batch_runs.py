@@ -9,12 +9,11 @@ import sys
 import time
 from pathlib import Path
 
-import regenerate
-
 from flexlash.batch.manifest import MANIFEST_NAME
 from flexlash.schema.stamps import stamp_at
 
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(regenerate.ROOT / "src")}
+SOURCE = Path(__file__).resolve().parents[2] / "src"
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(SOURCE)}
 
 
 def begun(folder: Path, *more: object, code: str = "from flexlash.cli import main; main()", **how) -> subprocess.Popen:
