@@ -139,13 +139,13 @@ def compare(label: str, given: Path, output: Path, *, dask: bool) -> None:
     """Run with one worker and with two, maybe by Dask as well, and print a line for each."""
     before = None
     for words, options in (("1 worker", ["--jobs", "1"]), ("2 workers", ["--jobs", "2"])):
-        figures = watched([sys.executable, "-m", "flexlash", "run", str(given), "-o", str(output), "-q", *options])
+        figures = watched([sys.executable, "-m", "flexlash", "run", str(given), "-o", str(output), "--quiet", *options])
         show(f"{label}, {words}", figures, before)
         before = before or figures
         clear(output)
     if dask:
         options = ["--jobs", "2", "--scheduler", "local"]
-        figures = watched([sys.executable, "-m", "flexlash", "run", str(given), "-o", str(output), "-q", *options])
+        figures = watched([sys.executable, "-m", "flexlash", "run", str(given), "-o", str(output), "--quiet", *options])
         show(f"{label}, Dask of 2", figures, before)
         clear(output)
 
@@ -157,7 +157,7 @@ def show(label: str, figures: Watched, before: Watched | None) -> None:
     ratio = f"{before.wall / figures.wall:8.2f}" if before else " " * 8
     print(
         f"{label:34}{figures.wall:9.1f}{ratio}{seconds:10.1f}{driver:9.1f}{100 * driver / max(seconds, 1e-9):8.1f}"
-        f"{max(figures.others(figures.mebibytes), default=0.0):9.0f}{figures.mebibytes.get(figures.first, 0.0):9.0f}",
+        f"{max(figures.others(figures.mebibytes), default=0.0):11.0f}{figures.mebibytes.get(figures.first, 0.0):10.0f}",
         flush=True,
     )
 
@@ -179,7 +179,7 @@ def main() -> None:
     chosen = options.parse_args()
     print(
         f"{'batch':34}{'wall s':>9}{'ratio':>8}{'workers s':>10}{'first s':>9}{'share %':>8}"
-        f"{'worker MiB':>9}{'first MiB':>9}"
+        f"{'worker MiB':>11}{'first MiB':>10}"
     )
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
