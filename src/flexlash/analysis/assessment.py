@@ -64,8 +64,8 @@ def assess(validated: Validated, settings: Settings) -> Nominal:
     if not variants:
         return Nominal(blocked=ledger.blocked)
     arrays, rows = variants.arrays(), np.array(variants.rows)
-    for place in np.flatnonzero(~_limits_are_fine(validated, arrays)).tolist():
-        _report_all_limits(ledger, variants[place], validated.classes)
+    for variant in variants.some(np.flatnonzero(~_limits_are_fine(validated, arrays)).tolist()):
+        _report_all_limits(ledger, variant, validated.classes)
     _report_exact(validated, arrays, ledger)
     sound = np.flatnonzero(~np.isin(rows, list(ledger.rows)))
     arrays = arrays.take(sound)
@@ -73,8 +73,9 @@ def assess(validated: Validated, settings: Settings) -> Nominal:
     numbers = numbers.hstack(nominal_numbers(arrays, settings.lost_motion_percent / 100))
     computed = ComputedRows(validated=validated, numbers=numbers)
     mistakes = _by_owner(validated.unit_mistakes.values())
-    for place in np.flatnonzero(~_numbers_are_fine(arrays, numbers)).tolist():
-        _report_numbers(ledger, computed.variant(place), computed.nominal(place), mistakes)
+    doubtful = np.flatnonzero(~_numbers_are_fine(arrays, numbers))
+    for place, variant in zip(doubtful.tolist(), variants.some(sound[doubtful].tolist()), strict=True):
+        _report_numbers(ledger, variant, computed.nominal(place), mistakes)
     kept = numbers.filter(~np.isin(rows[sound], list(ledger.rows)))
     return Nominal(
         computed=replace(computed, numbers=kept) if kept.height else ComputedRows(),

@@ -100,6 +100,17 @@ class ComputedRows(RowRecords[Computed]):
         """Return the variant at a place among the computed ones."""
         return Computed(self, place)
 
+    def alike(self, most: int) -> list[list[int]]:
+        """Return the row numbers of variants of one type, one tolerance class and the same dimensions, so many each."""
+        rows, variants = list(self), self.validated.variants
+        if not rows:
+            return []
+        places, classes = self._numbers["place"].to_numpy(), variants.classes
+        arrays = variants.arrays().take(places)
+        groups = [indices.tolist() for _, _, indices, _ in arrays.alike([classes[place] for place in places])]
+        pieces = [group[start : start + most] for group in groups for start in range(0, len(group), most)]
+        return [[rows[index] for index in piece] for piece in pieces]
+
     def variant(self, place: int) -> Variant:
         """Return the variant at a place among the computed ones."""
         return self.validated.variants[int(self._numbers["place"][place])]

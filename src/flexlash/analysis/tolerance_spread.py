@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TypeAlias, overload
 
-from flexlash.analysis.computed import Computed, Spread
+from flexlash.analysis.computed import Computed, ComputedRows, Spread
 from flexlash.analysis.options import Options
 from flexlash.analysis.spread_rows import SpreadRows
 from flexlash.mechanics.flexspline import backlash
@@ -26,21 +26,23 @@ _MODELS = {kind: partial(backlash, kind) for kind in ("cup", "hat", "cylinder")}
 Found: TypeAlias = tuple[int, SpreadStatistics]
 """A row's index, or its number, with its statistics."""
 
+_TOGETHER = 500
+"""Rows that are made and spread at a time."""
+
 ROWS_PER_WORKER, POINTS_PER_WORKER = 1000, 100_000
 """Rows to be spread, lines or points of curves, below which starting a worker costs more than it saves."""
 
 
-def spread_of(computed: Mapping[int, Computed], settings: Settings, options: Options) -> Spread:
+def spread_of(computed: ComputedRows, settings: Settings, options: Options) -> Spread:
     """Return the spread of the variants; the same points serve all rows."""
-    numbers = list(computed)
-    found = row_statistics(_Toleranced(computed, numbers), _plan(settings, options), options.jobs)
-    told = _told(found, options, len(numbers) * (2 if options.elasticity else 1))
-    statistics = SpreadRows.of((numbers[index], statistics) for index, statistics in told)
-    return Spread(statistics=statistics, cross_checked=bool(options.cross_check))
+    pieces = _Pieces(lambda numbers: [_toleranced(computed[number]) for number in numbers], computed.alike(_TOGETHER))
+    found = _told(_found(pieces, _plan(settings, options), options.jobs), options, len(computed))
+    return Spread(statistics=SpreadRows.of(found), cross_checked=bool(options.cross_check))
 
 
-def _told(found: Iterable[Found], options: Options, steps: int) -> Iterator[Found]:
-    """Yield what is found, and tell how much that is of all steps."""
+def _told(found: Iterable[Found], options: Options, rows: int) -> Iterator[Found]:
+    """Yield what is found, and tell how much that is of all steps, of which the elasticity check has as many."""
+    steps = rows * (2 if options.elasticity else 1)
     for done, one in enumerate(found, start=1):
         yield one
         if options.progress:
@@ -49,41 +51,33 @@ def _told(found: Iterable[Found], options: Options, steps: int) -> Iterator[Foun
 
 def row_statistics(rows: Sequence[TolerancedRow], plan: SamplingPlan, jobs: int) -> Iterator[Found]:
     """Yield each row's index and statistics, rows alike together, by up to `jobs` processes where there are enough."""
-    batches = _Batches(rows, list(batches_alike(rows)))
-    statistics = mapped(partial(batch_statistics, plan=plan), batches, min(jobs, len(rows) // ROWS_PER_WORKER))
-    for batch, of_batch in zip(batches.indices, statistics, strict=True):
-        yield from zip(batch, of_batch, strict=True)
+    return _found(_Pieces(lambda indices: [rows[index] for index in indices], list(batches_alike(rows))), plan, jobs)
+
+
+def _found(pieces: _Pieces, plan: SamplingPlan, jobs: int) -> Iterator[Found]:
+    """Yield the number and the statistics of each row of some pieces of work."""
+    workers = min(jobs, sum(map(len, pieces.numbers)) // ROWS_PER_WORKER)
+    for numbers, statistics in zip(pieces.numbers, mapped(partial(_of_piece, plan=plan), pieces, workers), strict=True):
+        yield from zip(numbers, statistics, strict=True)
+
+
+def _of_piece(rows: Sequence[TolerancedRow], plan: SamplingPlan) -> list[SpreadStatistics]:
+    """Return the statistics of each row, rows alike together."""
+    found: dict[int, SpreadStatistics] = {}
+    for batch in batches_alike(rows):
+        found |= zip(batch, batch_statistics([rows[index] for index in batch], plan), strict=True)
+    return [found[index] for index in range(len(rows))]
 
 
 @dataclass(frozen=True)
-class _Toleranced(Sequence[TolerancedRow]):
-    """What the spread of variants takes, made anew whenever it is asked for: a row's limits are much to hold."""
+class _Pieces(Sequence[list[TolerancedRow]]):
+    """Rows of which some are spread together, by their numbers; made when it is their turn, since limits are large."""
 
-    computed: Mapping[int, Computed]
-    numbers: Sequence[int]
+    rows: Callable[[Sequence[int]], list[TolerancedRow]]
+    numbers: Sequence[Sequence[int]]
 
     def __len__(self) -> int:
         return len(self.numbers)
-
-    @overload
-    def __getitem__(self, index: int) -> TolerancedRow: ...
-    @overload
-    def __getitem__(self, index: slice) -> Sequence[TolerancedRow]: ...
-    def __getitem__(self, index: int | slice) -> TolerancedRow | Sequence[TolerancedRow]:
-        if isinstance(index, slice):
-            return _Toleranced(self.computed, self.numbers[index])
-        return _toleranced(self.computed[self.numbers[index]])
-
-
-@dataclass(frozen=True)
-class _Batches(Sequence[list[TolerancedRow]]):
-    """The rows of batches, given by their indices, made when they are asked for."""
-
-    rows: Sequence[TolerancedRow]
-    indices: Sequence[list[int]]
-
-    def __len__(self) -> int:
-        return len(self.indices)
 
     @overload
     def __getitem__(self, index: int) -> list[TolerancedRow]: ...
@@ -91,8 +85,8 @@ class _Batches(Sequence[list[TolerancedRow]]):
     def __getitem__(self, index: slice) -> Sequence[list[TolerancedRow]]: ...
     def __getitem__(self, index: int | slice) -> list[TolerancedRow] | Sequence[list[TolerancedRow]]:
         if isinstance(index, slice):
-            return _Batches(self.rows, self.indices[index])
-        return [self.rows[place] for place in self.indices[index]]
+            return _Pieces(self.rows, self.numbers[index])
+        return self.rows(self.numbers[index])
 
 
 def spread_again(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import partial
 from typing import Any, TypeAlias
@@ -139,7 +140,8 @@ def _beside(flexspline_type: str, sizes: Mapping[str, Array], numbers: _Columns,
     beside |= {name: _where_given(values, young, poisson) for name, values in of_buckling.items()}
     lost_at = lost_motion_share * rated
     beside["lost_motion"] = _where_given(lost_motion(stiffness, lost_at), rated)
-    of_drive = [drive_lost_motion(*one) for one in zip(radius.tolist(), lost_at.tolist(), strict=True)]
+    both = zip(radius.tolist(), lost_at.tolist(), strict=True)
+    of_drive = [None if math.isnan(lost) else drive_lost_motion(size, lost) for size, lost in both]
     beside["drive_lost_motion"] = _optional(of_drive, rated)
     listed = [catalogue_stiffness(one) for one in radius.tolist()]
     least = np.array(
