@@ -23,11 +23,14 @@ from poisoned import POISON, lost_at_poison, lost_at_reading_poison
 from flexlash.analysis.examination import tables_beside
 from flexlash.analysis.options import Options
 from flexlash.analysis.run_summary import worst_first
+from flexlash.batch.chunk import compute_chunk
 from flexlash.batch.compute import answer_of
+from flexlash.batch.executor import WorkerLostError
 from flexlash.batch.large_tables import LargeTable, large_table
 from flexlash.batch.local_executor import local_executor
 from flexlash.outputs.plan import Plan
 from flexlash.pipeline import check, run
+from flexlash.reading.limited_process import ProcessFaultError
 from flexlash.reading.products import Companions
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.stamps import stamp_at
@@ -398,10 +401,31 @@ def test_a_row_that_stops_its_process_is_found(work, ending, tmp_path):
     assert answer.exit_code == ExitCode.SOME_ROWS
 
 
+def test_workers_that_are_always_lost_end_the_run(tmp_path, monkeypatch):
+    """Where every row stops its process the fault is not the rows': the run ends soon, and what was done is kept."""
+    monkeypatch.setattr("flexlash.batch.large_tables._MOST_LOST", 3)
+    path = _written(tmp_path / "gears.csv", _rows(40, faulty=False))
+    asked = []
+
+    def lost(data):
+        asked.append(data)
+        if len(asked) > 1:
+            raise WorkerLostError("a worker process was stopped 3 times")
+        return compute_chunk(data)
+
+    with pytest.raises(ProcessFaultError, match="more than 3 rows"):
+        large_table(_table(path, tmp_path / "out.csv"), HereExecutor(), chunk_rows=10, work=lost)
+    assert len(asked) < 30
+    _in_chunks(path, tmp_path / "out.csv", 10, resume=True)
+    assert (tmp_path / "out.csv").read_bytes() == run(path, tmp_path / "w.csv", **FEW).outputs[0].read_bytes()
+
+
 _DRIVER = """
 import json, sys
 from pathlib import Path
 from flexlash.analysis.options import Options
+from flexlash.batch.chunk import compute_chunk
+from flexlash.batch.executor import WorkerLostError
 from flexlash.batch.large_tables import LargeTable, large_table
 from flexlash.batch.local_executor import local_executor
 from flexlash.outputs.plan import Plan

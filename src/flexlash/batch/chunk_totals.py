@@ -151,7 +151,7 @@ class Totals:
     def answer(self, told: dict[str, Any], *, ran: bool, fail_over_limit: bool, findings_file: str) -> Answer:
         """Return what came of the whole table; `told` is what is known of the submission itself."""
         counts = self.counts
-        listed = f"{findings_file} lists them all" if findings_file else "the table beside a marked copy (--annotate) lists them all"
+        listed = f"{findings_file or 'the table beside a marked copy (--annotate)'} lists them all"
         details = [*lines_of_limits(counts, self._named()), *self._note_lines()] if ran else []
         cells, others = to_fix(chain(self.before, self.after))
         fixes = words_of_fixes(cells + self._to_fix, others)

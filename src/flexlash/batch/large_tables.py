@@ -41,7 +41,7 @@ from flexlash.outputs.plan import Output, WrittenFile
 from flexlash.outputs.working_folder import Parts, WorkingFolder, working_folder
 from flexlash.outputs.writing import Filling
 from flexlash.reading.excerpt import excerpt
-from flexlash.reading.limited_process import ask
+from flexlash.reading.limited_process import ProcessFaultError, ask
 from flexlash.reading.products import CHECKED_NAME, REPORT_NAME, Companions, made_of
 from flexlash.reading.read import Source
 from flexlash.reading.reading_limits import ReadingLimits
@@ -58,6 +58,9 @@ CHUNK_ROWS = 5000
 
 _AHEAD = 2
 """Chunks for each worker that are handed over or finished and not yet taken, so that none waits for this process."""
+
+_MOST_LOST = 20
+"""Rows that stop their process beyond which it is not the rows' fault: every one costs nine processes."""
 
 _LIMIT = "E110"
 """Code of a file that exceeds a limit: fewer rows may not."""
@@ -183,7 +186,10 @@ class _RefusedError(Exception):
 
 
 class _Run:
-    """One large table on its way; `kept` is what came of its chunks in the last pass, in order."""
+    """One large table on its way.
+
+    `kept` is what came of its chunks in the last pass, in order, `lost` how many rows have stopped their process.
+    """
 
     def __init__(
         self,
@@ -202,6 +208,7 @@ class _Run:
         self.chunk_rows = chunk_rows
         self.work = work
         self.kept: list[Parts] = []
+        self.lost = 0
 
     @cached_property
     def _options(self) -> Options:
@@ -321,7 +328,9 @@ class _Run:
         try:
             piece = _Piece.of(future.result())
         except WorkerLostError:
-            if len(rows) <= 1:
+            if not rows:
+                raise
+            if len(rows) == 1:
                 piece = self._passed_over(rows)
         except _RefusedError as refused:
             if len(rows) <= 1 or refused.chunk.refusal is None or refused.chunk.refusal.code != _LIMIT:
@@ -335,7 +344,13 @@ class _Run:
             yield from self._pieces(half, of_half, spread=spread)
 
     def _passed_over(self, rows: range) -> _Piece:
-        """Return what is known of a row that stops its process, which may be no more than where it stands."""
+        """Return what is known of a row that stops its process, which may be no more than where it stands.
+
+        Raises ProcessFaultError where that is so of many rows.
+        """
+        self.lost += 1
+        if self.lost > _MOST_LOST:
+            raise ProcessFaultError(f"more than {_MOST_LOST} rows stopped the process that computed them")
         try:
             return _Piece.of(self._submitted(rows, spread=self.table.ran, passed_over=True).result())
         except WorkerLostError:
