@@ -2,15 +2,15 @@
 
     python tests/benchmarks/killed_batches.py [moments] [submissions]
 
-A run is killed after a time that is spread over an undisturbed run's, taken up and killed again until it ends by
-itself; then its outputs must be those of the undisturbed run, byte for byte. It prints how often each was killed, how
-many submissions were done by then, and the wall time of all runs as a share of the undisturbed one.
+Each folder is begun and killed three times, when so many submissions more are done and a moment has passed, and then
+ends by itself; its outputs must be those of an undisturbed run, byte for byte, at each moment every file whole and
+afterwards no process left. It prints what was done by each moment and the wall time of all runs beside that of the
+undisturbed one.
 """
 
 from __future__ import annotations
 
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
@@ -30,16 +30,17 @@ def submissions(folder: Path, count: int) -> None:
         (folder / "in" / f"s{number:03}.xlsx").write_bytes(filled(rows))
 
 
-def killed(folder: Path, moments: list[float]) -> tuple[list[int], float]:
-    """Run, kill at each of these moments after its start, then let it end; return what was done then, and the time."""
+def killed(folder: Path, moments: list[tuple[int, float]]) -> tuple[list[int], float]:
+    """Run and kill at each of these moments, then let it end; return what was done then, and the time of all [s]."""
     known, start = [], time.perf_counter()
-    for seconds in moments:
+    for more, seconds in moments:
+        before = done(folder)
         run = begun(folder, "--resume")
-        try:
-            run.communicate(timeout=seconds)
-        except subprocess.TimeoutExpired:
-            run.kill()
-            run.communicate()
+        while done(folder) < before + more and run.poll() is None:
+            time.sleep(0.005)
+        time.sleep(seconds)
+        run.kill()
+        run.communicate()
         known.append(done(folder))
         assert not parts(folder), parts(folder)
         assert none_left(run.pid), "processes are left"
@@ -57,16 +58,13 @@ def main(moments: int = 20, count: int = 12) -> None:
         whole = time.perf_counter() - start
         expected = outputs(place / "straight")
         print(f"undisturbed: {whole:.1f} s for {count} submissions, {len(expected)} files")
-        spread = [whole * (number + 0.5) / moments for number in range(moments)]
+        at = [(number % (count // 3), 0.03 * number) for number in range(moments)]
         for first in range(0, moments, 3):
             folder = place / f"killed-{first}"
             shutil.copytree(place / "straight" / "in", folder / "in")
-            at = spread[first : first + 3]
-            known, seconds = killed(folder, at)
-            same = outputs(folder) == expected
-            words = ", ".join(f"{one:.1f} s ({number} done)" for one, number in zip(at, known, strict=True))
-            held = "the same bytes" if same else "OTHER BYTES"
-            print(f"killed at {words}: {held}, {seconds / whole:.1f} times the time")
+            known, seconds = killed(folder, at[first : first + 3])
+            held = "the same bytes" if outputs(folder) == expected else "OTHER BYTES"
+            print(f"killed with {known} of {count} done: {held}, {seconds / whole:.1f} times the time")
 
 
 if __name__ == "__main__":

@@ -49,6 +49,9 @@ def test_shell_blocks_run(copy, monkeypatch, capsys):
     assert (copy / "data" / "b3-160-study-report.xlsx").exists()
     assert (copy / "results.csv").exists()
     assert {path.name for path in (copy / "marked").iterdir()} == {
+        ".flexlash-manifest.jsonl",
+        "flexlash-summary.jsonl",
+        "flexlash-summary.xlsx",
         "needs-fixing-checked.xlsx",
         "needs-fixing-report.xlsx",
     }

@@ -36,6 +36,7 @@ def cli() -> None:
       flexlash check variants.xlsx           say what is wrong with it
       flexlash run variants.xlsx             compute it, write variants-report.xlsx
       flexlash run variants.xlsx -o out.csv  the results table alone
+      flexlash run folder -o reports         all submissions of a folder
       flexlash diff old.xlsx new.xlsx        what changed between two reports or submissions
     """  # noqa: D301
 
