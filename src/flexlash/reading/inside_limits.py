@@ -6,6 +6,7 @@ Where the system cannot limit a process (Windows), the clock remains, which the 
 from __future__ import annotations
 
 import contextlib
+import gc
 import math
 import os
 import sys
@@ -70,6 +71,8 @@ def prepare(load: Callable[[], None] | None = None) -> None:
         _warm_up()
         if load:
             load()
+        # What was loaded stays: it need not be looked through for garbage again while files are read.
+        gc.freeze()
     except BaseException as fault:  # noqa: BLE001
         # Told by the first answer: a process that ends here could not say why.
         _State.fault = _why(fault)
