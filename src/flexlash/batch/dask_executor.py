@@ -45,6 +45,8 @@ _QUIET = {
     "logging": dict.fromkeys(("distributed", "distributed.client", "distributed.core", "tornado"), "critical"),
     # A workbook may have 20 MiB, and data that are scattered are lost with the worker that holds them.
     "distributed.admin.large-graph-warning-threshold": "1TiB",
+    # Looking on while its threads wait for processes would take more processor time than all else that Dask does.
+    "distributed.worker.profile.enabled": False,
     "distributed.comm.timeouts.connect": f"{_CONNECTING}s",
 }
 
