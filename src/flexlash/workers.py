@@ -161,12 +161,23 @@ class Worker:
             raise value
         return value  # type: ignore[no-any-return]
 
+    def wait(self) -> None:
+        """Wait until the initializer has returned; raise StoppedError when the worker is stopped before."""
+        try:
+            self._answers.recv()
+        except (EOFError, OSError):
+            raise self._stopped() from None
+
+    def is_alive(self) -> bool:
+        """Whether the process has not ended."""
+        return self._process.is_alive()
+
     def _answer(self) -> tuple[str, Any]:
         """Return what the worker says at last, keeping time for it as it asks."""
         rest: float | None = None
         while self._answers.poll(rest):
             kind, value = self._answers.recv()
-            if kind != "timed":
+            if kind in {"done", "raised"}:
                 return kind, value
             rest = value
         raise self._stopped("seconds")
@@ -228,6 +239,7 @@ def _serve(requests: Connection, answers: Connection, initializer: Callable[[], 
     if initializer:
         initializer()
     with suppress(EOFError, OSError):
+        answers.send(("ready", None))
         while True:
             answers.send_bytes(_done(requests.recv_bytes()))
 
@@ -286,11 +298,14 @@ class Workers:
         self._lock = threading.Lock()
         self._workers: dict[int, Worker] = {}
         self._threads: list[threading.Thread] = []
+        self._places = set(range(number))
         try:
             for place in range(number):
-                self._start(place)
-        except BaseException:
+                self._workers[place] = Worker(*self._made_of)
+        except BaseException as fault:
             self.close()
+            if isinstance(fault, OSError):
+                raise WorkerLostError(f"no worker process can be started: {fault}") from fault
             raise
         self._threads = [
             threading.Thread(target=self._work, args=(place,), name=f"flexlash worker {place}", daemon=True)
@@ -332,41 +347,56 @@ class Workers:
         for worker in self._workers.values():
             worker.end()
 
-    def _start(self, place: int) -> Worker:
-        """Start a worker in a place; raise WorkerLostError where none can be started, or all are to end."""
-        with self._lock:
-            if self._closing:
-                raise WorkerLostError("the workers have ended")
-            try:
-                self._workers[place] = Worker(*self._made_of)
-            except OSError as fault:
-                raise WorkerLostError(f"no worker process can be started: {fault}") from fault
-            return self._workers[place]
-
     def _work(self, place: int) -> None:
-        """Have the worker of a place do one piece after another."""
-        worker: Worker | None = self._workers[place]
-        while True:
+        """Have the worker of a place do one piece after another; a piece waits for no worker that is still starting."""
+        worker = self._ready(place, self._workers[place])
+        while worker or self._is_last(place):
             number, piece = self._pieces.get()
             if piece is None:
                 return
-            if not piece.losses and not piece.future.set_running_or_notify_cancel():
-                continue
-            try:
-                worker = worker or self._start(place)
-                answer = worker.asked(piece.function, *piece.arguments)
-            except StoppedError as stopped:
-                self._repeat(number, piece, stopped)
-                with suppress(WorkerLostError):
-                    worker = None
-                    worker = self._start(place)
-            except BaseException as fault:  # noqa: BLE001
-                piece.future.set_exception(fault)
-            else:
-                piece.future.set_result(answer)
-            # What was asked and answered may be large, and the next piece may be long in coming.
+            if worker and not worker.is_alive():
+                self._pieces.put((number, piece))
+                worker = self._ready(place)
+            elif piece.losses or piece.future.set_running_or_notify_cancel():
+                worker = self._asked(worker, number, piece) or self._ready(place)
+            # What was asked may be large, and the next piece may be long in coming.
             del piece
-            answer = None
+
+    def _ready(self, place: int, worker: Worker | None = None) -> Worker | None:
+        """Return the worker of a place once it can begin, or another; None where several end before they can."""
+        for _ in range(_TRIES):
+            with suppress(StoppedError, OSError):
+                with self._lock:
+                    if self._closing:
+                        return None
+                    worker = worker or Worker(*self._made_of)
+                    self._workers[place] = worker
+                worker.wait()
+                return worker
+            worker = None
+        return None
+
+    def _is_last(self, place: int) -> bool:
+        """Give up a place that has no worker, where others have one: there may be no memory for so many."""
+        with self._lock:
+            if len(self._places) > 1:
+                self._places.discard(place)
+            return place in self._places
+
+    def _asked(self, worker: Worker | None, number: int, piece: _Piece) -> Worker | None:
+        """Have a worker do a piece of work, and return it if it was not stopped."""
+        try:
+            if worker is None:
+                raise WorkerLostError("no worker process can be started")  # noqa: TRY301
+            answer = worker.asked(piece.function, *piece.arguments)
+        except StoppedError as stopped:
+            self._repeat(number, piece, stopped)
+            return None
+        except BaseException as fault:  # noqa: BLE001
+            piece.future.set_exception(fault)
+        else:
+            piece.future.set_result(answer)
+        return worker
 
     def _repeat(self, number: int, piece: _Piece, stopped: StoppedError) -> None:
         """Have whoever is free repeat the work of a worker that was stopped, before any other work."""

@@ -46,14 +46,11 @@ def cluster(tmp_path_factory):
 @pytest.fixture
 def executor(cluster):
     """Return an executor of that scheduler, once both workers have come."""
-    end = time.monotonic() + 30
-    while time.monotonic() < end:
-        with dask_executor(cluster.address) as executor:
-            if executor.workers == 2:
-                yield executor
-                return
-        time.sleep(0.2)
-    pytest.fail("two workers did not come")
+    with dask_executor(cluster.address) as executor:
+        end = time.monotonic() + 60
+        while executor.workers < 2 and time.monotonic() < end:
+            time.sleep(0.2)
+        yield executor
 
 
 def _tasks():
@@ -180,6 +177,27 @@ def test_a_lost_scheduler_is_told(tmp_path):
                 with pytest.raises(ClusterError, match=f"^the Dask scheduler at {cluster.address} is not reachable$"):
                     future.result()
         assert time.monotonic() - begun < 10
+
+
+@slow
+@kills
+def test_workers_come_and_go(tmp_path, monkeypatch):
+    """A worker that comes later is counted and used; when all have gone for too long it is told."""
+    monkeypatch.setattr(module, "_COUNTING", 0.2)
+    monkeypatch.setattr(module, "_DESERTED", 1)
+    with dask_cluster(tmp_path) as cluster:
+        workers = [cluster.worker("--no-nanny")]
+        with dask_executor(cluster.address) as executor:
+            workers.append(cluster.worker("--no-nanny"))
+            end = time.monotonic() + 60
+            while executor.workers < 2 and time.monotonic() < end:
+                time.sleep(0.1)
+            assert executor.workers == 2
+            asked = executor.submit(told, b"import time; time.sleep(60)")
+            for worker in workers:
+                worker.kill()
+            with pytest.raises(ClusterError, match="has had no workers for 1 seconds"):
+                asked.result()
 
 
 @slow

@@ -22,6 +22,7 @@ __all__ = [
     "each_parquet",
     "fail",
     "large",
+    "leave",
     "obey",
     "own_number",
     "random_bytes",
@@ -69,6 +70,11 @@ def slowly(answer):
     """Return what was given, after more time than a file has."""
     time.sleep(1.5)
     return answer
+
+
+def leave():
+    """End this process."""
+    os._exit(3)
 
 
 def large(size):

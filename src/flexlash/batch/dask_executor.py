@@ -11,8 +11,7 @@ import re
 import threading
 from collections.abc import Coroutine, Iterator
 from concurrent.futures import CancelledError, Future
-from contextlib import AsyncExitStack, contextmanager
-from dataclasses import dataclass
+from contextlib import AsyncExitStack, contextmanager, suppress
 from importlib.util import find_spec
 from typing import Any, TypeVar
 
@@ -35,7 +34,16 @@ _HERE = "127.0.0.1:0"
 """Any port that this computer alone reaches."""
 
 _CONNECTING = 10
-"""Seconds that the scheduler and its first worker may take to answer."""
+"""Seconds that the scheduler may take to answer."""
+
+_COMING = 60
+"""Seconds that its first worker may take to come."""
+
+_COUNTING = 2
+"""Seconds after which the workers are counted again."""
+
+_DESERTED = 300
+"""Seconds without a worker after which none is expected any more; in a shorter time a machine starts anew."""
 
 _TRIES = 3
 """Times that a piece of work is given to a scheduler that gave it up, having lost several workers over it."""
@@ -60,22 +68,41 @@ class MissingDaskError(ModuleNotFoundError):
         super().__init__("A scheduler needs Dask: pip install 'flexlash[dask]'.")
 
 
-@dataclass(frozen=True, kw_only=True)
 class _DaskExecutor:
-    """The workers of a scheduler, asked in a thread that talks with it."""
+    """The workers of a scheduler, which come and go, asked in a thread that talks with it."""
 
-    workers: int
-    address: str
-    client: Any
-    loop: asyncio.AbstractEventLoop
+    def __init__(self, address: str, client: Any, loop: asyncio.AbstractEventLoop) -> None:
+        self.workers = 1
+        self._address = address
+        self._client = client
+        self._loop = loop
+        self._lost = f"the Dask scheduler at {address} is not reachable"
 
     def submit(self, work: Work, data: bytes) -> Future[bytes]:
         """Return what will be the answer; threads may ask side by side.
 
-        Besides what every executor raises it raises ClusterError when the scheduler is lost, or workers have another
-        version of flexlash.
+        Besides what every executor raises it raises ClusterError when the scheduler or all of its workers are lost, or
+        workers have another version of flexlash.
         """
-        return asyncio.run_coroutine_threadsafe(self._answer(work, data), self.loop)
+        return asyncio.run_coroutine_threadsafe(self._answer(work, data), self._loop)
+
+    async def counted(self) -> int:
+        """Return how many threads the workers have now."""
+        threads: int = sum((await self._client.nthreads()).values())
+        self.workers = max(1, threads)
+        return threads
+
+    async def counted_again_and_again(self) -> None:
+        """Count the workers as long as the scheduler is there; give up when there have been none for too long."""
+        seen = self._loop.time()
+        while self._client.status == "running":
+            await asyncio.sleep(_COUNTING)
+            with suppress(OSError):
+                if await self.counted():
+                    seen = self._loop.time()
+            if self._loop.time() - seen > _DESERTED:
+                self._lost = f"the Dask scheduler at {self._address} has had no workers for {_DESERTED} seconds"
+                await self._client.close()
 
     async def _answer(self, work: Work, data: bytes) -> bytes:
         """Return the answer of some worker; the scheduler repeats by itself what it loses a few workers over."""
@@ -83,32 +110,28 @@ class _DaskExecutor:
 
         for _ in range(_TRIES):
             try:
-                asked = self.client.submit(carried_out_here, __version__, work, data, pure=False)
+                asked = self._client.submit(carried_out_here, __version__, work, data, pure=False)
                 answer = await asked
             except KilledWorker:
                 continue
             except CancelledError:
-                raise _unreachable(self.address) from None
+                raise ClusterError(self._lost) from None
             except Exception as fault:
-                if self.client.status != "running":
-                    raise _unreachable(self.address) from None
+                if self._client.status != "running":
+                    raise ClusterError(self._lost) from None
                 raise ClusterError(
-                    f"a worker of the Dask scheduler at {self.address} cannot do the work of flexlash {__version__} "
+                    f"a worker of the Dask scheduler at {self._address} cannot do the work of flexlash {__version__} "
                     f"({type(fault).__name__}: {fault}); install flexlash {__version__} there"
                 ) from fault
             if isinstance(answer, OtherVersion):
                 raise ClusterError(
-                    f"a worker of the Dask scheduler at {self.address} has flexlash {answer}, this is {__version__}; "
+                    f"a worker of the Dask scheduler at {self._address} has flexlash {answer}, this is {__version__}; "
                     "install the same version everywhere"
                 )
             if isinstance(answer, Exception):
                 raise answer
             return answer  # type: ignore[no-any-return]
         raise WorkerLostError(f"all workers of Dask that took up a piece of work were lost, {_TRIES} times")
-
-
-def _unreachable(address: str) -> ClusterError:
-    return ClusterError(f"the Dask scheduler at {address} is not reachable")
 
 
 @contextmanager
@@ -158,13 +181,16 @@ async def _connected(
         # A TypeError says that tls:// was asked for without certificates.
         raise ClusterError(f"the Dask scheduler at {address} is not reachable: {fault}") from fault
     try:
-        await client.wait_for_workers(1, timeout=_CONNECTING)
+        await client.wait_for_workers(1, timeout=_COMING)
     except (TimeoutError, OSError) as fault:
         raise ClusterError(
             f"the Dask scheduler at {address} has no workers; start one with: dask worker {address}"
         ) from fault
-    threads = sum((await client.nthreads()).values())
-    return _DaskExecutor(workers=threads, address=address, client=client, loop=loop)
+    executor = _DaskExecutor(address, client, loop)
+    await executor.counted()
+    counting = loop.create_task(executor.counted_again_and_again())
+    stack.callback(counting.cancel)
+    return executor
 
 
 def _in(loop: asyncio.AbstractEventLoop, what: Coroutine[Any, Any, Result]) -> Result:
