@@ -66,6 +66,7 @@ MOST_ROWS = 9_999_999
 CHANGED = "it has changed since its first reading"
 """What is said of a file that is no longer the one that was surveyed."""
 
+_FIXED = "; an address has no more, whatever the setting"
 _SECONDS = 86_400
 _SHAPE = str.maketrans("23456789", "11111111")
 
@@ -408,7 +409,7 @@ def _numbered(block: Iterable[list[str]], first: int) -> Iterator[tuple[int, dic
 def too_many_rows() -> Refusal:
     """Return the refusal of a table whose rows have no address."""
     limit = f"{MOST_ROWS:,}"
-    facts = {"what": "the number of rows of a table", "limit": limit, "found": f"more than {limit}", "detail": ""}
+    facts = {"what": "the number of rows of a table", "limit": limit, "found": f"more than {limit}", "detail": _FIXED}
     return Refusal("E110", setting="table_rows", **facts)
 
 
