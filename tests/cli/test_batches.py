@@ -370,3 +370,18 @@ def test_the_process_that_prints_stays_light(many, tmp_path):
     )
     _, out, err = ended(begun(_beside(many, tmp_path), code=code))
     assert out.splitlines()[-1] == "heavy set()", err
+
+
+@LINUX
+@pytest.mark.slow
+def test_one_submission_has_one_worker(many, tmp_path):
+    """However many processes are allowed: this one, the worker, and the keeper of locks that Python starts."""
+    folder = _beside(many, tmp_path)
+    for path in sorted((folder / "in").iterdir())[1:]:
+        path.unlink()
+    run, most = begun(folder), 0
+    while run.poll() is None:
+        most = max(most, len(processes_of(run.pid)))
+        time.sleep(0.02)
+    assert ended(run)[0] == 0
+    assert most in {2, 3}

@@ -88,7 +88,8 @@ def carried_out(
         from flexlash.batch.side_by_side import Batch, Wanted, side_by_side, tables_or_why
 
         tables = tables_or_why(options)
-        bar = Bar(len(given.files), quiet=told.quiet or told.as_json or not told.ran)
+        what, is_brief = ("Computing", False) if told.ran else ("Checking", not told.several)
+        bar = Bar(len(given.files), what, quiet=told.quiet or told.as_json or is_brief)
         with _manifest(planned, options, tables, resume=resume) as manifest:
             batch = Batch(
                 command=command,

@@ -68,8 +68,9 @@ def print_json(fields: Mapping[str, Any]) -> None:
 class Bar:
     """How far many files are, drawn on standard error where that is a terminal that can draw, unless it is `quiet`."""
 
-    def __init__(self, files: int, *, quiet: bool) -> None:
+    def __init__(self, files: int, what: str = "Computing", *, quiet: bool) -> None:
         self._files = files
+        self._what = what
         self._is_drawn = not quiet and sys.stderr.isatty() and _can_draw()
         self._done = self._rows = self._known = 0
         self._part = (0, 1)
@@ -97,7 +98,7 @@ class Bar:
         rows, of_table = self._part
         ended = self._done + rows / of_table
         filled = round(_BAR * ended / self._files) if self._files else _BAR
-        text = f"Computing [{'#' * filled}{'-' * (_BAR - filled)}] {self._done} of {self._files} files"
+        text = f"{self._what} [{'#' * filled}{'-' * (_BAR - filled)}] {self._done} of {self._files} files"
         if new := ended - self._known:
             left, rows = round(seconds / new * (self._files - ended)), rows + self._rows
             text += f", {rows:,} rows, {rows / seconds:,.0f} rows/s, {left // 60}:{left % 60:02} left"
