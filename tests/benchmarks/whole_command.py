@@ -4,7 +4,8 @@
 
 For each number of rows a submission is made from the template. Every command runs in a process of its own,
 once after one warm-up; the floor reads the submission's cells with openpyxl and, for `run`, copies every cell
-of the report with openpyxl and XlsxWriter. Quote the ratios: absolute times differ from machine to machine.
+of the report with openpyxl and XlsxWriter. Quote the ratios, those of
+processor time where the machine has other work: absolute times differ from machine to machine.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 READ = """
@@ -68,8 +70,21 @@ def make_submission(rows: int, path: Path) -> None:
     path.write_bytes(template_bytes(Filling(variants=variants)))
 
 
-def measured(command: list[str]) -> tuple[float, float]:
-    """Return wall time [s] and peak memory [MiB] of a command's second run.
+@dataclass(frozen=True)
+class Cost:
+    """What a command cost: wall and processor time [s], the latter with its children's, and peak memory [MiB]."""
+
+    wall: float
+    processor: float
+    memory: float = 0.0
+
+    def __add__(self, other: Cost) -> Cost:
+        """Return what two commands cost one after the other."""
+        return Cost(self.wall + other.wall, self.processor + other.processor, max(self.memory, other.memory))
+
+
+def measured(command: list[str]) -> Cost:
+    """Return what the second run of a command cost.
 
     A child inherits the peak of its parent, so this process must stay small: it imports nothing heavy.
     """
@@ -79,32 +94,37 @@ def measured(command: list[str]) -> tuple[float, float]:
         _, _, usage = os.wait4(process.pid, 0)
         wall = time.perf_counter() - start
         process.returncode = 0
-    return wall, usage.ru_maxrss / 1024
+    return Cost(wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
+
+
+def told(label: str, cost: Cost, floor: Cost) -> None:
+    """Print the line of a command beside its floor."""
+    times = f"{cost.wall:9.2f}{cost.processor:9.2f}{cost.memory:7.0f}{floor.wall:9.2f}{floor.processor:9.2f}"
+    print(f"{label:28}{times}{cost.wall / floor.wall:7.1f}{cost.processor / floor.processor:7.1f}")
 
 
 def main() -> None:
     """Print a table of commands, each with its ratio to the floor."""
     flexlash = [sys.executable, "-m", "flexlash"]
-    wall, memory = measured([*flexlash, "--help"])
-    print(f"{'command':28}{'wall s':>9}{'MiB':>7}{'floor s':>9}{'ratio':>7}")
-    print(f"{'--help':28}{wall:9.2f}{memory:7.0f}")
+    started = measured([*flexlash, "--help"])
+    headings = f"{'wall s':>9}{'proc s':>9}{'MiB':>7}{'floor':>9}{'proc s':>9}{'ratio':>7}{'proc':>7}"
+    print(f"{'command':28}{headings}")
+    print(f"{'--help':28}{started.wall:9.2f}{started.processor:9.2f}{started.memory:7.0f}")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for rows in [int(argument) for argument in sys.argv[1:]] or [6, 1000, 10_000]:
             path = folder / f"{rows}.xlsx"
             subprocess.run([sys.executable, __file__, "--make", str(rows), str(path)], check=True)
             report, copy, pickled = folder / "report.xlsx", folder / "copy.xlsx", folder / "cells.pickle"
-            read, _ = measured([sys.executable, "-c", READ, str(path)])
-            checked, memory = measured([*flexlash, "check", str(path)])
-            print(f"{f'check {rows:,} rows':28}{checked:9.2f}{memory:7.0f}{read:9.2f}{checked / read:7.1f}")
+            read = measured([sys.executable, "-c", READ, str(path)])
+            told(f"check {rows:,} rows", measured([*flexlash, "check", str(path)]), read)
             for jobs in (1, 2):
-                ran, memory = measured([*flexlash, "run", str(path), "-o", str(report), "--jobs", str(jobs)])
+                ran = measured([*flexlash, "run", str(path), "-o", str(report), "--jobs", str(jobs)])
                 if jobs == 1:
                     dump = READ + "\nimport pickle\nwith open(sys.argv[2], 'wb') as f: pickle.dump(cells, f)"
                     subprocess.run([sys.executable, "-W", "ignore", "-c", dump, report, pickled], check=True)
-                    write, _ = measured([sys.executable, "-c", WRITE, "", str(pickled), str(copy)])
-                label = f"run {rows:,} rows, {jobs} job{'s' if jobs > 1 else ''}"
-                print(f"{label:28}{ran:9.2f}{memory:7.0f}{read + write:9.2f}{ran / (read + write):7.1f}")
+                    write = measured([sys.executable, "-c", WRITE, "", str(pickled), str(copy)])
+                told(f"run {rows:,} rows, {jobs} job{'s' if jobs > 1 else ''}", ran, read + write)
 
 
 if __name__ == "__main__":
