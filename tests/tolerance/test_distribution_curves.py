@@ -11,7 +11,7 @@ from scipy.special import ndtr, ndtri
 from toleranced import SUM, plan, row, statistics_of_row
 
 from flexlash.tolerance.dimension_limits import Limits
-from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS, curve_of
+from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS, curve_of, curves_of
 from flexlash.tolerance.spread_statistics import PERCENTILES
 
 SCORES = np.array(CURVE_SCORES)
@@ -105,3 +105,21 @@ def test_without_scatter_the_curve_is_level():
     assert set(curve.outputs.tolist()) == set(curve.edges.tolist()) == {statistics.numbers["p50"]}
     assert curve.score_errors.max() == curve.rarest == 0
     assert curve.heights.sum() == 1
+
+
+def test_a_curve_does_not_depend_on_the_rows_beside_it():
+    """Rows alike have together the very curves that each has alone, however many lines each takes."""
+    rows = [
+        row(CUP, NOMINAL | {"cylinder_length": 0.16 * (1 + place / 50)}, LIMITS | {"wall_thickness": limits}, 1.08e-3)
+        for place, limits in enumerate(
+            [Limits(low=0.0016 - off, high=0.0016 + off) for off in (1e-5, 5e-5, 1e-4, 3e-4, 5e-4)]
+        )
+    ]
+    sampling = plan()
+    statistics = [statistics_of_row(one, sampling) for one in rows]
+    assert len({one.numbers["spread_points"] for one in statistics}) > 1
+    for one, found, curve in zip(rows, statistics, curves_of(rows, statistics, sampling), strict=True):
+        alone = curve_of(one, found, sampling)
+        for part in ("outputs", "score_errors", "edges", "heights"):
+            assert (getattr(curve, part) == getattr(alone, part)).all()
+        assert curve.rarest == alone.rarest

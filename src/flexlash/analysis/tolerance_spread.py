@@ -13,7 +13,7 @@ from flexlash.analysis.spread_rows import SpreadRows
 from flexlash.mechanics.flexspline import backlash
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.variant import Limits, Settings
-from flexlash.tolerance.distribution_curves import Curve, curve_of
+from flexlash.tolerance.distribution_curves import Curve, curves_of
 from flexlash.tolerance.row_batches import TolerancedRow, batch_statistics, batches_alike
 from flexlash.tolerance.sampling import SamplingPlan
 from flexlash.tolerance.spread_statistics import SpreadStatistics
@@ -106,13 +106,21 @@ def drawn_curves(drawn: Sequence[Computed], settings: Settings, options: Options
 def row_curves(
     rows: Sequence[tuple[TolerancedRow, SpreadStatistics]], plan: SamplingPlan, jobs: int
 ) -> Iterator[Curve]:
-    """Yield the curve of each row, by up to `jobs` processes where there are lines or points enough."""
+    """Yield the curve of each row, rows alike together, by up to `jobs` processes where there are points enough."""
     points = sum(int(statistics.numbers.get("spread_points") or 0) for _, statistics in rows)
-    return mapped(partial(_curve, plan=plan), rows, min(jobs, points // POINTS_PER_WORKER))
+    batches = list(batches_alike([row for row, _ in rows]))
+    work = [[rows[index] for index in batch] for batch in batches]
+    found = mapped(partial(_curves, plan=plan), work, min(jobs, points // POINTS_PER_WORKER))
+    curves = {
+        index: curve
+        for batch, some in zip(batches, found, strict=True)
+        for index, curve in zip(batch, some, strict=True)
+    }
+    return (curves[index] for index in range(len(rows)))
 
 
-def _curve(row: tuple[TolerancedRow, SpreadStatistics], plan: SamplingPlan) -> Curve:
-    return curve_of(*row, plan)
+def _curves(rows: Sequence[tuple[TolerancedRow, SpreadStatistics]], plan: SamplingPlan) -> list[Curve]:
+    return curves_of([row for row, _ in rows], [statistics for _, statistics in rows], plan)
 
 
 def _plan(settings: Settings, options: Options) -> SamplingPlan:

@@ -6,19 +6,23 @@ score error         standard error of an output, as that of its score
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import ndtr, ndtri
 
 from flexlash.schema.arrays import Array
-from flexlash.tolerance.engine.line_spread import LineSpread
+from flexlash.tolerance.engine.line_direction import Inputs, direction_of
+from flexlash.tolerance.engine.line_points import line_net
+from flexlash.tolerance.engine.line_quantiles import quantiles_of
+from flexlash.tolerance.engine.line_tables import Lines
 from flexlash.tolerance.row_batches import RowBatch, TolerancedRow
 from flexlash.tolerance.sampling import SamplingPlan
 from flexlash.tolerance.spread import Spread
 from flexlash.tolerance.spread_statistics import SpreadStatistics
 
-__all__ = ["CURVE_SCORES", "HISTOGRAM_BINS", "Curve", "curve_of"]
+__all__ = ["CURVE_SCORES", "HISTOGRAM_BINS", "Curve", "curve_of", "curves_of"]
 
 _TAIL = tuple(step / 10 for step in range(31, 51))
 CURVE_SCORES = (*(-score for score in reversed(_TAIL)), *(step / 5 for step in range(-15, 16)), *_TAIL)
@@ -32,6 +36,10 @@ HISTOGRAM_BINS = 40
 _HISTOGRAM_CUT = 0.0005
 _SCORES = np.array(CURVE_SCORES)
 _PROBABILITIES = ndtr(_SCORES)
+_MEDIAN = np.array([0.5])
+
+_TOGETHER = 1 << 11
+"""Lines of rows alike that are looked at together, so that their tables fit the cache."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,16 +62,30 @@ def curve_of(row: TolerancedRow, statistics: SpreadStatistics, plan: SamplingPla
 
     Where nothing scatters, all of it is one value.
     """
-    batch = RowBatch([row])
-    numbers = statistics.numbers
-    if not batch.limits:
-        return _level(numbers["p50"] or 0.0)
-    method = statistics.texts["spread_method"]
-    if method == "line":
-        lines = int(numbers["spread_points"] or 0)
-        spread = LineSpread(batch.outputs_of, batch.inputs[0], samples=lines, seed=plan.seed)
-        return _of_lines(spread, numbers["p50_standard_error"] or 0.0)
-    return _of_points(batch.sampled(0, plan.points("random" if method == "random" else "sobol")))
+    return curves_of([row], [statistics], plan)[0]
+
+
+def curves_of(rows: Sequence[TolerancedRow], statistics: Sequence[SpreadStatistics], plan: SamplingPlan) -> list[Curve]:
+    """Return the curves of rows alike; each has the bits that it has alone."""
+    batch, curves = RowBatch(rows), dict[int, Curve]()
+    lines: dict[int, list[int]] = {}
+    for index, one in enumerate(statistics):
+        method = one.texts.get("spread_method")
+        if not batch.limits:
+            curves[index] = _level(one.numbers["p50"] or 0.0)
+        elif method == "line":
+            lines.setdefault(int(one.numbers["spread_points"] or 0), []).append(index)
+        else:
+            points = plan.points("random" if method == "random" else "sobol")
+            curves[index] = _of_points(batch.sampled(index, points))
+    for number, indices in lines.items():
+        step = max(_TOGETHER // number, 1)
+        for start in range(0, len(indices), step):
+            some = indices[start : start + step]
+            median_errors = [statistics[index].numbers["p50_standard_error"] or 0.0 for index in some]
+            found = _of_lines(RowBatch([rows[index] for index in some]), number, plan.seed, median_errors)
+            curves |= dict(zip(some, found, strict=True))
+    return [curves[index] for index in range(len(rows))]
 
 
 def _level(output: float) -> Curve:
@@ -79,11 +101,20 @@ def _level(output: float) -> Curve:
     )
 
 
-def _of_lines(spread: Spread, median_error: float) -> Curve:
-    """Return the curve that lines give; their errors are widened as that of the row's median was."""
-    outputs, errors = spread.quantile(_PROBABILITIES), spread.standard_error(_PROBABILITIES)
-    plain_error = spread.standard_error(0.5)
-    errors = errors * (median_error / plain_error if plain_error > 0 else 1.0)
+@np.errstate(all="ignore")
+def _of_lines(batch: RowBatch, number: int, seed: int, median_errors: Sequence[float]) -> Iterator[Curve]:
+    """Yield the curves that so many lines give; their errors are widened as those of the rows' medians were."""
+    inputs = Inputs.of(batch.inputs)
+    net = line_net(seed, len(inputs.names) - 1, number, single_curved=inputs.single_curved)
+    lines = Lines(batch.outputs_of, inputs, direction_of(batch.outputs_of, inputs), net)
+    quantiles, median = quantiles_of(lines, _PROBABILITIES), quantiles_of(lines, _MEDIAN)
+    for row, (median_error, plain_error) in enumerate(zip(median_errors, median.output_error[0].tolist(), strict=True)):
+        widened = median_error / plain_error if plain_error > 0 else 1.0
+        yield _of_line_quantiles(quantiles.output[:, row], quantiles.output_error[:, row] * widened)
+
+
+def _of_line_quantiles(outputs: Array, errors: Array) -> Curve:
+    """Return the curve through the quantiles that lines give, with their standard errors."""
     low, high = np.interp(ndtri([_HISTOGRAM_CUT, 1 - _HISTOGRAM_CUT]), _SCORES, outputs).tolist()
     edges = np.linspace(low, high, HISTOGRAM_BINS + 1)
     return Curve(

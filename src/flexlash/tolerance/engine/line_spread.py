@@ -53,7 +53,6 @@ class LineSpread(Spread):
             self.size = initial_lines(len(inputs), samples)
             self._lines = self._drawn(direction)
             self._margin = np.ones(1)
-            self._asked = np.empty(0)
             if self._lines.roughness[0] > _SMOOTH and (samples is not None or len(inputs) == 1):
                 probed = np.array(DECISIVE if len(inputs) == 1 else DECISIVE[2:3])
                 self._require_resolved(quantiles_of(self._lines, probed))
@@ -128,11 +127,7 @@ class LineSpread(Spread):
 
     @np.errstate(all="ignore")
     def _line_quantiles(self, probability: Array) -> LineQuantiles:
-        # The quantiles and then their errors are asked for, each of the same probabilities.
-        if not np.array_equal(self._asked, probability):
-            self._answer = quantiles_of(self._lines, probability).widened(self._margin)
-            self._asked = probability.copy()
-        return self._answer
+        return quantiles_of(self._lines, probability).widened(self._margin)
 
     @np.errstate(all="ignore")
     def _probabilities_above(self, value: Array) -> Array:
