@@ -90,6 +90,7 @@ def test_the_limited_process_tells_a_changed_library(monkeypatch):
 def test_a_library_that_cannot_be_loaded_is_told_by_every_answer(monkeypatch):
     """A library that lacks something when the limited process starts is told with its name, not as a file's fault."""
     monkeypatch.setattr(limited._State, "fault", None)
+    monkeypatch.setattr(limited._State, "prepared", False)
     monkeypatch.setattr("flexlash.reading.inside_limits._silence", lambda: None)
     monkeypatch.setattr("flexlash.reading.inside_limits._judge", lambda *_: None)
     monkeypatch.setattr("flexlash.reading.inside_limits._warm_up", lambda: importlib.import_module("no_such"))

@@ -139,14 +139,16 @@ def _partners(doubles: DoubledNames, wanted: Sequence[int]) -> dict[int, str]:
     """Return the other cells of the same name for those rows whose name is used more than once."""
     import numpy as np
 
-    places = np.flatnonzero(np.isin(doubles.rows, np.array(wanted, dtype=np.int64)))
-    names = np.searchsorted(doubles.starts, places, side="right") - 1
+    if not doubles.rows:
+        return {}
+    places = np.flatnonzero(np.isin(np.frombuffer(doubles.rows, dtype=np.int64), np.array(wanted, dtype=np.int64)))
+    names = np.searchsorted(np.frombuffer(doubles.starts, dtype=np.int64), places, side="right") - 1
     partners = {}
     for place, name in zip(places.tolist(), names.tolist(), strict=True):
-        row = int(doubles.rows[place])
+        row = doubles.rows[place]
         same = doubles.rows[doubles.starts[name] : doubles.starts[name + 1]]
         partners[row] = doubles.ranges.get(name) or cell_ranges(
-            CellAddress(other, doubles.column) for other in same.tolist() if other != row
+            CellAddress(other, doubles.column) for other in same if other != row
         )
     return partners
 

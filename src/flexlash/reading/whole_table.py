@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
-
-if TYPE_CHECKING:
-    import numpy as np
+from typing import Literal, TypeAlias
 
 __all__ = ["DoubledNames", "OwnKind", "WholeTable"]
 
@@ -51,7 +49,7 @@ class DoubledNames:
     the cells of names that too many rows have for each to be told its partners, by the number of the name.
     """
 
-    rows: np.ndarray[Any, np.dtype[np.int64]]
-    starts: np.ndarray[Any, np.dtype[np.int64]]
+    rows: array[int]
+    starts: array[int]
     ranges: Mapping[int, str]
     column: int

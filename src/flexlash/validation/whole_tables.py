@@ -38,6 +38,11 @@ _NAMES = ("material", "tolerance_class")
 _MOST_CLASSES = MOST_NAMES
 """Most tolerance classes that a table may name: each excerpt carries all of them."""
 
+_ALL = 2**64 - 1
+_NOTHING = pl.DataFrame()
+_MOST_KINDS = 4 * 7 * 4
+"""More kinds of numbers than there can be."""
+
 _SHAPE = str.maketrans("23456789", "11111111")
 """Digits but 0 are alike to every rule that tells numbers."""
 
@@ -308,10 +313,6 @@ class Gatherer:
         )
 
 
-_ALL = 2**64 - 1
-_NOTHING = pl.DataFrame()
-
-
 def _is_blank(value: RawValue | None, *, is_text: bool) -> bool:
     """Whether a cell counts as blank where rows are judged; readers of texts leave out more spaces than others."""
     if not isinstance(value, str):
@@ -360,10 +361,6 @@ def _text(value: RawValue | None, longest: int, *, is_text: bool) -> str | None:
     return None if isinstance(text, Fault) else text or None
 
 
-_MOST_KINDS = 4 * 7 * 4
-"""More kinds of numbers than there can be."""
-
-
 def _kinds(text: str) -> tuple[str, str, str]:
     """Return the kind of a number by its sign, and what it is read as where that sign is a point and a comma."""
     return sign_of(text), _read_as(text), _read_as(CommaNumber(text))
@@ -404,4 +401,6 @@ def _doubles(hashes: tuple[array[int], array[int]], rows: array[int], column: in
         for number, (start, end) in enumerate(zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True))
         if end - start > MANY
     }
-    return DoubledNames(rows=doubled, starts=starts, ranges=ranges, column=column)
+    # Plain arrays: whoever receives a survey loads no library to hold it.
+    own = (array("q", one.astype(np.int64).tobytes()) for one in (doubled, starts))
+    return DoubledNames(rows=next(own), starts=next(own), ranges=ranges, column=column)
