@@ -131,6 +131,16 @@ def test_a_line_that_was_cut_is_none_and_the_next_is_whole(tmp_path, outputs):
         assert _resumed(tmp_path, outputs) is not None, length
 
 
+def test_a_line_of_another_kind_is_none(tmp_path, outputs):
+    """What is no line of this version's making is passed over; it stands in the way of nothing."""
+    _kept(tmp_path, outputs)
+    path = tmp_path / MANIFEST_NAME
+    for line in (b"[1]", b"3", b"{}", b"no JSON", b'{"submission": "a.xlsx", "sha256": "", "options": "o"}', b"\xff"):
+        path.write_bytes(path.read_bytes() + line + b"\n")
+    assert _resumed(tmp_path, outputs) is not None
+    assert _resumed(tmp_path, outputs, sha="") is None
+
+
 @pytest.mark.parametrize("content", [b"my notes\n", b"my notes", b'{"flexlash": "other"}\n'])
 def test_a_file_of_somebody_else_is_left_alone(tmp_path, content):
     """What has the manifest's name and is none is neither read nor changed, whether or not to go on is asked."""

@@ -36,6 +36,7 @@ COMMANDS = {
     "needs-fixing-mended.xlsx": "check needs-fixing.xlsx --apply-fixes -o needs-fixing-mended.xlsx",
     "table-checked.xlsx": "check table.csv --annotate",
     "damaged-checked.xlsx": "check damaged.xlsx --annotate",
+    "reports/flexlash-summary.xlsx": "run table.csv one.csv damaged.xlsx none.csv --samples 64 -o reports",
 }
 """Each kind of workbook and the command that writes it, in order."""
 

@@ -31,6 +31,11 @@ _TITLE = json.dumps({"flexlash": "what was done here, by which --resume goes on"
 _OF_THE_PLACE = frozenset({"jobs", "progress", "given", "marked_copy", "tolerances", "materials", "from_report"})
 """Options on which no output depends, or of which the digest of what they name counts."""
 
+_KEYS = {
+    "submission", "sha256", "options", "planned", "files", "copy", "remarks", "not_carried", "code", "ended",
+}  # fmt: skip
+"""What each line holds; any other line is none."""
+
 _TOLD = ("told", "finding_lines", "words", "details", "by_rule")
 _PIECE = 2**20
 
@@ -56,7 +61,8 @@ class Manifest:
         for line in self._file.lines:
             with contextlib.suppress(ValueError):
                 entry = json.loads(line)
-                self._done[entry["submission"], entry["sha256"], entry["options"]] = entry
+                if isinstance(entry, dict) and entry.keys() == _KEYS:
+                    self._done[entry["submission"], entry["sha256"], entry["options"]] = entry
 
     def close(self) -> None:
         """Let go of the file."""

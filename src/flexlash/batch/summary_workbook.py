@@ -15,6 +15,7 @@ import xlsxwriter
 
 from flexlash.analysis.run_summary import counted
 from flexlash.batch.ended import Ended, how_many
+from flexlash.report.layout.paper import print_readably
 from flexlash.report.layout.styles import Book
 from flexlash.schema.exit_codes import ExitCode, most_severe
 from flexlash.schema.findings import CATALOGUE, shown
@@ -50,7 +51,7 @@ _SUBMISSIONS = (
     ("Marginal", 9),
     ("Fails", 8),
     ("Worst variant", 26),
-    ("Units over its limit", 20),
+    ("Units over its limit", 28),
     ("Report", 32),
     ("Why not, or not all", 60),
 )
@@ -60,7 +61,7 @@ _RULES = (
     ("Rule", 40),
     ("Findings", 10),
     ("Submissions", 12),
-    ("First places", 70),
+    ("First places", 80),
     ("More", 24),
 )
 _HEADER = 3
@@ -111,6 +112,7 @@ def _sheet(book: Book, title: str, words: str, columns: Sequence[tuple[str, int]
         sheet.write_string(_HEADER, column, label, book.format("header"))
     sheet.freeze_panes(_HEADER + 1, 1)
     sheet.repeat_rows(_HEADER)
+    print_readably(sheet, [width for _, width in columns])
     return sheet
 
 
@@ -133,7 +135,7 @@ def _write_submissions(book: Book, ended: Sequence[Ended], folder: Path) -> None
             sheet.write_number(row, column, one.counts[key], book.format("text", "count"))
         if one.worst:
             worst = one.worst[0]
-            sheet.write_string(row, 9, shown(worst.variant, _NAME), book.format("text"))
+            sheet.write_string(row, 9, shown(worst.variant, _NAME), book.format("indented"))
             sheet.write_string(row, 10, worst.over_limit or "no limit", book.format("text"))
         reports = [path for path in one.written.paths if path != one.written.marked_copy]
         if reports:
@@ -169,7 +171,7 @@ def _write_rules(book: Book, ended: Sequence[Ended]) -> None:
         sheet.write_string(row, 2, rule.title, book.format("text"))
         sheet.write_number(row, 3, sum(one.by_rule[code] for one in having), book.format("text", "count"))
         sheet.write_number(row, 4, len(having), book.format("text", "count"))
-        sheet.write_string(row, 5, shown(_places(having, code), 1000), book.format("text"))
+        sheet.write_string(row, 5, shown(_places(having, code), 1000), book.format("indented"))
         sheet.write_string(row, 6, f"flexlash explain {code}", book.format("text"))
     if rules:
         sheet.autofilter(_HEADER, 0, _HEADER + len(rules), len(_RULES) - 1)
