@@ -261,6 +261,23 @@ def test_the_report_of_the_worst_of_a_million_says_where_all_are(worst_of_many):
 
 
 @pytest.mark.slow
+def test_what_the_report_of_the_worst_of_a_million_carries_says_so(worst_of_many):
+    """What is made of that report again bears the name of a part of the submission, not of the submission."""
+    outcome, path = worst_of_many
+    carried = report_of(Source(name=path.name, data=path.read_bytes()), ReadingLimits()).submission
+    assert carried.name == "gears, 6 worst of 1000000.csv"
+    assert carried.sheets["Variants"].rows == outcome.submission.sheets["Variants"].rows
+
+
+@pytest.mark.slow
+def test_without_a_file_of_all_results_none_is_promised(worst_of_many):
+    """Where no file beside the report holds all Results, the report names the way to them and not its own sheet."""
+    outcome, _ = worst_of_many
+    extent = extent_of(replace(outcome, whole=replace(WHOLE, results_file="")))
+    assert extent.note == "The 6 worst of 999,998 variants; run with -o NAME.parquet for all."
+
+
+@pytest.mark.slow
 @needs_validator
 def test_the_report_of_the_worst_of_a_million_is_valid(worst_of_many):
     """Excel finds nothing to repair in it."""

@@ -234,7 +234,7 @@ def _of_large(extent: Extent) -> dict[str, str]:
         "Findings": f"What was found: each rule with its mend and count, then the first {MOST_FINDINGS} findings.",
         "Submission": f"Sheet Variants as read, of {worst}, worst first behind their row numbers.",
     }
-    if extent.results_file:
+    if extent.only_drawn:
         texts["Results"] = f"Every number of {worst}, in submitted order; {extent.elsewhere}."
     return texts
 

@@ -23,6 +23,9 @@ __all__ = ["carried_text", "write_carried"]
 _PIECE = 30_000
 """Characters of a cell, which can hold 32,767."""
 
+_STEM = 150
+"""Characters that are kept of a name to which something is added."""
+
 _TOP = 15
 """Rows of a sheet that was not read itself, in which its headers were recognised."""
 
@@ -45,7 +48,7 @@ def carried_text(outcome: Outcome) -> str:
     carried = {
         "form": FORM,
         "version": __version__,
-        "submission": {"name": submission.name, "sha256": submission.sha256, "kind": submission.kind},
+        "submission": {"name": _name(outcome), "sha256": submission.sha256, "kind": submission.kind},
         "options": {name: getattr(settings, name) for name in ("seed", "method", "samples")}
         | {name: bool(getattr(outcome.options, name)) for name in SWITCHES},
         "cells": cells_to_json(
@@ -60,6 +63,15 @@ def carried_text(outcome: Outcome) -> str:
     # Readers of workbooks take _x0041_ for a letter, and some leave out x005F_ wherever it stands.
     text = json.dumps(carried, separators=(",", ":"))
     return text.replace("_x", "_\\u0078").replace("x005F_", "\\u0078005F_")
+
+
+def _name(outcome: Outcome) -> str:
+    """Return the name of the submission, which says where no more than the worst of its rows are carried."""
+    name = outcome.submission.name
+    if outcome.whole is None:
+        return name
+    stem, point, ending = name.rpartition(".")
+    return f"{(stem or name)[:_STEM]}, {outcome.results.height} worst of {outcome.whole.rows}{point}{ending}"
 
 
 def _sheets(submission: Submission, named: set[str]) -> list[RawSheet]:

@@ -19,13 +19,15 @@ MOST_FINDINGS = 1000
 class Extent:
     """How many of the computed variants a report draws, and where the others are.
 
-    The sheets of a `large` report show no other variant than those drawn, but for Results. `results_file` is the file
-    beside the report that holds all of Results, empty where the sheet Results does; `findings_file` that of findings.
+    The sheets of a `large` report show no other variant than those drawn, but for Results; with `only_drawn` Results
+    does neither. `results_file` is then the file beside the report that holds all of Results, empty where there is
+    none; `findings_file` that of findings.
     """
 
     drawn: int
     total: int
     large: bool = False
+    only_drawn: bool = False
     results_file: str = ""
     findings_file: str = ""
 
@@ -42,7 +44,9 @@ class Extent:
     @property
     def elsewhere(self) -> str:
         """Where all variants are, as sentences end."""
-        return f"all Results are in {self.results_file}" if self.results_file else "all are in Results"
+        if not self.only_drawn:
+            return "all are in Results"
+        return f"all Results are in {self.results_file}" if self.results_file else "run with -o NAME.parquet for all"
 
     @property
     def note(self) -> str:
@@ -60,6 +64,7 @@ def extent_of(outcome: Outcome) -> Extent:
         drawn=drawn,
         total=whole.computed,
         large=True,
+        only_drawn=True,
         results_file=whole.results_file,
         findings_file=whole.findings_file,
     )

@@ -91,7 +91,7 @@ def _computed(facts: SummaryFacts) -> Iterator[str]:
 def _shown(facts: SummaryFacts) -> Iterator[str]:
     """Yield what the sheets of a large report show, and where everything is."""
     extent = facts.extent
-    if extent.results_file:
+    if extent.only_drawn:
         findings = f", all findings in {extent.findings_file}" if extent.findings_file else ""
         yield f"This report shows the {extent.drawn} worst of them; {extent.elsewhere}{findings}."
     elif extent.large:
