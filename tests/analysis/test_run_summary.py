@@ -139,7 +139,7 @@ def test_what_could_not_be_read_has_no_marked_copy(tmp_path, content):
     path.write_bytes(content)
     outcome = check(path, marked_copy=tmp_path / "broken-checked.xlsx")
     lines = list(summary_lines(outcome, "broken.xlsx", ran=False))
-    assert lines[1] == f"Findings alone, since your file itself could not be marked: {outcome.written.marked_copy}"
+    assert lines[1] == f"Findings alone, without your file itself: {outcome.written.marked_copy}"
 
 
 def test_what_was_marked_is_a_marked_copy(table, sound, tmp_path):

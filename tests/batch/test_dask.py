@@ -13,6 +13,7 @@ import time
 import pytest
 import regenerate
 from dask_cluster import dask_cluster
+from in_order import in_order
 from worker_tasks import doubled, random_bytes, read_within, told
 
 from flexlash import __version__
@@ -22,7 +23,7 @@ from flexlash.batch.answer import Answer, Task
 from flexlash.batch.compute import compute
 from flexlash.batch.dask_executor import ClusterError, MissingDaskError, dask_executor
 from flexlash.batch.dask_work import OtherVersion, carried_out_here
-from flexlash.batch.executor import WorkerLostError, in_order
+from flexlash.batch.executor import WorkerLostError
 from flexlash.batch.local_executor import local_executor
 from flexlash.reading.read import Source
 

@@ -12,9 +12,10 @@ import time
 
 import pytest
 import regenerate
+from in_order import in_order
 from worker_tasks import doubled, leave, random_bytes, read_within, told
 
-from flexlash.batch.executor import WorkerLostError, in_order
+from flexlash.batch.executor import WorkerLostError
 from flexlash.batch.local_executor import local_executor
 from flexlash.workers import Workers
 

@@ -197,7 +197,7 @@ def _written_line(written: Written, path: Path) -> str:
     if path != written.marked_copy:
         return f"Written: {named}"
     if written.not_carried is None:
-        return f"Findings alone, since your file itself could not be marked: {named}"
+        return f"Findings alone, without your file itself: {named}"
     without = f", without its {', '.join(written.not_carried)}" if written.not_carried else ""
     return f"Marked copy of your file{without}: {named}"
 

@@ -15,8 +15,8 @@ from flexlash.schema.stamps import stamp_at
 
 __all__ = ["Given", "GivenFiles", "given_files"]
 
-_ENDINGS = frozenset({".xlsx", ".xlsm", ".csv", ".tsv", ".txt", ".parquet"})
-"""How a file in a folder must end to be looked at; what it is is judged by its content."""
+_ENDINGS = frozenset({".xlsx", ".xlsm", ".csv", ".tsv", ".parquet"})
+"""How a file in a folder must end to be looked at; what it is is judged by its content. Most texts are no tables."""
 
 _UNFINISHED = frozenset({".tmp", ".part", ".crdownload", ".filepart"})
 """How files end that another program is still writing."""

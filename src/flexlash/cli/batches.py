@@ -48,7 +48,7 @@ def to_be_told(given: GivenFiles, *, as_json: bool, quiet: bool, verbose: bool, 
         for folder in given.folders:
             complain(
                 f"{named(folder)}: there is no submission in this folder, no workbook or table (.xlsx, .xlsm, .csv, "
-                ".tsv, .txt, .parquet) that flexlash did not write; --recursive also looks below it."
+                ".tsv, .parquet) that flexlash did not write; --recursive also looks below it."
             )
     return told
 
