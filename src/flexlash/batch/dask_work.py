@@ -11,7 +11,8 @@ from concurrent.futures import CancelledError
 
 from flexlash import __version__
 from flexlash.batch.executor import Work, WorkerLostError
-from flexlash.batch.local_executor import prepared, worked
+from flexlash.batch.local_executor import worked
+from flexlash.reading.inside_limits import prepare
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.reading.limited_process import ProcessFaultError
 from flexlash.workers import FEW_THREADS, Workers
@@ -34,7 +35,7 @@ def _processes() -> Workers:
 
     with _STARTING:
         if not _PROCESSES:
-            _PROCESSES.append(Workers(get_worker().state.nthreads, prepared, FEW_THREADS))
+            _PROCESSES.append(Workers(get_worker().state.nthreads, prepare, FEW_THREADS))
         return _PROCESSES[0]
 
 

@@ -13,7 +13,7 @@ from flexlash.reading.libraries import ChangedLibrary
 from flexlash.reading.limited_process import ProcessFaultError
 from flexlash.workers import FEW_THREADS, Workers
 
-__all__ = ["local_executor", "prepared", "worked"]
+__all__ = ["local_executor", "worked"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,20 +34,8 @@ def local_executor(workers: int) -> Iterator[Executor]:
 
     Raises WorkerLostError where no process can be started.
     """
-    with Workers(workers, prepared, FEW_THREADS) as processes:
+    with Workers(workers, prepare, FEW_THREADS) as processes:
         yield _LocalExecutor(workers=workers, processes=processes)
-
-
-def prepared() -> None:
-    """Make this process a worker: everything that a submission needs is loaded before the first one comes."""
-    prepare(_loaded)
-
-
-def _loaded() -> None:
-    """Load what follows reading and validation, up to the report."""
-    from flexlash.analysis import tolerance_spread  # noqa: F401
-    from flexlash.feedback import returned_files  # noqa: F401
-    from flexlash.report import report_data, workbook  # noqa: F401
 
 
 def worked(work: Work, data: bytes) -> bytes:

@@ -60,17 +60,12 @@ def is_prepared() -> bool:
     return _State.prepared
 
 
-def prepare(load: Callable[[], None] | None = None) -> None:
-    """Make this process one that can be limited: silent, with its libraries loaded before anything is forbidden.
-
-    `load` loads what else will be needed.
-    """
+def prepare() -> None:
+    """Make this process one that can be limited: silent, with its libraries loaded before anything is forbidden."""
     _State.prepared = True
     _silence()
     try:
         _warm_up()
-        if load:
-            load()
         # What was loaded stays: it need not be looked through for garbage again while files are read.
         gc.freeze()
     except BaseException as fault:  # noqa: BLE001
