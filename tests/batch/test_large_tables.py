@@ -198,6 +198,27 @@ def test_cross_check_and_tables_beside(tmp_path):
     assert answer.told["counts"] == whole.counts
 
 
+def test_faults_that_stop_everything_beside_faults_that_stop_some(tmp_path):
+    """Where a class is faulty and a fault stops every row as well, each is told once, with the rows that wait for it.
+
+    Rows of a chunk wait for all faults, and for that of their class where it has some.
+    """
+    rows = [{"tolerance_class": "coarse" if number > 9 else "", **row} for number, row in enumerate(_rows(18, faulty=False))]
+    path = _written(tmp_path / "gears.csv", rows)
+    tolerances = tmp_path / "tolerances.csv"
+    tolerances.write_text(
+        "tolerance_class,dimension,grade\ncoarse,wall_thickness,IT99\n,wall_thickness,IT7\nodd,torque,IT7\n"
+    )
+    whole = check(path, tolerances=tolerances)
+    messages = [found.message for found in whole.findings if found.sheet == "Tolerances"]
+    assert any("All rows of Variants wait" in message for message in messages)
+    assert any("of Variants wait for class coarse" in message for message in messages)
+    for size in (5, 1000):
+        answer, _ = _in_chunks(path, None, size, ran=False, tolerances=tolerances)
+        assert answer.told["findings"] == whole.as_dictionary()["findings"]
+        assert answer.told["counts"] == whole.counts
+
+
 # What comes out
 
 

@@ -18,7 +18,7 @@ from flexlash.reading.read import Source
 from flexlash.reading.refusal import Refusal
 from flexlash.reading.survey import survey
 from flexlash.report.results_table import results_table
-from flexlash.validation.blocking_errors import waiting_rows, waiting_sentences
+from flexlash.validation.blocking_errors import waiting_rows, without_waiting
 from flexlash.validation.consolidation import shared_by_excerpts
 
 __all__ = ["at_once", "in_excerpts"]
@@ -62,13 +62,12 @@ def _merged(outcomes):
     own, shared = [], []
     for outcome in outcomes:
         table = outcome.validated.table
-        sentences = waiting_sentences("Variants", waiting_rows(table, outcome.blocked)) if table else {}
-        for found in outcome.findings:
+        waiting = waiting_rows(table, outcome.blocked) if table else []
+        for found in without_waiting(outcome.findings, "Variants", waiting):
             if table and found.sheet == table.sheet and found.row > table.last_head_row and found.code not in _OF_UNITS:
                 own.append(found)
-                continue
-            sentence = sentences.get((found.sheet, found.row), "")
-            shared = shared_by_excerpts(shared, [replace(found, message=found.message.removesuffix(sentence))])
+            else:
+                shared = shared_by_excerpts(shared, [found])
     submission = first.submission
     facts = (submission.name, submission.kind, submission.sha256, submission.delimiter, submission.encoding)
     return results, Counter(own), shared, facts, sum(len(one.computed) for one in outcomes)

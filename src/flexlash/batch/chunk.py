@@ -78,8 +78,8 @@ class ChunkSummary:
     `refusal` says why it is no readable submission, or is skipped; then there is nothing else. `columns` are those of
     its Results. `own` are the first findings at its rows, by `rules` and `groups` there are more; `before` and `after`
     are the findings of the whole file that come before and after those, without the sentence about the rows that wait
-    for them: `waiting` are those of the chunk, of the sheet of this name. `to_fix` is at how many cells of its rows
-    there are errors, `worst` are its worst rows.
+    for them: `waiting` are those of the chunk, of the sheet of this name, `all_wait` that all rows do. `to_fix` is at
+    how many cells of its rows there are errors, `worst` are its worst rows.
     """
 
     rows: int = 0
@@ -99,6 +99,7 @@ class ChunkSummary:
     to_fix: int = 0
     sheet: str = ""
     waiting: tuple[Waiting, ...] = ()
+    all_wait: bool = False
     worst: tuple[WorstRow, ...] = ()
     notes: SpreadNotes = field(default_factory=SpreadNotes)
     cross_checked: bool = False

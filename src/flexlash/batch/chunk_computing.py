@@ -32,7 +32,7 @@ from flexlash.report.results_table import results_table
 from flexlash.report.workbook import report_bytes
 from flexlash.schema.findings import Finding, finding
 from flexlash.schema.result_columns import result_columns
-from flexlash.validation.blocking_errors import told_of_waiting, waiting_rows, waiting_sentences
+from flexlash.validation.blocking_errors import waiting_rows, without_waiting
 from flexlash.validation.validated import Table
 
 __all__ = ["answered", "findings_listed", "report_of_worst"]
@@ -69,6 +69,7 @@ def answered(task: ChunkTask) -> ChunkAnswer:
         to_fix=to_fix(own)[0],
         sheet=table.sheet if table else "",
         waiting=tuple(waiting_rows(table, outcome.blocked)) if table else (),
+        all_wait=table is not None and outcome.blocked.everything and table.has_entries,
     )
     results = b""
     if task.spread:
@@ -107,12 +108,9 @@ def _by_place(outcome: Outcome, table: Table | None) -> tuple[tuple[Finding, ...
     sheets = [*outcome.submission.sheets]
     later = {*sheets[sheets.index(table.sheet) + 1 :]}
     places: dict[int, list[Finding]] = {-1: [], 0: [], 1: []}
-    sentences = waiting_sentences(table.sheet, waiting_rows(table, outcome.blocked))
-    for found in outcome.findings:
+    for found in without_waiting(outcome.findings, table.sheet, waiting_rows(table, outcome.blocked)):
         is_own = found.sheet == table.sheet and found.row > table.last_head_row
-        sentence = sentences.get((found.sheet, found.row), "") if told_of_waiting(found, table.sheet) else ""
-        told = replace(found, message=found.message.removesuffix(sentence))
-        places[0 if is_own else 1 if found.sheet in later else -1].append(told)
+        places[0 if is_own else 1 if found.sheet in later else -1].append(found)
     return tuple(places[-1]), tuple(places[0]), tuple(places[1])
 
 

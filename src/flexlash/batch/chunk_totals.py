@@ -27,7 +27,7 @@ from flexlash.batch.chunk import FIRST_CELLS, FIRST_FINDINGS, ChunkSummary, Wors
 from flexlash.schema.findings import Finding
 from flexlash.schema.limit_verdict import VERDICTS, Verdict
 from flexlash.schema.spellings import plain
-from flexlash.validation.blocking_errors import Waiting, told_of_waiting, waiting_sentences
+from flexlash.validation.blocking_errors import Waiting, with_waiting
 from flexlash.validation.consolidation import shared_by_excerpts
 
 __all__ = ["Totals"]
@@ -55,6 +55,7 @@ class Totals:
         self._to_fix = 0
         self._sheet = ""
         self._waiting: dict[tuple[str, str], Waiting] = {}
+        self._all_wait = False
 
     def add(self, chunk: ChunkSummary) -> None:
         """Add the chunk that follows."""
@@ -73,6 +74,7 @@ class Totals:
         self._own += chunk.own[: FIRST_FINDINGS - len(self._own)]
         self._to_fix += chunk.to_fix
         self._sheet = chunk.sheet or self._sheet
+        self._all_wait |= chunk.all_wait
         for waiting in chunk.waiting:
             owner = (waiting.kind, plain(waiting.name))
             known = self._waiting.get(owner)
@@ -102,13 +104,7 @@ class Totals:
 
     def _told(self, findings: Iterable[Finding]) -> list[Finding]:
         """Return findings with what they say of the rows that wait for them."""
-        sentences = waiting_sentences(self._sheet, self._waiting.values())
-        return [
-            replace(found, message=found.message + sentences.get((found.sheet, found.row), ""))
-            if told_of_waiting(found, self._sheet)
-            else found
-            for found in findings
-        ]
+        return with_waiting(findings, self._sheet, self._waiting.values(), all_wait=self._all_wait)
 
     @property
     def findings(self) -> list[Finding]:

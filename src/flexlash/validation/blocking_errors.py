@@ -13,7 +13,7 @@ from flexlash.schema.findings import Finding, shown
 from flexlash.schema.spellings import plain
 from flexlash.validation.validated import Blocked, Owner, Table
 
-__all__ = ["Waiting", "stopped_by", "told_of_waiting", "waiting_rows", "waiting_sentences", "with_waiting_rows"]
+__all__ = ["Waiting", "stopped_by", "waiting_rows", "with_waiting", "with_waiting_rows", "without_waiting"]
 
 
 def stopped_by(table: Table, blocked: Blocked, findings: Iterable[Finding]) -> dict[int, list[Finding]]:
@@ -71,22 +71,48 @@ def waiting_rows(table: Table, blocked: Blocked) -> list[Waiting]:
 
 def with_waiting_rows(findings: Sequence[Finding], table: Table, blocked: Blocked) -> list[Finding]:
     """Return findings of which errors in a material or class, or that stop everything, say which rows wait."""
-    sentences = waiting_sentences(table.sheet, waiting_rows(table, blocked))
-    every = f" All rows of {shown(table.sheet)} wait for it." if blocked.everything and table.has_entries else ""
+    all_wait = blocked.everything and table.has_entries
+    return with_waiting(findings, table.sheet, waiting_rows(table, blocked), all_wait=all_wait)
+
+
+def with_waiting(
+    findings: Iterable[Finding], sheet: str, waiting: Iterable[Waiting], *, all_wait: bool
+) -> list[Finding]:
+    """Return findings of which errors in other sheets say which rows of Variants, the sheet of this name, wait.
+
+    `all_wait` says that every row waits for those errors for which none waits by its material or class.
+    """
+    sentences = _sentences(sheet, waiting)
+    every = _every(sheet) if all_wait else ""
     return [
-        replace(finding, message=finding.message + sentences.get((finding.sheet, finding.row), every))
-        if told_of_waiting(finding, table.sheet)
-        else finding
-        for finding in findings
+        replace(found, message=found.message + sentences.get((found.sheet, found.row), every))
+        if _is_told_of_waiting(found, sheet)
+        else found
+        for found in findings
     ]
 
 
-def told_of_waiting(finding: Finding, sheet: str) -> bool:
+def without_waiting(findings: Iterable[Finding], sheet: str, waiting: Iterable[Waiting]) -> list[Finding]:
+    """Return findings without what `with_waiting` added to them."""
+    sentences, every = _sentences(sheet, waiting), _every(sheet)
+    return [
+        replace(found, message=found.message.removesuffix(sentences.get((found.sheet, found.row), every)))
+        if _is_told_of_waiting(found, sheet)
+        else found
+        for found in findings
+    ]
+
+
+def _is_told_of_waiting(finding: Finding, sheet: str) -> bool:
     """Whether a finding says which rows of Variants, the sheet of this name, wait for it."""
     return finding.level == "error" and bool(finding.cell) and finding.sheet != sheet
 
 
-def waiting_sentences(sheet: str, waiting: Iterable[Waiting]) -> dict[tuple[str, int], str]:
+def _every(sheet: str) -> str:
+    return f" All rows of {shown(sheet)} wait for it."
+
+
+def _sentences(sheet: str, waiting: Iterable[Waiting]) -> dict[tuple[str, int], str]:
     """Return which rows wait for a material or class, for the errors in it, by the sheet and row of these."""
     sentences: dict[tuple[str, int], str] = {}
     for one in waiting:
