@@ -28,6 +28,7 @@ from flexlash.batch.compute import answer_of
 from flexlash.batch.executor import WorkerLostError
 from flexlash.batch.large_tables import LargeTable, large_table
 from flexlash.batch.local_executor import local_executor
+from flexlash.cli.recreation import recreate
 from flexlash.outputs.plan import Plan
 from flexlash.pipeline import check, run
 from flexlash.reading.limited_process import ProcessFaultError
@@ -203,7 +204,7 @@ def test_faults_that_stop_everything_beside_faults_that_stop_some(tmp_path):
 
     Rows of a chunk wait for all faults, and for that of their class where it has some.
     """
-    rows = [{"tolerance_class": "coarse" if number > 9 else "", **row} for number, row in enumerate(_rows(18, faulty=False))]
+    rows = [{"tolerance_class": "coarse" if row["Lot"] > 9 else "", **row} for row in _rows(18, faulty=False)]
     path = _written(tmp_path / "gears.csv", rows)
     tolerances = tmp_path / "tolerances.csv"
     tolerances.write_text(
@@ -241,6 +242,22 @@ def test_a_report_of_the_worst_with_everything_beside(tmp_path, monkeypatch):
         assert f">{row['variant']}<" in text
     assert f">{worst_first(whole)[12]['variant']}<" not in text
     assert answer.told["counts"] == whole.counts
+
+
+@pytest.mark.slow
+def test_a_report_of_rows_beyond_a_worksheet_is_made_anew(tmp_path):
+    """Of a table longer than any worksheet a report can be made anew: its rows then stand close below each other."""
+    path = _written(tmp_path / "gears.csv", _rows(18, faulty=False))
+    header, rows = path.read_text(encoding="utf-8").split("\n", 1)
+    path.write_text(f"{header}\n{1_050_000 * chr(10)}{rows}", encoding="utf-8", newline="")
+    report = tmp_path / "gears-report.xlsx"
+    _in_chunks(path, report, 2_000_000)
+    found = recreate(report, tmp_path / "anew.xlsx")
+    assert (found.outcome.counts["computed"], found.different) == (18, 0)
+    assert any("these rows stand close below each other" in remark for remark in found.remarks)
+    sheet = openpyxl.load_workbook(found.outcome.outputs[0])["Variants"]
+    names = [row[0] for row in sheet.iter_rows(values_only=True, max_row=40)]
+    assert [name for name in names if str(name).startswith("V-")] == [f"V-{number}" for number in range(18)]
 
 
 def test_the_report_does_not_depend_on_the_chunks(tmp_path):

@@ -12,6 +12,7 @@ from flexlash.reading.cells_json import cells_from_json
 from flexlash.reading.raw import CsvDialect, ErrorCell, Percentage, RawSheet, RawValue, Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
+from flexlash.reading.survey import MOST_ROWS
 from flexlash.reading.worksheet import MAXIMUM_COLUMN, MAXIMUM_ROW
 from flexlash.reading.xlsx import Cells, read_workbook
 from flexlash.schema.columns import SETTINGS
@@ -72,7 +73,7 @@ def carried_submission(carried: Any, limits: ReadingLimits) -> Submission:
             )
         cells, head = cells_from_json(carried["cells"]), carried["submission"]
         _check_head(head, cells)
-        _check_sheets(cells.sheets, limits)
+        _check_sheets(cells.sheets, limits, MAXIMUM_ROW if head["kind"] == "workbook" else MOST_ROWS + 1)
         return Submission(
             name=head["name"],
             sha256=head["sha256"],
@@ -115,8 +116,8 @@ def _options(carried: dict[str, Any]) -> dict[str, Any]:
     return {name: carried[name] for name in ("seed", "method", "samples", *SWITCHES)}
 
 
-def _check_sheets(sheets: list[RawSheet], limits: ReadingLimits) -> None:
-    """Require cells as reading yields them, no more of them than a file may have."""
+def _check_sheets(sheets: list[RawSheet], limits: ReadingLimits, last: int) -> None:
+    """Require cells as reading yields them, no more of them than a file may have, none beyond the last row."""
     limits.require("sheets", len(sheets))
     limits.require("cells", sum(len(cells) for sheet in sheets for cells in sheet.rows.values()))
     _require(len({sheet.name for sheet in sheets}) == len(sheets))
@@ -124,12 +125,12 @@ def _check_sheets(sheets: list[RawSheet], limits: ReadingLimits) -> None:
         rows = list(sheet.rows)
         _require(
             isinstance(sheet.name, str) and 0 < len(sheet.name) <= _LONGEST_NAME,
-            _are_numbers(rows, MAXIMUM_ROW) and rows == sorted(rows),
-            _are_numbers(sheet.hidden_rows, MAXIMUM_ROW),
-            all(len(area) == 4 and _are_numbers(area, MAXIMUM_ROW) for area in sheet.merged),  # noqa: PLR2004
+            _are_numbers(rows, last) and rows == sorted(rows),
+            _are_numbers(sheet.hidden_rows, last),
+            all(len(area) == 4 and _are_numbers(area, last) for area in sheet.merged),  # noqa: PLR2004
             isinstance(sheet.hidden, bool),
             isinstance(sheet.numbers_are_texts, bool),
-            sheet.dialect is None or _is_dialect(sheet.dialect),
+            sheet.dialect is None or _is_dialect(sheet.dialect, last),
         )
         for cells in sheet.rows.values():
             _require(_are_numbers(cells, MAXIMUM_COLUMN), all(map(_is_value, cells.values())))
@@ -149,13 +150,13 @@ def _is_value(value: Any) -> bool:
     return isinstance(value, get_args(RawValue))
 
 
-def _is_dialect(dialect: CsvDialect) -> bool:
+def _is_dialect(dialect: CsvDialect, last: int) -> bool:
     """Whether a delimited text can have been written like this."""
     addresses = (dialect.comma_number, dialect.foreign_text)
     return (
         dialect.delimiter in _DELIMITERS
         and isinstance(dialect.encoding, str)
         and isinstance(dialect.file, str)
-        and _are_numbers(dialect.longer, MAXIMUM_ROW)
-        and all(address is None or (len(address) == 2 and _are_numbers(address, MAXIMUM_ROW)) for address in addresses)  # noqa: PLR2004
+        and _are_numbers(dialect.longer, last)
+        and all(address is None or (len(address) == 2 and _are_numbers(address, last)) for address in addresses)  # noqa: PLR2004
     )

@@ -161,20 +161,29 @@ class _Carried:
         return replace(column, label=label, unit=unit, minimum=low, maximum=high)
 
     def _rows(self) -> list[dict[str | int, Any]]:
-        """Return the rows below the header at their distance from it; those of Settings in the template's order."""
+        """Return the rows below the header at their distance from it; those of Settings in the template's order.
+
+        Rows of a table that lie beyond the end of a worksheet stand close below each other instead, as far as they fit.
+        """
         carried = {*self.keys, *self.own}
         filled_rows = [
             row for row, cells in self.sheet.rows.items() if row > self.heading.row and carried & cells.keys()
         ]
-        last = min(max(filled_rows, default=self.heading.row), _LAST_ROW - FIRST_ROW + self.heading.row)
-        rows: list[dict[str | int, Any]] = [{}] * (last - self.heading.row)
+        most = _LAST_ROW - FIRST_ROW
+        places = {row: row - self.heading.row - 1 for row in filled_rows}
+        if max(places.values(), default=0) >= most:
+            self._remark(
+                "these rows stand close below each other, since they reach beyond the last row of a sheet",
+                [CellAddress(row, 1) for row in filled_rows],
+            )
+            places = {row: place for place, row in enumerate(filled_rows)}
+        rows: list[dict[str | int, Any]] = [{}] * min(most, max(places.values(), default=-1) + 1)
         self.values: list[CellAddress] = []
         self.unstored: list[CellAddress] = []
         self.texts: list[CellAddress] = []
-        for row in filled_rows:
-            if row <= last:
-                rows[row - self.heading.row - 1] = self._row(row)
-        if beyond := [CellAddress(row, 1) for row in filled_rows if row > last]:
+        for row in filled_rows[:most]:
+            rows[places[row]] = self._row(row)
+        if beyond := [CellAddress(row, 1) for row in filled_rows[most:]]:
             self._remark("beyond the last row of the new sheet, and left behind", beyond)
         return _settings_in_order(rows) if self.schema == "Settings" else rows
 
