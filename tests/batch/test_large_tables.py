@@ -29,10 +29,14 @@ from flexlash.batch.executor import WorkerLostError
 from flexlash.batch.large_tables import LargeTable, large_table
 from flexlash.batch.local_executor import local_executor
 from flexlash.cli.recreation import recreate
+from flexlash.comparison.difference import difference
+from flexlash.comparison.difference_lines import difference_lines
+from flexlash.comparison.sides import side_of
 from flexlash.outputs.plan import Plan
 from flexlash.pipeline import check, run
 from flexlash.reading.limited_process import ProcessFaultError
 from flexlash.reading.products import Companions
+from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.stamps import stamp_at
 
@@ -242,6 +246,23 @@ def test_a_report_of_the_worst_with_everything_beside(tmp_path, monkeypatch):
         assert f">{row['variant']}<" in text
     assert f">{worst_first(whole)[12]['variant']}<" not in text
     assert answer.told["counts"] == whole.counts
+
+
+def test_a_report_of_the_worst_says_so_wherever_it_is_read(tmp_path, monkeypatch):
+    """A comparison of reports of the worst rows says of each what is not compared, one made anew from it as well."""
+    path = _written(tmp_path / "gears.csv", _rows(18, faulty=False))
+    monkeypatch.setattr("flexlash.batch.chunk_computing.DRAWN", 10)
+    monkeypatch.setattr("flexlash.batch.chunk_totals.DRAWN", 10)
+    report, anew = tmp_path / "gears-report.xlsx", tmp_path / "anew.xlsx"
+    _in_chunks(path, report, 7)
+    recreate(report, anew)
+    found = difference(*(side_of(one, ReadingLimits()) for one in (report, anew)))
+    assert list(difference_lines(found)) == [
+        "gears-report.xlsx carries the 10 worst of 18 rows; the others are not compared.",
+        "anew.xlsx carries the 10 worst of 18 rows; the others are not compared.",
+        "No difference in inputs or results.",
+    ]
+    assert found.as_dictionary()["old"]["worst_of"] == 18
 
 
 @pytest.mark.slow

@@ -58,6 +58,7 @@ WRONG = {
     "digest no text": (("submission", "sha256"), None),
     "kind unknown": (("submission", "kind"), "refused"),
     "kind a list": (("submission", "kind"), []),
+    "worst of a text": (("submission", "worst_of"), "9"),
     "seed a text": (("options", "seed"), "0"),
     "seed true": (("options", "seed"), True),
     "seed negative": (("options", "seed"), -1),

@@ -60,6 +60,10 @@ def _how_reports_differ(difference: Difference) -> Iterator[str]:
         return
     old, new = difference.old, difference.new
     files = _files(difference)
+    for file, side in zip(files, (old, new), strict=True):
+        if side.submission.worst_of > len(side.records):
+            carried = f"the {len(side.records):,} worst of {side.submission.worst_of:,} rows"
+            yield f"{file} carries {carried}; the others are not compared."
     if old.version != new.version:
         yield f"{files[0]} was made by flexlash {shown(old.version)}, {files[1]} by flexlash {shown(new.version)}."
     for name in SWITCHES:

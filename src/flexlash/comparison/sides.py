@@ -90,6 +90,7 @@ class Side:
         """Return what it is, as JSON holds it."""
         facts: dict[str, Any] = {"file": self.file, "kind": "report" if self.is_report else "submission"}
         facts |= {"submission": self.submission.name, "sha256": self.submission.sha256}
+        facts |= {"worst_of": self.submission.worst_of} if self.submission.worst_of else {}
         made = {"version": self.version, "options": dict(self.submission.run_with or {})}
         return facts | made if self.is_report else facts
 

@@ -83,6 +83,7 @@ def carried_submission(carried: Any, limits: ReadingLimits) -> Submission:
             role=cells.role,
             template_version=cells.template_version,
             run_with=_options(carried["options"]),
+            worst_of=head.get("worst_of", 0),
         )
     except _NONSENSE as fault:
         raise Refusal("E122", found=_ALTERED) from fault
@@ -99,6 +100,7 @@ def _check_head(head: dict[str, Any], cells: Cells) -> None:
         isinstance(head["name"], str) and 0 < len(head["name"]) <= _LONGEST_NAME,
         bool(_DIGEST.fullmatch(head["sha256"])),
         head["kind"] in _KINDS,
+        type(head.get("worst_of", 0)) is int and 0 <= head.get("worst_of", 0) <= MOST_ROWS,
         isinstance(cells.role, str),
         isinstance(cells.template_version, str),
         cells.modified is None or cells.modified.tzinfo is None,

@@ -110,6 +110,7 @@ class Submission:
     """A submission as read, and its bytes. `role` is what its document properties say it is.
 
     `run_with` are the options of the run whose report carried it; None for a submission that was read itself.
+    `worst_of` is how many rows it had where the report carried the worst of them alone, else 0.
     """
 
     name: str
@@ -121,6 +122,7 @@ class Submission:
     template_version: str = ""
     data: bytes = field(default=b"", repr=False)
     run_with: Mapping[str, Any] | None = None
+    worst_of: int = 0
 
     @property
     def dialect(self) -> CsvDialect | None:

@@ -45,10 +45,12 @@ def write_carried(book: Book, outcome: Outcome) -> None:
 def carried_text(outcome: Outcome) -> str:
     """Return what was read and the options that shaped the numbers, as JSON in plain letters."""
     submission, settings = outcome.submission, outcome.settings
+    worst_of = outcome.whole.rows if outcome.whole else submission.worst_of
     carried = {
         "form": FORM,
         "version": __version__,
-        "submission": {"name": _name(outcome), "sha256": submission.sha256, "kind": submission.kind},
+        "submission": {"name": _name(outcome), "sha256": submission.sha256, "kind": submission.kind}
+        | ({"worst_of": worst_of} if worst_of else {}),
         "options": {name: getattr(settings, name) for name in ("seed", "method", "samples")}
         | {name: bool(getattr(outcome.options, name)) for name in SWITCHES},
         "cells": cells_to_json(
