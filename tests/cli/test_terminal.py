@@ -75,10 +75,14 @@ def test_json_and_quiet_draw_nothing(table, sound):
         assert BAR not in _on_a_terminal("run", table([sound]), option, "--samples", 64, TERM="xterm")[0]
 
 
-def test_the_bar_says_files_rows_and_time_left_and_leaves_the_lines_alone(table, sound):
-    """It tells files, rows, rows a second and time left, is taken away before a line is printed, and at the end."""
+@pytest.mark.parametrize("environment", [{}, {"NO_COLOR": "1"}])
+def test_the_bar_says_files_rows_and_time_left_and_leaves_the_lines_alone(table, sound, environment):
+    """It tells files, rows, rows a second and time left, is taken away before a line is printed, and at the end.
+
+    Without colours as well.
+    """
     paths = [table([{**sound, "variant": f"v{row}"} for row in range(3)], f"{name}.csv") for name in "ab"]
-    shown, code = _on_a_terminal("run", *paths, "--samples", 64, TERM="xterm", COLUMNS="200")
+    shown, code = _on_a_terminal("run", *paths, "--samples", 64, TERM="xterm", COLUMNS="200", **environment)
     assert code == 0
     drawn = shown.decode().split("\r\x1b[2K")
     assert drawn[1].startswith("Computing [------------------------] 0 of 2 files")

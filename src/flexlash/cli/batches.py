@@ -44,7 +44,7 @@ def to_be_told(given: GivenFiles, *, as_json: bool, quiet: bool, verbose: bool, 
     told = Submissions(several=several, as_json=as_json, quiet=quiet, ran=ran, verbose=verbose)
     for remark in () if quiet else given.remarks:
         click.echo(remark, err=True)
-    if not given.submissions:
+    if not given.submissions and not any(one.fault for one in given.files):
         for folder in given.folders:
             complain(
                 f"{named(folder)}: there is no submission in this folder, no workbook or table (.xlsx, .xlsm, .csv, "
@@ -122,11 +122,12 @@ def _manifest(
     planned: Planned, options: Options, tables: Mapping[str, Source] | OSError | Refusal, *, resume: bool
 ) -> Iterator[Manifest | None]:
     """Give the manifest of a folder of outputs; say where it cannot be written, since then no later run can go on."""
-    manifest, fault = None, None
+    manifest, fault, place = None, None, Path(MANIFEST_NAME)
     if planned.summary is not None and not isinstance(tables, OSError | Refusal):
+        place = planned.summary[0].path.with_name(MANIFEST_NAME)
         digest = options_digest(options, tables, marked=bool(planned.copies))
         try:
-            manifest = Manifest(planned.summary[0].path.parent, digest, resume=resume)
+            manifest = Manifest(place.parent, digest, resume=resume)
         except OSError as refused:
             fault = refused
     try:
@@ -137,7 +138,7 @@ def _manifest(
             fault = manifest.fault
         if fault is not None:
             why = f"{reason(fault)}; a later run cannot go on from here by --resume."
-            click.echo(f"{named(fault.filename or MANIFEST_NAME)} could not be written: {why}", err=True)
+            click.echo(f"{named(place)} could not be written: {why}", err=True)
 
 
 def _told_in_order(all_ended: Iterator[Ended], told: Submissions, bar: Bar) -> list[Ended]:
@@ -171,5 +172,5 @@ def _summed_up(all_ended: Sequence[Ended], summary: tuple[Output, Output] | None
                 click.echo(click.style(file.remark, fg="yellow"), err=True)
     except OSError as fault:
         complain(f"{named(fault.filename)} could not be written: {reason(fault)}")
-        told.codes.append(ExitCode.NO_FILE)
+        told.further_codes.append(ExitCode.NO_FILE)
     return told.end(written)

@@ -74,14 +74,15 @@ class Submissions:
         self.ran = ran
         self.verbose = verbose or not several
         self.codes: list[ExitCode] = []
+        self.further_codes: list[ExitCode] = []
         self.skipped = 0
         self.done_before = 0
         self._met: dict[str, list[str]] = defaultdict(list)
 
     @property
     def code(self) -> ExitCode:
-        """The most severe exit code of those submissions that were not skipped."""
-        return most_severe(self.codes)
+        """The most severe exit code of the submissions that were not skipped, and of what is about all of them."""
+        return most_severe([*self.codes, *self.further_codes])
 
     @contextmanager
     def one(self, path: Path) -> Iterator[Attempt]:
@@ -141,7 +142,9 @@ class Submissions:
             click.echo(ended.fault.trace, err=True)
         if ended.error and not (ended.refused and (self.verbose or self.as_json)):
             code = f"{next(iter(ended.by_rule))} " if ended.refused else ""
-            complain(f"{'' if named(ended.path) in ended.error and not code else name}{code}{ended.error}")
+            files = ", ".join(map(named, ended.written.paths)) if ended.refused else ""
+            where = f" Written: {files}" if files else ""
+            complain(f"{'' if named(ended.path) in ended.error and not code else name}{code}{ended.error}{where}")
         if ended.mend:
             click.echo(f"{name if self.several else ''}Mend: {ended.mend}", err=True)
 

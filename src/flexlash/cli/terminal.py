@@ -78,9 +78,9 @@ class Bar:
         self.draw()
 
     def advance(self, ended: Ended) -> None:
-        """Draw that a submission has ended; what an earlier run has done tells nothing of how long the rest takes."""
+        """Draw that a submission has ended; one skipped or done before tells nothing of how long the rest takes."""
         self._done += 1
-        self._known += ended.done_before
+        self._known += ended.done_before or ended.skipped
         self._rows += 0 if ended.done_before else ended.counts["rows"]
         self._part = (0, 1)
         self.draw()
@@ -103,12 +103,13 @@ class Bar:
             left, rows = round(seconds / new * (self._files - ended)), rows + self._rows
             text += f", {rows:,} rows, {rows / seconds:,.0f} rows/s, {left // 60}:{left % 60:02} left"
         width = shutil.get_terminal_size().columns - 1
-        click.echo(f"{_ERASED}{text[:width]}", nl=False, err=True)
+        # Without colour click would leave out what erases the line, and the bar would stay behind the next.
+        click.echo(f"{_ERASED}{text[:width]}", nl=False, err=True, color=True)
 
     def clear(self) -> None:
         """Make room for lines that are printed."""
         if self._is_drawn:
-            click.echo(_ERASED, nl=False, err=True)
+            click.echo(_ERASED, nl=False, err=True, color=True)
 
 
 @contextmanager
