@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+import xlsxwriter
 from batch_runs import begun, done, ended, none_left, outputs, parts, processes_of, stopped
 from click.testing import CliRunner
 from here import WORKERS, HereExecutor
@@ -67,6 +68,17 @@ def test_a_folder_has_a_line_a_submission_and_a_total():
     verbose = _call(*RUN, "-v")
     assert "in/b.csv: error E201" in verbose.stderr
     assert "No report was written" in verbose.stdout
+
+
+@pytest.mark.usefixtures("folder")
+def test_whatever_is_written_is_told():
+    """The copy that says what a foreign workbook lacks is named, too, where each submission has one line."""
+    xlsxwriter.Workbook("in/c.xlsx").close()
+    said = _call(*RUN)
+    (line,) = (line for line in said.stderr.splitlines() if line.startswith("in/c.xlsx"))
+    assert line.startswith("in/c.xlsx: E108 ")
+    assert line.endswith("Written: out/c-checked.xlsx")
+    assert Path("out/c-checked.xlsx").exists()
 
 
 @pytest.mark.usefixtures("folder")
@@ -206,6 +218,19 @@ def test_resume_computes_what_is_not_done(folder, monkeypatch):
 
 
 @pytest.mark.usefixtures("folder")
+def test_resume_skips_a_mended_file_whose_original_came_later():
+    """What is skipped beside its original is so on --resume, although it was computed while it stood alone."""
+    Path("in/d.csv").rename("in/b-mended.csv")
+    Path("in/b.csv").rename("b.csv")
+    assert "in/b-mended.csv: 1 of 1 rows computed" in _call(*RUN).stdout
+    Path("b.csv").rename("in/b.csv")
+    resumed = _call(*RUN, "--resume")
+    assert "1 file, mended file skipped: in/b-mended.csv" in resumed.stderr
+    assert "b-mended-report" not in resumed.stdout
+    assert resumed.stdout == _call(*RUN).stdout
+
+
+@pytest.mark.usefixtures("folder")
 def test_resume_needs_a_folder():
     """Where no manifest can be, --resume is a usage error that says so."""
     for submissions in (["in"], ["in/a.csv", "in/b.csv"]):
@@ -272,6 +297,57 @@ def test_a_large_table_is_one_submission_among_others(folder, table, sound, monk
     once_more = _call(*RUN, "--resume")
     assert "2 submissions done by an earlier run" in once_more.stderr
     assert (once_more.stdout, outputs(folder)) == (whole.stdout, straight)
+
+
+@pytest.fixture
+def all_large(monkeypatch):
+    """Every table of more than five rows is computed in chunks."""
+    monkeypatch.setattr("flexlash.reading.survey.LARGE_ROWS", 5)
+    monkeypatch.setattr("flexlash.batch.side_by_side._LEAST_OF_LARGE", 0)
+
+
+@pytest.mark.usefixtures("all_large")
+def test_resume_leaves_the_files_beside_a_report_to_a_large_table_of_the_same_stem(folder, table, sound):
+    """A table that came later writes its Results under another name, as in one run of both."""
+    for torque, name in ((100, "a.csv"), (200, "a.tsv")):
+        rows = [{**sound, "variant": f"v{row}", "torque_Nm": torque + row} for row in range(8)]
+        table(rows, "large.csv").rename(folder / "in" / name)
+    straight = _call(*RUN), outputs(folder)
+    assert {"out/a-results.parquet", "out/a-results (2).parquet"} <= set(straight[1])
+    shutil.rmtree("out")
+    Path("in/a.tsv").rename("a.tsv")
+    _call(*RUN)
+    Path("a.tsv").rename("in/a.tsv")
+    resumed = _call(*RUN, "--resume"), outputs(folder)
+    assert "3 submissions done by an earlier run" in resumed[0].stderr
+    assert resumed[0].stdout == straight[0].stdout
+    assert resumed[1] == straight[1]
+
+
+@pytest.mark.usefixtures("all_large")
+def test_what_stands_before_a_large_table_is_written_before_it_is_begun(folder, table, sound, monkeypatch):
+    """A small submission does not wait for all large tables behind it to be told."""
+    for name in ("b.csv", "d.csv"):
+        rows = [{**sound, "variant": f"v{row}"} for row in range(8)]
+        table(rows, "large.csv").rename(folder / "in" / name)
+    there = []
+
+    class Noting(HereExecutor):
+        """Notes which reports are there when it is given something."""
+
+        @staticmethod
+        def submit(work, data):
+            there.append(sorted(path.name for path in Path("out").glob("*-report.xlsx")))
+            return HereExecutor.submit(work, data)
+
+    @contextmanager
+    def noting(*_):
+        yield Noting()
+
+    monkeypatch.setattr(WORKERS, noting)
+    _call(*RUN)
+    assert there[:2] == [[], ["a-report.xlsx"]]
+    assert there[-1] == ["a-report.xlsx", "b-report.xlsx"]
 
 
 @pytest.fixture(scope="module")
@@ -358,6 +434,18 @@ def test_a_full_disk_is_told_and_taken_up(many, tmp_path):
     assert parts(folder) == []
     code, out, _ = ended(begun(folder, "--resume"))
     assert (code, out, outputs(folder)) == (0, many[1], many[2])
+
+
+@POSIX
+@pytest.mark.slow
+def test_a_summary_that_cannot_be_written_is_no_submission(many, tmp_path):
+    """Where nothing at all can be written the total counts the submissions alone."""
+    folder = _beside(many, tmp_path)
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, 5_000)); "
+    code, out, err = ended(begun(folder, "--json", code=f"{limit}from flexlash.cli import main; main()"))
+    *submissions, total = map(json.loads, out.splitlines())
+    assert "out/flexlash-summary.xlsx could not be written: the file becomes larger" in err
+    assert (code, total["total"]["submissions"], total["total"]["not"]) == (5, len(submissions), len(submissions))
 
 
 @pytest.mark.slow

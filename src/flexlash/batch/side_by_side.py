@@ -31,6 +31,7 @@ from flexlash.reading.refusal import Refusal
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.file_faults import unusable
 from flexlash.schema.findings import finding, readable, shown
+from flexlash.schema.stamps import stamp_at
 
 __all__ = ["Batch", "Wanted", "computed_apart", "large_tables", "side_by_side", "tables_or_why"]
 
@@ -142,7 +143,7 @@ class _SideBySide:
         finished: dict[int, Ended] = {}
         for turn in range(len(self._batch.wanted)):
             while turn not in finished:
-                while ahead and turn not in finished and len(begun) < _AHEAD * self._executor.workers:
+                while ahead and turn not in finished and self._may_begin(ahead[0], len(begun)):
                     one = _Begun(index=ahead.popleft())
                     if handed_over := self._guarded(one, finished, partial(self._handed_over, one)):
                         begun[handed_over.future] = handed_over
@@ -151,6 +152,18 @@ class _SideBySide:
                         waited = begun.pop(future)
                         self._guarded(waited, finished, partial(self._answered, waited))
             yield finished.pop(turn)
+
+    def _may_begin(self, index: int, begun: int) -> bool:
+        """Whether a submission is begun beside so many others; a large table waits until they are written and told."""
+        if begun >= _AHEAD * self._executor.workers:
+            return False
+        return not (begun and self._is_large(index))
+
+    def _is_large(self, index: int) -> bool:
+        """Whether a submission is computed in chunks, for which this process is busy until it has ended."""
+        batch, given = self._batch, self._batch.wanted[index].given
+        computed = batch.command != "mend" and not given.skipped and given.fault is None
+        return computed and large_tables(batch.options, [given.path])
 
     def _guarded(
         self, one: _Begun, finished: dict[int, Ended], step: Callable[[], Ended | _HandedOver]
@@ -187,7 +200,7 @@ class _SideBySide:
         if wanted.given.fault is not None:
             why = readable(wanted.given.fault.strerror or wanted.given.fault)
             return Ended.failing(path, ExitCode.NO_FILE, f"{shown(path, 4096)} could not be opened: {why}")
-        if batch.command != "mend" and large_tables(batch.options, [path]):
+        if self._is_large(one.index):
             return self._large(wanted)
         try:
             source = Source.at(path, batch.options.limits)
@@ -200,10 +213,9 @@ class _SideBySide:
         sha256 = hashlib.sha256(source.data).hexdigest()
         if ended := self._done(wanted, sha256):
             return ended
-        companions = Companions.of(path, self._given, self._digests)
         task = Task(
             command=batch.command,
-            source=replace(source, path=None, companions=companions),
+            source=replace(source, path=None, companions=self._companions(path)),
             options=self._asked,
             tables=batch.tables,
             report=wanted.file.ending if wanted.file else "",
@@ -240,7 +252,7 @@ class _SideBySide:
             ran=batch.command == "run",
             options=batch.options,
             tables=batch.tables,
-            companions=Companions.of(path, self._given, self._digests),
+            companions=self._companions(path),
             report=wanted.file,
             copy=wanted.copy,
             resume=batch.resume,
@@ -249,11 +261,22 @@ class _SideBySide:
         return self._kept(wanted, answer, written, answer.told.get("sha256", ""))
 
     def _done(self, wanted: Wanted, sha256: str) -> Ended | None:
-        """Return how a submission ended in an earlier run, where that is proven."""
+        """Return how a submission ended in an earlier run, where that is proven.
+
+        A fixed one is looked at again when its original is given as well: it may have come later.
+        """
         if self._batch.manifest is None:
             return None
         given = wanted.given
-        return self._batch.manifest.done(given.path, given.below, sha256, wanted.file, wanted.copy)
+        ended = self._batch.manifest.done(given.path, given.below, sha256, wanted.file, wanted.copy)
+        if ended is None or self._companions(given.path).hold_the_original(stamp_at(given.path)):
+            return None
+        if wanted.file is not None:
+            wanted.file.plan.keep(ended.written.paths)
+        return ended
+
+    def _companions(self, path: Path) -> Companions:
+        return Companions.of(path, self._given, self._digests)
 
     def _kept(self, wanted: Wanted, answer: Answer, written: Written, sha256: str) -> Ended:
         """Return how a submission ended, and write it down for a later run."""

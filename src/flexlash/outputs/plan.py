@@ -88,6 +88,10 @@ class Plan:
         self.claimed.add(_full(path))
         return Output(plan=self, wanted=wanted, path=path, named=named, forced=forced)
 
+    def keep(self, paths: Iterable[Path]) -> None:
+        """Let no output of this plan take the place of files that an earlier run wrote and that are to stay."""
+        self.claimed.update(map(_full, paths))
+
     def refuse_input(self, wanted: Path) -> None:
         """Raise ValueError when a path that the user names leads to one of the inputs."""
         if not self.known.keys().isdisjoint(_identities(wanted)):

@@ -98,6 +98,10 @@ class Companions:
         digests = digests_of(other for other in given if other != path) if digests is None else digests
         return cls(original=_original_beside(path, given), digests=digests)
 
+    def hold_the_original(self, role: str) -> bool:
+        """Whether that is among them of which a file is a fixed copy, by its name or by this role of its stamp."""
+        return self.original or role.removeprefix(f"{_FIXED} ") in self.digests
+
 
 def digests_of(paths: Iterable[Path]) -> frozenset[str]:
     """Return the digests of files, of those that are ordinary and of ordinary size."""
@@ -145,11 +149,10 @@ def stamped_product(role: str, *, marked_copies: bool) -> str:
 
 
 def _code(role: str, companions: Companions, *, marked_copies: bool) -> str:
-    kind, _, original = role.partition(" ")
+    kind = role.partition(" ")[0]
     if code := stamped_product(kind, marked_copies=marked_copies):
         return code
-    is_copy = kind == _FIXED and (companions.original or original in companions.digests)
-    return "I526" if is_copy else ""
+    return "I526" if kind == _FIXED and companions.hold_the_original(role) else ""
 
 
 def _original_beside(path: Path, given: Iterable[Path]) -> bool:
