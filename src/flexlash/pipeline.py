@@ -63,6 +63,8 @@ def run(
     Options are those of the command line: seed, method, samples, cross_check, elasticity, strict, jobs,
     tolerances, materials, from_report. The output's ending decides its form: .xlsx, .csv, .parquet or .json.
 
+    All rows are held at once, within `limits`; the command line computes a table of any size in chunks.
+
     A file at the place of an output is replaced only if flexlash wrote it and nobody has changed it since; else the
     output gets ` (2)`, and the outcome's `remarks` say so.
 

@@ -122,3 +122,19 @@ def test_two_runs_do_no_harm_to_each_other(tmp_path):
         process.kill()
     time.sleep(0.1)
     assert _interrupted(output, resume=True, names=()) == ["2-51"]
+
+
+def test_a_long_name_has_a_folder_of_its_own(tmp_path):
+    """An output with the longest name that a system allows has a folder, which a run that resumes finds again."""
+    one, other = (tmp_path / f"{'é' * 120}{number}.parquet" for number in (1, 2))
+    assert _interrupted(one) == []
+    assert _interrupted(other, resume=True) == []
+    assert _interrupted(one, resume=True) == ["2-51", "52-101"]
+
+
+def test_where_no_folder_can_be_made_the_output_is_named(tmp_path):
+    """A fault names the output, which the user has asked for, and no hidden folder."""
+    output = tmp_path / "none" / "out.csv"
+    with pytest.raises(FileNotFoundError) as fault, working_folder(output, WHAT, resume=False):
+        pass
+    assert fault.value.filename == str(output)

@@ -27,6 +27,9 @@ _PART = re.compile(r"[a-z0-9-]+\.part|\.flexlash-[0-9a-f]+\.tmp")
 _MOST = 100
 """Folders of one name, numbered, beyond which none is tried."""
 
+_LONGEST = 200
+"""Bytes of an output's name that a folder's can have as a part: most systems allow 255 to both."""
+
 _PIECE = 2**20
 
 Parts = Mapping[str, Path]
@@ -139,10 +142,10 @@ def working_folder(output: Path, what: Mapping[str, Any], *, resume: bool) -> It
     `what` says what is computed, in values that JSON has: with `resume` an earlier run's parts of the same are taken
     up. A folder that another run holds, or that is not ours, is left alone. Raises OSError when none can be made.
     """
-    name = f".{output.name}.flexlash-parts"
+    name = f".{_short(output.name)}.flexlash-parts"
     names = numbered_names(name, numbered=lambda number: f"{name}-{number}")
     for folder in (output.parent / one for one in islice(names, _MOST)):
-        if _may_be_ours(folder) and (manifest := held(folder / _MANIFEST)) is not None:
+        if _may_be_ours(folder, output) and (manifest := held(folder / _MANIFEST)) is not None:
             break
     else:
         raise FileExistsError(f"too many folders {name}")
@@ -158,10 +161,23 @@ def working_folder(output: Path, what: Mapping[str, Any], *, resume: bool) -> It
         working.remove()
 
 
-def _may_be_ours(folder: Path) -> bool:
+def _short(name: str) -> str:
+    """Return the name of an output, what stands for it where a longer one would be too long for a system."""
+    data = os.fsencode(name)
+    return name if len(data) <= _LONGEST else hashlib.sha256(data).hexdigest()
+
+
+def _may_be_ours(folder: Path, output: Path) -> bool:
     """Whether a folder can be used, having been made if it was not there: it is empty or has a manifest."""
-    with contextlib.suppress(FileExistsError):
+    try:
         folder.mkdir()
+    except FileExistsError:
+        pass
+    except OSError as fault:
+        # What cannot be written is the output, whose name the user knows.
+        fault.filename = os.fspath(output)
+        raise
+    else:
         return True
     return not folder.is_symlink() and folder.is_dir() and ((folder / _MANIFEST).exists() or not any(folder.iterdir()))
 
