@@ -175,8 +175,7 @@ def _may_be_ours(folder: Path, output: Path) -> bool:
         pass
     except OSError as fault:
         # What cannot be written is the output, whose name the user knows.
-        fault.filename = os.fspath(output)
-        raise
+        raise OSError(fault.errno, fault.strerror, os.fspath(output)) from fault
     else:
         return True
     return not folder.is_symlink() and folder.is_dir() and ((folder / _MANIFEST).exists() or not any(folder.iterdir()))
