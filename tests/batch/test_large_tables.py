@@ -325,6 +325,8 @@ def test_strict_computes_nothing_when_a_row_is_wrong(tmp_path):
     answer, written = _in_chunks(faulty, tmp_path / "out.csv", 7, strict=True)
     assert (answer.exit_code, answer.told["counts"]["computed"]) == (ExitCode.NOTHING, 0)
     assert [one.name for one in written.paths] == ["out-findings.csv"]
+    answer, _ = _in_chunks(faulty, None, 7, ran=False, strict=True)
+    assert (answer.exit_code, answer.words.partition(";")[0]) == (ExitCode.NOTHING, "0 of 30 rows ready")
     answer, _ = _in_chunks(sound, tmp_path / "good.csv", 7, strict=True)
     assert (answer.exit_code, answer.told["counts"]["computed"]) == (ExitCode.FINE, 30)
     assert (tmp_path / "good.csv").read_bytes() == run(sound, tmp_path / "w.csv", **FEW).outputs[0].read_bytes()

@@ -267,12 +267,15 @@ class _Run:
 
     def _computed(self, folder: WorkingFolder | None) -> Totals:
         """Return what came of all rows; with `strict` they are checked first, and computed if none has an error."""
-        if self.table.ran and self.table.options.strict:
-            totals = self._pass(folder, "check-", spread=False)
-            if totals.computed < totals.rows:
+        ran, strict = self.table.ran, self.table.options.strict
+        if strict or not ran:
+            totals = self._pass(folder, "check-" if ran else "", spread=False)
+            is_held_back = strict and totals.computed < totals.rows
+            if is_held_back:
                 totals.hold_back()
+            if is_held_back or not ran:
                 return totals
-        return self._pass(folder, "", spread=self.table.ran)
+        return self._pass(folder, "", spread=True)
 
     def _pass(self, folder: WorkingFolder | None, prefix: str, *, spread: bool) -> Totals:
         """Return what came of all chunks, in order; their parts are kept."""
