@@ -70,6 +70,15 @@ def test_a_folder_has_a_line_a_submission_and_a_total():
     assert "No report was written" in verbose.stdout
 
 
+def test_an_empty_folder_is_told_what_would_help(tmp_path):
+    """--recursive is advised where it was not given."""
+    for option, told in (((), "in this folder, no workbook"), (("--recursive",), "in this folder or below it, no")):
+        said = _call("check", tmp_path, *option)
+        assert said.exit_code == 4
+        assert told in said.stderr
+        assert ("--recursive" in said.stderr) is not bool(option)
+
+
 @pytest.mark.usefixtures("folder")
 def test_whatever_is_written_is_told():
     """The copy that says what a foreign workbook lacks is named, too, where each submission has one line."""

@@ -35,7 +35,9 @@ class Planned:
     summary: tuple[Output, Output] | None = None
 
 
-def to_be_told(given: GivenFiles, *, as_json: bool, quiet: bool, verbose: bool, ran: bool = False) -> Submissions:
+def to_be_told(
+    given: GivenFiles, *, recursive: bool, as_json: bool, quiet: bool, verbose: bool, ran: bool = False
+) -> Submissions:
     """Return the submissions as they will be told, having said what of a folder is left alone.
 
     A folder has several, however many are in it.
@@ -45,10 +47,11 @@ def to_be_told(given: GivenFiles, *, as_json: bool, quiet: bool, verbose: bool, 
     for remark in () if quiet else given.remarks:
         click.echo(remark, err=True)
     if not given.submissions and not any(one.fault for one in given.files):
+        where, more = (" or below it", "") if recursive else ("", "; --recursive also looks below it")
         for folder in given.folders:
             complain(
-                f"{named(folder)}: there is no submission in this folder, no workbook or table (.xlsx, .xlsm, .csv, "
-                ".tsv, .parquet) that flexlash did not write; --recursive also looks below it."
+                f"{named(folder)}: there is no submission in this folder{where}, no workbook or table "
+                f"(.xlsx, .xlsm, .csv, .tsv, .parquet) that flexlash did not write{more}."
             )
     return told
 

@@ -70,6 +70,6 @@ def check(
     fixed = planned(fixed_outputs, plan, paths, output, below=below) if apply_fixes else []
     copies = planned(marked_outputs, plan, paths, output, itself=not apply_fixes, below=below) if annotate else []
     outputs = Planned(files=dict(zip(paths, fixed, strict=False)), copies=dict(zip(paths, copies, strict=False)))
-    told = to_be_told(given, as_json=as_json, quiet=quiet, verbose=verbose)
+    told = to_be_told(given, recursive=recursive, as_json=as_json, quiet=quiet, verbose=verbose)
     chosen = Options.of("check()", options)
     sys.exit(carried_out("mend" if apply_fixes else "check", given, outputs, chosen, told))

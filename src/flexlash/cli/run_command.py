@@ -92,7 +92,7 @@ def run(
     outputs = _outputs(given, beside, output, annotate=annotate, marked_copies=options["marked_copies"])
     if resume and outputs.summary is None and (given.folders or len(given.files) > 1):
         raise click.UsageError("--resume needs a folder as OUT, in which an earlier run was stopped.")
-    told = to_be_told(given, as_json=as_json, quiet=quiet, verbose=verbose, ran=True)
+    told = to_be_told(given, recursive=recursive, as_json=as_json, quiet=quiet, verbose=verbose, ran=True)
     chosen = Options.of("run()", options)
     sys.exit(carried_out("run", given, outputs, chosen, told, resume=resume, scheduler=scheduler))
 
