@@ -125,7 +125,7 @@ def test_outputs_in_the_folder_itself_are_skipped_the_next_time():
     before = {path.name: path.read_bytes() for path in Path("in").iterdir() if path.suffix == ".xlsx"}
     again = _call(*arguments)
     assert again.stdout.splitlines()[-2] == "Total of 4 submissions: 2 computed, 1 computed in part, 1 not; 6 skipped."
-    assert "4 files, skipped: in/a-report.xlsx" in again.stderr
+    assert "4 files, report skipped: in/a-report.xlsx" in again.stderr
     assert "2 files, marked copy skipped: in/b-checked.xlsx" in again.stderr
     after = {path.name: path.read_bytes() for path in Path("in").iterdir() if path.suffix == ".xlsx"}
     assert after == before

@@ -932,7 +932,7 @@ CATALOGUE = _rules(
     ),
     (
         "I508",
-        "skipped",
+        "report skipped",
         "{file} is a report of flexlash, not a submission; it was skipped.",
         "Submit the filled template, or compute the report's own inputs anew: flexlash run --from-report.",
         "Reports carry a mark by which they are recognised when a whole folder is submitted.",
