@@ -7,8 +7,10 @@ import shlex
 import shutil
 import sys
 
+import polars as pl
 import pytest
 import regenerate
+from filled import SOUND
 
 from flexlash import __version__
 from flexlash.cli import main
@@ -40,6 +42,9 @@ def test_shell_blocks_run(copy, monkeypatch, capsys):
     ours = [line for line in commands if line.startswith("flexlash ")]
     assert len(ours) >= 7
     assert {line.split()[0] for line in commands} <= {"flexlash", "pip", "pytest"}
+    (copy / "submissions" / "below").mkdir(parents=True)
+    shutil.copy(copy / "data" / "b3-160-study.xlsx", copy / "submissions" / "below")
+    pl.DataFrame([SOUND]).write_parquet(copy / "variants.parquet")
     for line in ours:
         monkeypatch.setattr(sys, "argv", shlex.split(line))
         try:
