@@ -596,7 +596,7 @@ def test_killed_workers_lose_nothing(tmp_path):
 def _children(number):
     """Return the processes that a process has started and that compute, newest last."""
     listed = subprocess.run(
-        ["ps", "-o", "pid=,args=", "--ppid", str(number)], capture_output=True, text=True, check=False
+        ["ps", "-ww", "-o", "pid=,args=", "--ppid", str(number)], capture_output=True, text=True, check=False
     )
     return [line.split()[0] for line in listed.stdout.splitlines() if "spawn_main" in line]
 
