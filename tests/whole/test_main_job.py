@@ -109,6 +109,31 @@ def _results_of(folder, name):
     return _results(folder / f"{name}.parquet")
 
 
+def test_a_folder_and_a_large_table_in_it_are_computed(folder):
+    """A table that is computed piece by piece gives each row the figures that it has alone, beside a workbook."""
+    inbox = folder / "inbox"
+    inbox.mkdir()
+    (inbox / "study.xlsx").write_bytes((folder / "study.xlsx").read_bytes())
+    row = {"material": "42CrMo4 (Q+T)", "torque_Nm": 800, "cylinder_length_mm": 160, "disk_inner_radius_mm": 40}
+    numbers = pl.int_range(20_001, eager=True)
+    many = pl.DataFrame({
+        "variant": pl.Series([f"V{number}" for number in numbers]),
+        "mean_radius_mm": 80 + (numbers % 97) / 100,
+        "wall_thickness_mm": 1.6 + (numbers % 89) / 1000,
+    }).with_columns(**{key: pl.lit(value) for key, value in row.items()})  # fmt: skip
+    many.write_parquet(inbox / "many.parquet")
+    many.slice(20_000).write_csv(folder / "last.csv")
+    done = _flexlash(folder, "run", "inbox", "-o", "reports", "--samples", "8", "--no-annotate")
+    assert done.returncode == 0, done.stderr
+    found = _results(folder / "reports" / "many-results.parquet")
+    assert found["variant"].equals(many["variant"])
+    assert _flexlash(folder, "run", "last.csv", "-o", "last.parquet", "--samples", "8").returncode == 0
+    assert found.slice(20_000).equals(_results(folder / "last.parquet").select(found.columns))
+    assert {"study-report.xlsx", "many-report.xlsx", "flexlash-summary.xlsx"} <= {
+        path.name for path in (folder / "reports").iterdir()
+    }
+
+
 def test_a_faulty_submission_is_checked_marked_and_mended(folder):
     """Every fault of the faulty example is told by code; the marked copy and the mended file can be opened."""
     path = regenerate.ROOT / "data" / "needs-fixing.xlsx"

@@ -25,6 +25,7 @@ from flexlash.batch.given_files import Given
 from flexlash.batch.manifest import Manifest
 from flexlash.outputs.delivery import with_file
 from flexlash.outputs.plan import Output
+from flexlash.reading.gate import PARQUET, opened_file
 from flexlash.reading.products import Companions, digests_of
 from flexlash.reading.read import Source
 from flexlash.reading.refusal import Refusal
@@ -39,7 +40,7 @@ _AHEAD = 2
 """Tasks for each worker that are handed over, so that none waits while answers are written."""
 
 _LEAST_OF_LARGE = 40_000
-"""Bytes below which no table has so many rows that it is computed in chunks."""
+"""Bytes below which no text has so many rows that it is computed in chunks."""
 
 Advance = Callable[[Ended], None]
 """Called with each submission when it has ended, whichever is first."""
@@ -90,12 +91,18 @@ def large_tables(options: Options, paths: Sequence[Path]) -> bool:
     """Return whether one of these files is a table that is computed in chunks."""
     found = False
     for path in paths:
-        with suppress(OSError):
-            if path.stat().st_size >= _LEAST_OF_LARGE:
+        with suppress(OSError, Refusal):
+            if path.stat().st_size >= _LEAST_OF_LARGE or _is_parquet(path):
                 from flexlash.reading.survey import is_large
 
                 found = found or is_large(path, options.limits)
     return found
+
+
+def _is_parquet(path: Path) -> bool:
+    """Whether a file is a Parquet file, which may hold many rows that are alike in few bytes."""
+    with opened_file(path) as file:
+        return file.read(len(PARQUET)) == PARQUET
 
 
 def computed_apart(task: bytes) -> bytes:

@@ -16,13 +16,15 @@ from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.stamps import has_stamp
 
-__all__ = ["EXCERPT", "Kind", "Refusal", "kind_of", "opened_file", "read_bytes"]
+__all__ = ["EXCERPT", "PARQUET", "Kind", "Refusal", "kind_of", "opened_file", "read_bytes"]
 
 Kind = Literal["workbook", "parquet", "csv"]
 
 _MEBI = 2**20
 _ARCHIVE = b"PK\x03\x04"
-_PARQUET = b"PAR1"
+PARQUET = b"PAR1"
+"""What a Parquet file begins with."""
+
 EXCERPT = b"\0flexlash excerpt\n"
 """What the rows of a large table begin with on their way to a worker; no file is one."""
 
@@ -43,8 +45,8 @@ def read_bytes(path: Path, limits: ReadingLimits | None = None) -> bytes:
     """
     limits = limits or ReadingLimits()
     with opened_file(path) as file:
-        beginning = file.read(len(_PARQUET))
-        setting = "parquet_mebibytes" if beginning == _PARQUET else "file_mebibytes"
+        beginning = file.read(len(PARQUET))
+        setting = "parquet_mebibytes" if beginning == PARQUET else "file_mebibytes"
         most = getattr(limits, setting) * _MEBI
         # A sparse file costs neither time nor memory; one that grows meanwhile is refused by what was read.
         limits.require(setting, os.fstat(file.fileno()).st_size / _MEBI)
@@ -101,7 +103,7 @@ def kind_of(data: bytes, only: Kind | None = None) -> Kind:
 def _kind(data: bytes) -> Kind:
     if data.startswith(_ARCHIVE):
         return "workbook"
-    if data.startswith(_PARQUET):
+    if data.startswith(PARQUET):
         return "parquet"
     if data.startswith(b"{") and has_stamp(data):
         raise Refusal("I527")
