@@ -414,6 +414,19 @@ def test_a_table_that_changes_between_the_passes_is_refused(how, tmp_path):
     assert _names(tmp_path) == ["gears.csv"]
 
 
+def test_a_table_that_changes_before_its_report_is_refused(tmp_path):
+    """Once all rows are computed, those of the report are asked for before anything is written."""
+    path = _written(tmp_path / "gears.csv", _rows(20, faulty=False))
+
+    def change(done, total):
+        if done == total:
+            path.write_text(path.read_text(encoding="utf-8").replace("V-1", "W-1"), encoding="utf-8")
+
+    answer, written = large_table(_table(path, tmp_path / "out.xlsx"), HereExecutor(), change, chunk_rows=7)
+    assert (answer.refused, answer.exit_code, written.paths) == (True, ExitCode.NOTHING, ())
+    assert _names(tmp_path) == ["gears.csv"]
+
+
 @pytest.mark.slow
 @pytest.mark.limited_process
 def test_one_worker_or_two(tmp_path):

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import shutil
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
@@ -17,32 +16,27 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import BinaryIO, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 from flexlash import __version__
 from flexlash.analysis.options import Options, Progress
 from flexlash.analysis.outcome import Written
-from flexlash.analysis.run_summary import counted
 from flexlash.batch.answer import Answer
 from flexlash.batch.chunk import (
     ChunkAnswer,
     ChunkSummary,
     ChunkTask,
-    FindingsTask,
-    ReportTask,
     blank_row,
     compute_chunk,
-    list_findings,
-    report_worst,
 )
 from flexlash.batch.chunk_totals import Totals
 from flexlash.batch.executor import Executor, Work, WorkerLostError
-from flexlash.outputs.plan import Output, WrittenFile
+from flexlash.batch.large_outputs import LargeOutputs
+from flexlash.outputs.plan import Output
 from flexlash.outputs.working_folder import Parts, WorkingFolder, working_folder
-from flexlash.outputs.writing import Filling
 from flexlash.reading.excerpt import excerpt
 from flexlash.reading.limited_process import ProcessFaultError, ask
-from flexlash.reading.products import CHECKED_NAME, REPORT_NAME, Companions, made_of
+from flexlash.reading.products import Companions
 from flexlash.reading.read import Source
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
@@ -64,9 +58,6 @@ _MOST_LOST = 20
 
 _LIMIT = "E110"
 """Code of a file that exceeds a limit: fewer rows may not."""
-
-_RESULTS, _FINDINGS = "-results", "-findings"
-"""What is put behind the name of a large table for what its report has no room for."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,28 +146,6 @@ class _Piece(NamedTuple):
         return cls(summary, {what: part for what, part in parts.items() if part})
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Files:
-    """What was written: the report, the file of all Results where that is another, all findings, their workbook."""
-
-    report: WrittenFile | None = None
-    results: WrittenFile | None = None
-    findings: WrittenFile | None = None
-    copy: WrittenFile | None = None
-    fault: OSError | None = None
-
-    def told(self) -> Written:
-        """Return the files in order, and sentences about what stood in their way."""
-        files = [file for file in (self.report, self.results, self.findings, self.copy) if file is not None]
-        return Written(
-            paths=tuple(file.path for file in files),
-            remarks=tuple(file.remark for file in files if file.remark),
-            marked_copy=self.copy.path if self.copy else None,
-            not_carried=None if self.copy else (),
-            fault=self.fault,
-        )
-
-
 class _RefusedError(Exception):
     """A chunk is no readable submission, so that the whole table is none."""
 
@@ -238,9 +207,14 @@ class _Run:
                 folder = stack.enter_context(working_folder(target.path, self._what(), resume=self.table.resume))
             try:
                 totals = self._computed(folder)
+                outputs = LargeOutputs(
+                    name=self.survey.name, ran=self.table.ran, options=self._options, tables=self.table.tables,
+                    report=self.table.report, copy=self.table.copy, ending=self._ending, totals=totals,
+                    parts=self.kept, folder=folder, source=self._source, executor=self.executor,
+                )  # fmt: skip
+                files = outputs.written()
             except _RefusedError as refused:
                 return _refused(self.table, self.survey.sha256, refused.chunk), Written()
-            files = self._written(totals, folder)
         answer = totals.answer(
             {"submission": self.survey.name, "sha256": self.survey.sha256, "version": __version__},
             ran=self.table.ran,
@@ -359,88 +333,6 @@ class _Run:
         except WorkerLostError:
             summary, place, findings = blank_row(rows[0])
             return _Piece(summary, {"summary": summary.as_bytes(), "blank": place, "findings": findings})
-
-    def _written(self, totals: Totals, folder: WorkingFolder | None) -> _Files:
-        """Write what is wanted of a table that was computed; the report last, since it names the others."""
-        report, copy = self.table.report, self.table.copy
-        files = _Files()
-        if folder is not None and report is not None and self.table.ran and totals.computed:
-            results = report if report.ending == self._ending else self._beside(_RESULTS, self._ending)
-            if results is not None:
-                files = replace(files, results=results.write(self._all_results(totals, folder), "results"))
-        if folder is not None and totals.rules and (beside := self._beside(_FINDINGS, ".csv")) is not None:
-            files = replace(files, findings=beside.write(self._all_findings(totals)))
-        if report is not None and files.results is not None and report.ending != self._ending:
-            files = replace(files, report=report.write(self._report(totals, files), "report"))
-        levels = totals.whole().levels
-        if copy is None or not levels["error"] + levels["warning"]:
-            return files
-        try:
-            copy.require()
-            return replace(files, copy=copy.write(self._listed(totals, files, copy), "checked"))
-        except OSError as fault:
-            return replace(files, fault=fault)
-
-    def _beside(self, what: str, ending: str) -> Output | None:
-        """Return a place beside the report, or beside the workbook of findings, under its name."""
-        output, name = (self.table.report, REPORT_NAME) if self.table.report else (self.table.copy, CHECKED_NAME)
-        if output is None:
-            return None
-        return output.plan.claim(output.path.with_name(f"{made_of(output.wanted, name)}{what}{ending}"))
-
-    def _all_findings(self, totals: Totals) -> Filling:
-        """Return what writes all findings as a table, in the order of the submission."""
-        from flexlash.report.findings_table import findings_header, findings_rows
-
-        def fill(file: BinaryIO) -> None:
-            file.write(findings_header())
-            file.write(findings_rows([*totals.before]))
-            for part in self.kept:
-                if "findings" in part:
-                    with part["findings"].open("rb") as rows:
-                        shutil.copyfileobj(rows, file)
-            file.write(findings_rows([*totals.after]))
-
-        return fill
-
-    def _all_results(self, totals: Totals, folder: WorkingFolder) -> Filling:
-        """Return what writes all Results, joined from their parts."""
-        from flexlash.report.results_pieces import blank_piece, joined
-
-        pieces = []
-        for number, part in enumerate(self.kept):
-            if "blank" in part:
-                known = {"variant": "", "status": "error", "findings": part["blank"].read_text()}
-                pieces.append(folder.put(f"blank-{number}.part", blank_piece(known, totals.columns, self._ending)))
-            elif "results" in part:
-                pieces.append(part["results"])
-        model = next(part["results"] for part in self.kept if "results" in part)
-        findings = [found.as_dictionary() for found in totals.findings]
-        further = {"findings": findings, "findings_by_rule": dict(sorted(totals.rules.items()))}
-        return joined(self._ending, pieces, model, totals.columns, further)
-
-    def _report(self, totals: Totals, files: _Files) -> bytes:
-        """Return the report of the worst rows."""
-        names = [file.path.name if file else "" for file in (files.results, files.findings)]
-        task = ReportTask(
-            source=self._source(sorted(one.row for one in totals.worst)),
-            options=self._options,
-            tables=self.table.tables,
-            whole=totals.whole(*names),
-        )
-        return self.executor.submit(report_worst, task.as_bytes()).result()
-
-    def _listed(self, totals: Totals, files: _Files, copy: Output) -> bytes:
-        """Return the first findings as a workbook that says where the rest is."""
-        levels = totals.whole().levels
-        task = FindingsTask(
-            name=self.survey.name,
-            findings=tuple(totals.findings),
-            counted=", ".join(counted(levels[level], level) for level in ("error", "warning") if levels[level]),
-            findings_file=files.findings.path.name if files.findings else "",
-            macros=copy.ending == ".xlsm",
-        )
-        return self.executor.submit(list_findings, task.as_bytes()).result()
 
 
 def _name(prefix: str, rows: range) -> str:
