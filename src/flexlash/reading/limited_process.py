@@ -23,6 +23,9 @@ _DAEMON = (
     "not start; call it from concurrent.futures.ProcessPoolExecutor instead"
 )
 
+_TRIES = 3
+"""Times that a limited process may be lost over one task."""
+
 _ONE_AT_A_TIME = threading.Lock()
 
 _WORKERS: dict[int, Worker] = {}
@@ -78,18 +81,21 @@ def _answer(
     arguments: tuple[object, ...],
     then: Callable[[Result], Result] | None,
 ) -> Result | Refusal | ChangedLibrary | Fault:
-    """Return what the limited process answers, or what it died of."""
+    """Return what the limited process answers, or what it died of; it may be stopped by chance, hardly three times."""
     if is_prepared():
         return answered(task, limits, arguments, then)  # type: ignore[no-any-return]
-    worker = begin()
-    try:
-        return worker.asked(answered, task, limits, arguments, then)  # type: ignore[no-any-return]
-    except StoppedError as stopped:
-        _abandon()
-        return limits.exceeded(stopped.setting) if stopped.setting else Refusal("E118")
-    except BaseException:
-        _abandon()
-        raise
+    for _ in range(_TRIES):
+        worker = begin()
+        try:
+            return worker.asked(answered, task, limits, arguments, then)  # type: ignore[no-any-return]
+        except StoppedError as stopped:
+            _abandon()
+            if stopped.setting:
+                return limits.exceeded(stopped.setting)
+        except BaseException:
+            _abandon()
+            raise
+    return Refusal("E118")
 
 
 def _abandon() -> None:
