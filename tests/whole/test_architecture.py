@@ -28,6 +28,7 @@ ROOMS = (
     "outputs",
     "pipeline",
     "batch",
+    "service",
     "cli",
 )
 """The order of the rooms: each imports those before it alone."""
@@ -53,6 +54,11 @@ EDGES = {
     "rapidfuzz": {"schema"},
     "skfem": {"mechanics"},
     "matplotlib": {"report"},
+    "sqlite3": {"service"},
+    "filelock": {"service"},
+    "starlette": {"service"},
+    "uvicorn": {"service"},
+    "jinja2": {"service"},
 }
 
 
