@@ -12,6 +12,7 @@ import pickle
 import signal
 import sys
 import threading
+import time
 import traceback
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -26,10 +27,13 @@ from queue import Empty, PriorityQueue
 from types import ModuleType
 from typing import Any, Self, TypeVar
 
-__all__ = ["FEW_THREADS", "StoppedError", "Worker", "WorkerLostError", "Workers", "mapped", "timed"]
+__all__ = ["FEW_THREADS", "StoppedError", "Told", "Worker", "WorkerLostError", "Workers", "mapped", "tell", "timed"]
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
+
+Told = Callable[[bytes], object]
+"""Called with what a worker tells, while it works, in a thread that waits for it: quickly, or the worker waits."""
 
 _TRIES = 3
 """Times that a piece of work may lose its worker: the system may stop one process by chance, hardly three."""
@@ -50,12 +54,13 @@ _STARTING = threading.Lock()
 class WorkerLostError(RuntimeError):
     """A piece of work lost every worker that took it up, or exceeded a limit of reading.
 
-    `setting` names the limit that it exceeded, empty where none is known.
+    `setting` names the limit that it exceeded, empty where none is known; `losses` are the workers that it has cost.
     """
 
-    def __init__(self, message: str, setting: str = "") -> None:
+    def __init__(self, message: str, setting: str = "", losses: int = 0) -> None:
         super().__init__(message)
         self.setting = setting
+        self.losses = losses
 
 
 class StoppedError(Exception):
@@ -146,15 +151,15 @@ class Worker:
             requests.close()
             answers.close()
 
-    def asked(self, function: Callable[..., Result], *arguments: object) -> Result:
-        """Return a function of these arguments, worked out there.
+    def asked(self, function: Callable[..., Result], *arguments: object, told: Told | None = None) -> Result:
+        """Return a function of these arguments, worked out there; `told` is called with what it tells meanwhile.
 
         Raises what the function raises, in words where that cannot travel, and StoppedError when the worker is stopped,
         also by the clock that it asks for (`timed`); then it is of no more use.
         """
         try:
             self._requests.send((function, arguments))
-            kind, value = self._answer()
+            kind, value = self._answer(told)
         except (EOFError, OSError):
             raise self._stopped() from None
         if kind == "raised":
@@ -172,14 +177,19 @@ class Worker:
         """Whether the process has not ended."""
         return self._process.is_alive()
 
-    def _answer(self) -> tuple[str, Any]:
-        """Return what the worker says at last, keeping time for it as it asks."""
-        rest: float | None = None
-        while self._answers.poll(rest):
+    def _answer(self, told: Told | None) -> tuple[str, Any]:
+        """Return what the worker says at last, keeping time for it as it asks; what it tells buys it no time."""
+        end: float | None = None
+        while self._answers.poll(None if end is None else max(0.0, end - time.monotonic())):
             kind, value = self._answers.recv()
             if kind in {"done", "raised"}:
                 return kind, value
-            rest = value
+            if kind == "timed":
+                end = None if value is None else time.monotonic() + value
+            elif told is not None:
+                # What it raises is its own affair: the worker would answer the next piece of work with this one.
+                with suppress(BaseException):
+                    told(value)
         raise self._stopped("seconds")
 
     def _stopped(self, setting: str = "") -> StoppedError:
@@ -227,6 +237,12 @@ def timed(seconds: float) -> Iterator[None]:
         yield
     finally:
         _Own.answers.send(("timed", None))
+
+
+def tell(message: bytes) -> None:
+    """Hand a message to whoever asked for what this worker is doing; elsewhere do nothing."""
+    if _Own.answers is not None:
+        _Own.answers.send(("told", message))
 
 
 def _serve(requests: Connection, answers: Connection, initializer: Callable[[], None] | None) -> None:
@@ -278,6 +294,7 @@ class _Piece:
     future: Future[Any]
     function: Callable[..., Any]
     arguments: tuple[object, ...]
+    told: Told | None
     losses: int = 0
 
 
@@ -289,9 +306,15 @@ class Workers:
         number: int,
         initializer: Callable[[], None] | None = None,
         variables: Mapping[str, str] | None = None,
+        *,
+        tries: int = _TRIES,
     ) -> None:
-        """Start them; raise WorkerLostError where no process can be started."""
+        """Start them; raise WorkerLostError where no process can be started.
+
+        A piece of work may cost so many workers (`tries`).
+        """
         self._made_of = (initializer, variables)
+        self._tries = tries
         self._pieces: PriorityQueue[tuple[int, _Piece | None]] = PriorityQueue()
         self._numbers = itertools.count()
         self._closing = False
@@ -320,16 +343,18 @@ class Workers:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def submit(self, function: Callable[..., Result], *arguments: object) -> Future[Result]:
+    def submit(self, function: Callable[..., Result], *arguments: object, told: Told | None = None) -> Future[Result]:
         """Return what will be the function of these arguments; pieces are begun in the order they are given in.
 
-        The future raises what the function raises, and WorkerLostError when it exceeds a limit or loses three workers.
+        `told` is called with what it tells meanwhile. The future raises what the function raises, and WorkerLostError
+        when it exceeds a limit or loses three workers.
         """
         future: Future[Result] = Future()
         with self._lock:
             if self._closing:
                 raise RuntimeError("the workers have ended")
-            self._pieces.put((next(self._numbers), _Piece(future=future, function=function, arguments=arguments)))
+            piece = _Piece(future=future, function=function, arguments=arguments, told=told)
+            self._pieces.put((next(self._numbers), piece))
         return future
 
     def close(self) -> None:
@@ -387,8 +412,8 @@ class Workers:
         """Have a worker do a piece of work, and return it if it was not stopped."""
         try:
             if worker is None:
-                raise WorkerLostError("no worker process can be started")  # noqa: TRY301
-            answer = worker.asked(piece.function, *piece.arguments)
+                raise WorkerLostError("no worker process can be started", losses=piece.losses)  # noqa: TRY301
+            answer = worker.asked(piece.function, *piece.arguments, told=piece.told)
         except StoppedError as stopped:
             self._repeat(number, piece, stopped)
             return None
@@ -405,12 +430,11 @@ class Workers:
             if self._closing:
                 _give_up(piece)
             elif stopped.setting:
-                piece.future.set_exception(
-                    WorkerLostError(f"a worker process exceeded its {stopped.setting}", stopped.setting)
-                )
-            elif lost.losses == _TRIES:
-                message = f"a worker process was stopped {_TRIES} times ({stopped})"
-                piece.future.set_exception(WorkerLostError(message))
+                message = f"a worker process exceeded its {stopped.setting}"
+                piece.future.set_exception(WorkerLostError(message, stopped.setting, lost.losses))
+            elif lost.losses == self._tries:
+                message = f"a worker process was stopped {lost.losses} times ({stopped})"
+                piece.future.set_exception(WorkerLostError(message, losses=lost.losses))
             else:
                 self._pieces.put((number, lost))
 

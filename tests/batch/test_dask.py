@@ -120,6 +120,31 @@ def test_what_a_file_does_to_its_reader_costs_no_worker(executor):
     assert _workers(executor) == before
 
 
+TELL = b"""
+from flexlash.workers import tell
+import time
+for number in range(50):
+    tell(b"%d" % number * 1000)
+import random
+tell(random.Random(1).randbytes(2**19))
+tell(b"last")
+time.sleep(2)
+"""
+
+
+@slow
+def test_what_a_worker_tells_is_heard_meanwhile(executor):
+    """Messages come in order while the work goes on, those of each piece alone; what is too long is not told."""
+    heard, others = [], []
+    future, beside = executor.submit(told, TELL, heard.append), executor.submit(told, b"1", others.append)
+    end = time.monotonic() + 20
+    while b"last" not in heard and time.monotonic() < end:
+        time.sleep(0.05)
+    assert not future.done()
+    assert heard == [*(b"%d" % number * 1000 for number in range(50)), b"last"]
+    assert (future.result(), beside.result(), others) == (b"{}", b"{}", [])
+
+
 @slow
 def test_large_pieces_come_back(executor):
     """A piece of 20 MiB, the largest workbook, and an answer twice as long pass without a warning."""

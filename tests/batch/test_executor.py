@@ -13,7 +13,7 @@ import time
 import pytest
 import regenerate
 from in_order import in_order
-from worker_tasks import doubled, leave, random_bytes, read_within, told
+from worker_tasks import doubled, leave, random_bytes, read_within, tell_and_wait, tell_each, told
 
 from flexlash.batch.executor import WorkerLostError
 from flexlash.batch.local_executor import local_executor
@@ -132,6 +132,45 @@ def test_what_has_not_begun_can_be_cancelled(executor):
     assert waiting.cancel()
     assert [future.result() for future in busy] == [b"{}", b"{}"]
     assert executor.submit(doubled, b"x").result() == b"xx"
+
+
+def test_what_a_worker_tells_comes_in_order_before_the_answer(executor):
+    """Each message of a worker reaches the one that asked, in order, before the answer; others hear nothing of it."""
+    heard, others = [], []
+    future = executor.submit(tell_each, b"abc" * 100, heard.append)
+    beside = executor.submit(doubled, b"x", others.append)
+    assert future.result() == b"abc" * 200
+    assert b"".join(heard) == b"abc" * 100
+    assert (beside.result(), others) == (b"xx", [])
+    assert executor.submit(tell_each, b"abc").result() == b"abcabc"
+
+
+def test_a_listener_that_fails_harms_nobody(executor):
+    """Whatever is raised by the one that is told, answers come back, each to the work that it is the answer of."""
+
+    def leave_at_once(message):
+        raise SystemExit(message)
+
+    futures = [executor.submit(tell_each, b"%d" % number, leave_at_once) for number in range(20)]
+    assert [future.result() for future in futures] == [b"%d" % number * 2 for number in range(20)]
+
+
+def test_telling_buys_no_time(executor):
+    """A worker that tells again and again is stopped by its clock all the same."""
+    with pytest.raises(WorkerLostError) as lost:
+        executor.submit(tell_and_wait, b"30", lambda _: None).result(20)
+    assert (lost.value.setting, lost.value.losses) == ("seconds", 1)
+
+
+@pytest.mark.parametrize("tries", [1, 2])
+def test_a_piece_of_work_costs_no_more_workers_than_allowed(tries, tmp_path):
+    """Work that kills its worker is tried as often as is said, and how many workers it has cost is told."""
+    trace = tmp_path / "trace"
+    text = f"import os\nopen({str(trace)!r}, 'a').write('x')\nos.kill(os.getpid(), 9)"
+    with local_executor(1, tries) as executor:
+        with pytest.raises(WorkerLostError) as lost:
+            executor.submit(told, text.encode()).result()
+        assert (lost.value.losses, trace.read_text()) == (tries, "x" * tries)
 
 
 def test_killed_at_any_moment_nothing_is_lost_or_mixed_up():

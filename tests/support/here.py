@@ -3,6 +3,8 @@
 from concurrent.futures import Future
 from contextlib import contextmanager
 
+import pytest
+
 from flexlash.reading.refusal import Refusal
 
 WHERE = "flexlash.reading.limited_process._answer"
@@ -28,14 +30,37 @@ class HereExecutor:
     workers = 2
 
     @staticmethod
-    def submit(work, data):
-        """Return the answer, which is there already."""
+    def submit(work, data, told=None):
+        """Return the answer, which is there already, having told what the work tells."""
         future = Future()
-        try:
-            future.set_result(work(data))
-        except Exception as fault:  # noqa: BLE001
-            future.set_exception(fault)
+        with heard_here(told):
+            try:
+                future.set_result(work(data))
+            except Exception as fault:  # noqa: BLE001
+                future.set_exception(fault)
         return future
+
+
+class _Here:
+    """Takes the place of the pipe to whoever asks."""
+
+    def __init__(self, told):
+        self._told = told
+
+    def send(self, said):
+        """Hand on what is told; nobody keeps time here."""
+        kind, value = said
+        if kind == "told":
+            self._told(value)
+
+
+@contextmanager
+def heard_here(told):
+    """Have what is told meanwhile in this process handed to a function, if there is one."""
+    with pytest.MonkeyPatch.context() as patch:
+        if told is not None:
+            patch.setattr("flexlash.workers._Own.answers", _Here(told))
+        yield
 
 
 @contextmanager

@@ -13,6 +13,7 @@ from flexlash.reading.limited_process import ask
 from flexlash.reading.read import Source, submission_of
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
+from flexlash.workers import tell, timed
 
 __all__ = [
     "ask_for_a_process",
@@ -30,6 +31,8 @@ __all__ = [
     "sleep",
     "slowly",
     "square",
+    "tell_and_wait",
+    "tell_each",
     "told",
 ]
 
@@ -127,6 +130,22 @@ def told(data):
     found = {}
     exec(data.decode(), {"answer": found})  # noqa: S102
     return json.dumps(found).encode()
+
+
+def tell_each(data):
+    """Tell each byte of what is given, then return all of it twice."""
+    for place in range(len(data)):
+        tell(data[place : place + 1])
+    return data * 2
+
+
+def tell_and_wait(data):
+    """Tell again and again for some seconds, of which one is allowed."""
+    with timed(1):
+        for _ in range(10 * int(data)):
+            tell(b"still here")
+            time.sleep(0.1)
+    return data
 
 
 def read_within(data):

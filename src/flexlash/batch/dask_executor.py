@@ -6,9 +6,12 @@ Whatever Dask needs on a network is said in docs/clusters.md.
 from __future__ import annotations
 
 import asyncio
+import itertools
 import os
 import re
+import secrets
 import threading
+import zlib
 from collections.abc import Coroutine, Iterator
 from concurrent.futures import CancelledError, Future
 from contextlib import AsyncExitStack, contextmanager, suppress
@@ -17,7 +20,7 @@ from typing import Any, TypeVar
 
 from flexlash import __version__
 from flexlash.batch.dask_work import OtherVersion, carried_out_here, end_processes
-from flexlash.batch.executor import ClusterError, Executor, Work, WorkerLostError
+from flexlash.batch.executor import ClusterError, Executor, Told, Work, WorkerLostError
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.findings import shown
 
@@ -77,14 +80,26 @@ class _DaskExecutor:
         self._client = client
         self._loop = loop
         self._lost = f"the Dask scheduler at {address} is not reachable"
+        self._topic = f"flexlash-{secrets.token_hex(8)}"
+        self._numbers = itertools.count()
+        self._told: dict[int, Told] = {}
+        client.subscribe_topic(self._topic, self._tell)
 
-    def submit(self, work: Work, data: bytes) -> Future[bytes]:
+    def submit(self, work: Work, data: bytes, told: Told | None = None) -> Future[bytes]:
         """Return what will be the answer; threads may ask side by side.
 
-        Besides what every executor raises it raises ClusterError when the scheduler or all of its workers are lost, or
-        workers have another version of flexlash.
+        What is told meanwhile goes by the scheduler, so that it may come late, or never when a machine is lost. Besides
+        what every executor raises it raises ClusterError when the scheduler or all of its workers are lost, or workers
+        have another version of flexlash.
         """
-        return asyncio.run_coroutine_threadsafe(self._answer(work, data), self._loop)
+        return asyncio.run_coroutine_threadsafe(self._answer(work, data, told), self._loop)
+
+    def _tell(self, event: tuple[float, tuple[int, bytes]]) -> None:
+        """Hand on what a worker tells; what is told after the answer concerns nobody."""
+        piece, message = event[1]
+        if told := self._told.get(piece):
+            with suppress(Exception):
+                told(zlib.decompress(message))
 
     async def counted(self) -> int:
         """Return how many threads the workers have now."""
@@ -104,13 +119,24 @@ class _DaskExecutor:
                 self._lost = f"the Dask scheduler at {self._address} has had no workers for {_DESERTED} seconds"
                 await self._client.close()
 
-    async def _answer(self, work: Work, data: bytes) -> bytes:
+    async def _answer(self, work: Work, data: bytes, told: Told | None) -> bytes:
+        """Return the answer of some worker, and have told meanwhile what it tells."""
+        if told is None:
+            return await self._asked(work, data)
+        piece = next(self._numbers)
+        self._told[piece] = told
+        try:
+            return await self._asked(work, data, self._topic, piece)
+        finally:
+            del self._told[piece]
+
+    async def _asked(self, work: Work, data: bytes, *where_to_tell: object) -> bytes:
         """Return the answer of some worker; the scheduler repeats by itself what it loses a few workers over."""
         from distributed import KilledWorker
 
         for _ in range(_TRIES):
             try:
-                asked = self._client.submit(carried_out_here, __version__, work, data, pure=False)
+                asked = self._client.submit(carried_out_here, __version__, work, data, *where_to_tell, pure=False)
                 answer = await asked
             except KilledWorker:
                 continue
@@ -131,7 +157,8 @@ class _DaskExecutor:
             if isinstance(answer, Exception):
                 raise answer
             return answer  # type: ignore[no-any-return]
-        raise WorkerLostError(f"all workers of Dask that took up a piece of work were lost, {_TRIES} times")
+        message = f"all workers of Dask that took up a piece of work were lost, {_TRIES} times"
+        raise WorkerLostError(message, losses=_TRIES)
 
 
 @contextmanager

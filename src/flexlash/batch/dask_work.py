@@ -7,6 +7,7 @@ piece of work that waits for it is blamed.
 from __future__ import annotations
 
 import threading
+import zlib
 from concurrent.futures import CancelledError
 
 from flexlash import __version__
@@ -15,7 +16,7 @@ from flexlash.batch.local_executor import worked
 from flexlash.reading.inside_limits import prepare
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.reading.limited_process import ProcessFaultError
-from flexlash.workers import FEW_THREADS, Workers
+from flexlash.workers import FEW_THREADS, Told, Workers
 
 __all__ = ["OtherVersion", "carried_out_here", "end_processes"]
 
@@ -46,14 +47,34 @@ def end_processes() -> None:
             _PROCESSES.pop().close()
 
 
-def carried_out_here(version: str, work: Work, data: bytes) -> bytes | Exception:
+_MOST_TOLD = 2**18
+"""Bytes of a message, made small, beyond which it is not told: the scheduler keeps the last thousand of a topic."""
+
+
+def _teller(topic: str, piece: int) -> Told:
+    """Return what hands the messages of a piece of work on to the one that asks, as events of this topic."""
+    from distributed import get_worker
+
+    worker = get_worker()
+
+    def tell(message: bytes) -> None:
+        small = zlib.compress(message, 1)
+        if len(small) <= _MOST_TOLD:
+            worker.log_event(topic, (piece, small))
+
+    return tell
+
+
+def carried_out_here(version: str, work: Work, data: bytes, topic: str = "", piece: int = 0) -> bytes | Exception:
     """Return the answer to a piece of work of this version of flexlash, or what it raises.
 
+    What it tells meanwhile is told under a topic, if there is one, with its number.
     An exception is returned, since Dask would tell it in its own log and take it for one of its own.
     """
     if version != __version__:
         return OtherVersion(__version__)
     try:
-        return _processes().submit(worked, work, data).result()
+        told = _teller(topic, piece) if topic else None
+        return _processes().submit(worked, work, data, told=told).result()
     except (WorkerLostError, ProcessFaultError, ChangedLibrary, CancelledError) as fault:
         return fault

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Protocol
 
-from flexlash.workers import WorkerLostError
+from flexlash.workers import Told, WorkerLostError
 
-__all__ = ["ClusterError", "Executor", "Work", "WorkerLostError"]
+__all__ = ["ClusterError", "Executor", "Told", "Work", "WorkerLostError"]
 
 Work = Callable[[bytes], bytes]
 """A function of a module, so that it can travel by its name."""
@@ -25,8 +25,8 @@ class Executor(Protocol):
     def workers(self) -> int:
         """How many pieces of work are done side by side."""
 
-    def submit(self, work: Work, data: bytes) -> Future[bytes]:
-        """Return what will be the answer.
+    def submit(self, work: Work, data: bytes, told: Told | None = None) -> Future[bytes]:
+        """Return what will be the answer; `told` is called with what a worker tells meanwhile (`workers.tell`).
 
         It raises WorkerLostError, the ProcessFaultError that says which fault of the program the work has, or
         ChangedLibrary.

@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from flexlash.batch.executor import Executor, Work
+from flexlash.batch.executor import Executor, Told, Work
 from flexlash.reading.inside_limits import Fault, prepare
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.reading.limited_process import ProcessFaultError
@@ -23,18 +23,18 @@ class _LocalExecutor:
     workers: int
     processes: Workers
 
-    def submit(self, work: Work, data: bytes) -> Future[bytes]:
+    def submit(self, work: Work, data: bytes, told: Told | None = None) -> Future[bytes]:
         """Return what will be the answer; threads may ask side by side."""
-        return self.processes.submit(worked, work, data)
+        return self.processes.submit(worked, work, data, told=told)
 
 
 @contextmanager
-def local_executor(workers: int) -> Iterator[Executor]:
+def local_executor(workers: int, tries: int = 3) -> Iterator[Executor]:
     """Give an executor of so many processes, which have ended when it is left.
 
-    Raises WorkerLostError where no process can be started.
+    A piece of work may cost so many of them (`tries`). Raises WorkerLostError where no process can be started.
     """
-    with Workers(workers, prepare, FEW_THREADS) as processes:
+    with Workers(workers, prepare, FEW_THREADS, tries=tries) as processes:
         yield _LocalExecutor(workers=workers, processes=processes)
 
 
