@@ -1,0 +1,114 @@
+"""Why a submission was not, or not wholly, computed, as a text beside its report, for the engineer who handed it in.
+
+UTF-8 with a byte order mark and CRLF, so that every Notepad shows it as it is. Whatever stands in it is on one line and
+without control characters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import PurePath
+
+from flexlash import __version__
+from flexlash.batch.answer import Answer
+from flexlash.batch.ended import fault_words
+from flexlash.reading.products import CHECKED_NAME, REPORT_NAME
+from flexlash.schema.findings import shown
+from flexlash.service.records import StoredSubmission
+
+__all__ = ["answered_again_text", "reasons_text"]
+
+_MARK = b"\xef\xbb\xbf"
+_LONGEST = 4096
+_ALL_LISTED = " (check --annotate)"
+"""What the terminal says of the marked copy, which here lies beside the text."""
+
+_AGAIN = "put the file into the folder again, under the same name or another"
+
+
+def reasons_text(answer: Answer, name: str, *, submission: str = "", reason: str = "") -> bytes:
+    """Return the text about a submission of this name that was rejected or computed in part.
+
+    `submission` is its ID. `reason` is the sentence that says why where the answer does not: an `Answer` of an exit
+    code alone stands for one that there never was.
+    """
+    return _as_bytes(_lines(answer, shown(name, 255), submission, reason))
+
+
+def answered_again_text(submission: StoredSubmission, names: Sequence[str], before: bytes = b"") -> bytes:
+    """Return the text for who hands in again what was answered before: where the answer is, and what it said.
+
+    `names` are those of the files of the answer, `before` is the text that stands among them, if any. The same
+    submission gets the same text however often it is handed in.
+    """
+    name = shown(submission.name, 255)
+    lines = [
+        f"{name}: this very file was handed in before, and its answer stands.",
+        "",
+        "Name, content and options are the same, so nothing was computed again. The answer:",
+        *([f"    {one}" for one in names] or ["    none: nothing of it was computed"]),
+        f"It was given to submission {submission.same_as}.",
+        "",
+        f"If you have changed the file, save it, and {_AGAIN}.",
+        *(["", "What was said of it:", ""] if before else []),
+    ]
+    return _as_bytes(lines) + before.removeprefix(_MARK)
+
+
+def _lines(answer: Answer, name: str, submission: str, reason: str) -> Iterator[str]:
+    stem, computed = PurePath(name).stem, answer.file is not None
+    counts = answer.told.get("counts") or {}
+    yield f"{name}: {answer.words or 'nothing was computed'}."
+    yield ""
+    if computed and counts.get("computed") == counts.get("rows"):
+        yield f"The report is {stem}{REPORT_NAME}.xlsx. This is to be looked at:"
+    elif computed:
+        yield f"The rows that could be computed are in {stem}{REPORT_NAME}.xlsx. Of the others this is to be mended:"
+    else:
+        yield "No report was written. This is why:"
+    yield ""
+    yield from _why(answer, reason)
+    yield ""
+    yield "What to do now"
+    yield from (f"  {number}. {step}" for number, step in enumerate(_steps(answer, stem), 1))
+    yield ""
+    if not computed:
+        yield f"Your file is kept, unchanged, in the folder rejected{f'/{submission}' if submission else ''}."
+    if submission:
+        yield f"Submission {submission}"
+    if sha256 := str(answer.told.get("sha256") or ""):
+        yield f"SHA-256 of the file: {sha256}"
+    yield f"flexlash {__version__}"
+
+
+def _why(answer: Answer, reason: str) -> Iterator[str]:
+    if reason:
+        yield reason
+    if answer.fault is not None:
+        yield fault_words(answer.fault.kind)
+    is_told = True
+    for level, line in answer.finding_lines:
+        if level:
+            is_told = level != "info" or answer.skipped
+        if is_told:
+            if level and line != answer.finding_lines[0][1]:
+                yield ""
+            yield line.replace(_ALL_LISTED, "")
+
+
+def _steps(answer: Answer, stem: str) -> Iterator[str]:
+    if answer.copy is not None and not answer.refused:
+        copy = f"{stem}{CHECKED_NAME}.xlsx"
+        if answer.copy.not_carried is None:
+            yield f"Open {copy} beside this text: it lists all of this."
+        else:
+            without = f", without its {', '.join(answer.copy.not_carried)}" if answer.copy.not_carried else ""
+            yield f"Open {copy} beside this text: a copy of your file{without} in which each of these cells is marked."
+        yield "Mend the cells in your own file and save it."
+    elif answer.finding_lines and not answer.skipped:
+        yield "Mend this as it says."
+    yield f"{_AGAIN[0].upper()}{_AGAIN[1:]}."
+
+
+def _as_bytes(lines: Iterable[str]) -> bytes:
+    return _MARK + "".join(f"{shown(line, _LONGEST)}\r\n" for line in lines).encode()
