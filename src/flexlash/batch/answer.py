@@ -14,9 +14,12 @@ from flexlash.reading.read import Source
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.number_words import share_words
 
-__all__ = ["Answer", "Command", "FileBytes", "Task", "Travelling", "WorstVariant"]
+__all__ = ["Answer", "Command", "FileBytes", "RuleTotal", "Stage", "Task", "Told", "Travelling", "WorstVariant"]
 
 Command = Literal["check", "mend", "run"]
+
+Stage = Literal["checking", "computing", "writing"]
+"""What is being done with a submission: its cells are checked, its rows computed, its files written."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +41,8 @@ class Task(Travelling):
     """A submission and what is to be done with it.
 
     `tables` stand beside it, by the sheet that each replaces. `report` is how the report's name ends, `copy` how the
-    marked copy's does, each empty where none is wanted.
+    marked copy's does, each empty where none is wanted. With `pages` it is told how far it is, and the answer has what
+    a page shows and offers.
     """
 
     command: Command
@@ -47,6 +51,37 @@ class Task(Travelling):
     tables: Mapping[str, Source] = field(default_factory=dict)
     report: str = ""
     copy: str = ""
+    pages: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Told(Travelling):
+    """What a task tells while it is worked on: so many of its rows are done.
+
+    `rows` are those that are computed, 0 until they are known; they are done once their spread is there, files follow.
+    `counts` are those of `--json`, and `page` is what a page shows of the findings, as JSON, each where it is new.
+    """
+
+    rows_done: int = 0
+    rows: int = 0
+    stage: Stage = "checking"
+    counts: Mapping[str, int] = field(default_factory=dict)
+    page: bytes = b""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RuleTotal:
+    """How often a rule is broken in a column of a sheet: at how many cells, and at which first.
+
+    What has no cell counts as one.
+    """
+
+    level: str
+    code: str
+    sheet: str = ""
+    column: str = ""
+    cells: int = 1
+    first: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,6 +130,10 @@ class Answer(Travelling):
     `words` how much was computed, `by_rule` the number of findings of each code. `file` is the report or the mended
     submission. `refused` says that it is no readable submission, `skipped` that flexlash wrote it, `fault` that the
     program failed. `exit_code` is that of a command for this submission alone whose files could all be written.
+
+    Where a page is wanted, `results` is Results as CSV, `mended` the submission with the certain fixes, None where
+    there are none, `page` what a page shows, as JSON (`report.page.shape.PageFacts`), and `rules` are the findings by
+    rule and column.
     """
 
     exit_code: ExitCode
@@ -110,3 +149,7 @@ class Answer(Travelling):
     refused: bool = False
     skipped: bool = False
     fault: Fault | None = None
+    results: FileBytes | None = None
+    mended: FileBytes | None = None
+    page: bytes = b""
+    rules: tuple[RuleTotal, ...] = ()

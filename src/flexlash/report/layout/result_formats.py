@@ -13,7 +13,7 @@ from flexlash.schema.number_words import places, share_error
 if TYPE_CHECKING:
     import polars as pl
 
-__all__ = ["ESTIMATED_SHARES", "SHARE_OF_VARIANCE_ERROR", "number_formats", "usual_format"]
+__all__ = ["ESTIMATED_SHARES", "SHARE_OF_VARIANCE_ERROR", "number_codes", "number_formats", "usual_format"]
 
 _UNITS = {
     "rad": "rad",
@@ -66,18 +66,23 @@ def usual_format(column: Column) -> str:
 
 def number_formats(book: Book, results: pl.DataFrame, column: Column) -> list[Any]:
     """Return a format for each number of a column."""
+    return [book.format("text", code) for code in number_codes(results, column)]
+
+
+def number_codes(results: pl.DataFrame, column: Column) -> list[str]:
+    """Return the number format of each number of a column, by name or in Excel's letters."""
     values, usual = results[column.key].to_list(), usual_format(column)
     stem, _, unit = column.key.rpartition("_")
     if "standard_error" in column.key:
-        return [book.format("text", _of_error(value)) for value in values]
+        return [_of_error(value) for value in values]
     if column.key.startswith(("probability", "ppm")):
-        return _of_shares(book, results, column.key, values)
+        return _of_shares(results, column.key, values)
     if column.key in _WORKED_OUT:
         work_out, needed = _WORKED_OUT[column.key]
         errors = [work_out(row) for row in results.select(column.key, *needed).iter_rows(named=True)]
         if usual == "share":
-            return [book.format("text", percent_of(error)) for error in errors]
-        return [book.format("text", min(decimals_of(error, usual), _PPK, key=len)) for error in errors]
+            return [percent_of(error) for error in errors]
+        return [min(decimals_of(error, usual), _PPK, key=len) for error in errors]
     error = next(
         (
             key
@@ -87,10 +92,8 @@ def number_formats(book: Book, results: pl.DataFrame, column: Column) -> list[An
         "",
     )
     if not error:
-        return [book.format("text", usual)] * results.height
-    return [
-        book.format("text", decimals_of(error, "arcmin" if unit else "plain")) for error in results[error].to_list()
-    ]
+        return [usual] * results.height
+    return [decimals_of(error, "arcmin" if unit else "plain") for error in results[error].to_list()]
 
 
 def _ppk_error(row: dict[str, Any]) -> float | None:
@@ -141,8 +144,8 @@ def _of_error(error: float | None) -> str:
     return f"0.{'0' * digits}" if digits else "0"
 
 
-def _of_shares(book: Book, results: pl.DataFrame, key: str, values: list[float | None]) -> list[Any]:
-    """Return a format for each share over the limit, or its bounds, down to the share's standard error."""
+def _of_shares(results: pl.DataFrame, key: str, values: list[float | None]) -> list[str]:
+    """Return a number format for each share over the limit, or its bounds, down to the share's standard error."""
     stem = key.removesuffix("_low").removesuffix("_high")
     ends = zip(results[f"{stem}_low"].to_list(), results[f"{stem}_high"].to_list(), strict=True)
     errors = [None if low is None else share_error(low, high) for low, high in ends]
@@ -150,7 +153,7 @@ def _of_shares(book: Book, results: pl.DataFrame, key: str, values: list[float |
     formats = []
     for value, error in zip(values, errors, strict=True):
         if value is not None and not _NEAR * whole <= value <= (1 - _NEAR) * whole:
-            formats.append(book.format("text", near_end))
+            formats.append(near_end)
         else:
-            formats.append(book.format("text", percent_of(error) if whole == 1.0 else decimals_of(error, "count")))
+            formats.append(percent_of(error) if whole == 1.0 else decimals_of(error, "count"))
     return formats

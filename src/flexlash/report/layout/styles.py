@@ -9,7 +9,7 @@ from xlsxwriter.worksheet import Worksheet
 
 from flexlash.schema.number_words import places
 
-__all__ = ["GRID", "PALETTE", "Book", "decimals_of", "percent_of"]
+__all__ = ["GRID", "PALETTE", "Book", "decimals_of", "number_code", "percent_of"]
 
 PALETTE = {
     "ink": "#1F3A5F",
@@ -120,6 +120,11 @@ _FORMATS |= {f"big {level}": _FORMATS["big"] | _FORMATS[level] for level in ("er
 _MOST_DECIMALS = 8
 
 
+def number_code(number: str) -> str:
+    """Return a number format in Excel's letters, given so or by name."""
+    return _NUMBERS.get(number, number)
+
+
 def decimals_of(error: float | None, otherwise: str) -> str:
     """Return the number format that shows a number down to the first digit of its standard error.
 
@@ -155,7 +160,7 @@ class Book:
         if key not in self._formats:
             properties = {**_BASE, **_FORMATS[name]}
             if number:
-                properties["num_format"] = _NUMBERS.get(number, number)
+                properties["num_format"] = number_code(number)
             self._formats[key] = self.workbook.add_format(properties)
         return self._formats[key]
 

@@ -12,9 +12,9 @@ from flexlash.report.report_data import Drawn
 from flexlash.report.wording.verdict import firm, light
 from flexlash.schema.number_words import grouped
 
-__all__ = ["chart_words", "variants_chart"]
+__all__ = ["CHARTED", "chart_axis", "chart_title", "chart_words", "variants_chart"]
 
-_CHARTED = 60
+CHARTED = 60
 """Most variants whose names can be read below a chart."""
 
 _COLOURS = {"red": "red", "amber": "orange"}
@@ -22,19 +22,16 @@ _LOOKS: tuple[tuple[int, dict[str, int]], ...] = (
     (3, {"gap": 500, "turned": 0, "font": 9, "median": 6, "limit": 14}),
     (12, {"gap": 150, "turned": -45, "font": 9, "median": 5, "limit": 12}),
     (30, {"gap": 60, "turned": -90, "font": 9, "median": 4, "limit": 9}),
-    (_CHARTED, {"gap": 30, "turned": -90, "font": 8, "median": 3, "limit": 6}),
+    (CHARTED, {"gap": 30, "turned": -90, "font": 8, "median": 3, "limit": 6}),
 )
 """Up to how many variants: space between bars in per cent of their width, turn and size of labels, size of marks."""
 
 
 def variants_chart(book: Book, drawn: Sequence[Drawn], curves: Stored, total: int) -> Any:
     """Return the chart of the worst variants; its data stand on the sheet of the curves."""
-    shown = drawn[:_CHARTED]
+    shown = drawn[:CHARTED]
     look = next(look for most, look in _LOOKS if len(shown) <= most)
-    title = "Backlash of 95 % of units (P2.5 to P97.5), median and limit [arcmin]"
-    if len(shown) < total:
-        title += f": the {len(shown)} worst of {grouped(total)}"
-    bars = book.chart("column", title, subtype="stacked")
+    bars = book.chart("column", chart_title(len(shown), total), subtype="stacked")
     marks = book.workbook.add_chart({"type": "line"})
     names = curves.series("Label", len(shown))
     hidden = {"fill": {"none": True}, "border": {"none": True}, "gap": look["gap"]}
@@ -52,10 +49,16 @@ def variants_chart(book: Book, drawn: Sequence[Drawn], curves: Stored, total: in
     return bars
 
 
+def chart_title(shown: int, total: int) -> str:
+    """Return the title of the chart that shows so many variants of so many."""
+    part = f": the {shown} worst of {grouped(total)}" if shown < total else ""
+    return f"Backlash of 95 % of units (P2.5 to P97.5), median and limit [arcmin]{part}"
+
+
 def chart_words(drawn: Sequence[Drawn]) -> str:
     """Return the alternative text of the chart."""
     return (
-        f"For {min(len(drawn), _CHARTED)} variants, worst first: a bar from the backlash that 2.5 % of units stay "
+        f"For {min(len(drawn), CHARTED)} variants, worst first: a bar from the backlash that 2.5 % of units stay "
         "below to that which 97.5 % stay below, the median as a diamond, the limit as a dash. Bars of variants with "
         "verdict red are dark orange, with amber orange, others blue."
     )
@@ -77,8 +80,13 @@ def _marker(shape: str, colour: str, size: int) -> dict[str, Any]:
 
 
 def _axis(shown: Sequence[Drawn]) -> dict[str, Any]:
-    """Return start, step and digits of an axis that begins at a round number below everything that is shown."""
-    rows = [variant.row for variant in shown]
+    """Return the same as the axis of a chart has it."""
+    start, step, digits = chart_axis([variant.row for variant in shown])
+    return {"min": start, "major_unit": step, "num_format": f"0.{'0' * digits}" if digits else "0"}
+
+
+def chart_axis(rows: Sequence[dict[str, Any]]) -> tuple[float, float, int]:
+    """Return start, step and digits of an axis that begins at a round number below all that Results rows show."""
     limits = [row["backlash_limit_arcmin"] for row in rows if row["backlash_limit_arcmin"] is not None]
     low = min([*limits, *(row["p2_5_arcmin"] for row in rows)])
     high = max([*limits, *(row["p97_5_arcmin"] for row in rows)])
@@ -86,5 +94,4 @@ def _axis(shown: Sequence[Drawn]) -> dict[str, Any]:
     power = 10.0 ** math.floor(math.log10(about))
     step = power * next(times for times in (1, 2, 5, 10) if about <= times * power * (1 + 1e-9))
     digits = max(0, -math.floor(math.log10(step * (1 + 1e-9))))
-    start = max(0.0, round(math.floor((low - step / 2) / step) * step, 12))
-    return {"min": start, "major_unit": round(step, 12), "num_format": f"0.{'0' * digits}" if digits else "0"}
+    return max(0.0, round(math.floor((low - step / 2) / step) * step, 12)), round(step, 12), digits

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.analysis.run_summary import counted, dimension_words, points_words
+from flexlash.analysis.run_summary import counted, points_words
 from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.links import result_rows, write_link
@@ -18,7 +18,7 @@ from flexlash.report.report_data import Drawn, ReportData
 from flexlash.report.summary.summary_chart import chart_words, variants_chart
 from flexlash.report.wording.distances import distance, distance_format
 from flexlash.report.wording.sentences import FINDINGS, sentences
-from flexlash.report.wording.summary_facts import labels_of, rough
+from flexlash.report.wording.summary_facts import labels_of, main_cause
 from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, RULES, UNSETTLED, light, verdict_counts
 from flexlash.schema.findings import shown
 from flexlash.schema.number_words import glance, grouped, share_words
@@ -193,8 +193,7 @@ class _Page:
             lines = lines_of(share, merged_width(_WIDTHS[7:8]) - 1)
             self.sheet.write_string(self.row, 7, share, self.book.format("indented wrap"))
         if row["main_contributor"]:
-            about = "≈" if rough(row) else ""
-            cause = f"{dimension_words(row['main_contributor'])} ({about}{100 * row['main_contributor_share']:.0f} %)"
+            cause = main_cause(row)
             lines = max(lines, lines_of(cause, merged_width(_WIDTHS[8:])))
             self.sheet.write_string(self.row, 8, cause, self.book.format("wrap"))
         self._end_row(LINE_HEIGHT * lines)

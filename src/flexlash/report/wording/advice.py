@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import polars as pl
@@ -16,7 +16,7 @@ from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import spelled_out
 from flexlash.schema.number_words import angle_words, glance, rounded, share_error, share_words
 
-__all__ = ["stiffening", "tightening"]
+__all__ = ["stiffening", "tightening", "tightening_of"]
 
 _LEVERS = 2
 """Most dimensions named by which a variant gets stiffer."""
@@ -39,11 +39,18 @@ def tightening(facts: SummaryFacts) -> Iterator[str]:
         return
     hopeless = facts.failing.filter(pl.col("p50_arcmin") > pl.col("backlash_limit_arcmin"))["variant"].to_list()
     if hopeless:
-        names = facts.names(hopeless)
-        whose = "its backlash is" if len(hopeless) == 1 else "their backlash is"
-        yield f"Tighter tolerances cannot help {names}: {whose} over the limit for half of the units or more."
+        yield _hopeless(facts, hopeless)
     for recommendation in facts.recommendations:
         if recommendation.halvings:
+            yield _halvings(facts, recommendation)
+
+
+def tightening_of(facts: SummaryFacts, row: Row) -> Iterator[str]:
+    """Yield the same of one variant that does not meet its limit; nothing where no halving was looked at."""
+    if row["p50_arcmin"] > row["backlash_limit_arcmin"]:
+        yield _hopeless(facts, [row["variant"]])
+    for recommendation in facts.recommendations:
+        if recommendation.variant == row["variant"] and recommendation.halvings:
             yield _halvings(facts, recommendation)
 
 
@@ -65,6 +72,14 @@ def _nothing(facts: SummaryFacts) -> Iterator[str]:
         yield f"Nothing so far: no variant is found to fail, but {counted(unsettled, 'verdict')} may change."
     else:
         yield "Nothing: no variant with a limit needs a tighter tolerance or a stiffer part."
+
+
+def _hopeless(facts: SummaryFacts, variants: Sequence[str]) -> str:
+    """Return that no tolerance helps some variants."""
+    whose = "its backlash is" if len(variants) == 1 else "their backlash is"
+    return (
+        f"Tighter tolerances cannot help {facts.names(variants)}: {whose} over the limit for half of the units or more."
+    )
 
 
 def _row(facts: SummaryFacts, recommendation: Recommendation) -> Row:

@@ -18,7 +18,7 @@ from flexlash.report.wording.verdict_sentences import failing, sureness
 from flexlash.schema.findings import CATALOGUE, spelled_out
 from flexlash.schema.number_words import angle_words
 
-__all__ = ["FINDINGS", "sentences"]
+__all__ = ["FINDINGS", "cause_of", "sentences"]
 
 FINDINGS = "Findings"
 """The topic of the sentence that leads to the sheet of this name."""
@@ -104,15 +104,7 @@ def _causes(facts: SummaryFacts) -> Iterator[str]:
     worst = facts.worst
     if worst is None:
         return
-    name = facts.named(worst["variant"])
-    spread = facts.computed(worst).spread
-    shares = spread.shares if spread else {}
-    if not shares:
-        yield f"Nothing scatters in {name}: no tolerance applies to its dimensions, so all units are alike."
-    ranked = sorted(shares, key=lambda cause: (-shares[cause], cause))
-    named = ranked[:1] + [cause for cause in ranked[1:_CAUSES] if shares[cause] >= _LEAST_CAUSE]
-    if named:
-        yield f"The spread of {name} comes from {_parts(worst, {cause: shares[cause] for cause in named})}."
+    yield from cause_of(facts, worst)
     main = Counter(cause for cause in facts.outcome.results["main_contributor"].to_list() if cause is not None)
     if main.total() > 1:
         order = sorted(main, key=lambda cause: (-main[cause], cause))
@@ -121,6 +113,19 @@ def _causes(facts: SummaryFacts) -> Iterator[str]:
         where = f"all {where}" if len(main) == 1 else where
         what = dimension_words(order[0]) if len(main) == 1 else listed(parts, _CAUSES)
         yield f"Main contributor of {where}: {what}."
+
+
+def cause_of(facts: SummaryFacts, row: Row) -> Iterator[str]:
+    """Yield what the spread of a variant comes from."""
+    name = facts.named(row["variant"])
+    spread = facts.computed(row).spread
+    shares = spread.shares if spread else {}
+    if not shares:
+        yield f"Nothing scatters in {name}: no tolerance applies to its dimensions, so all units are alike."
+    ranked = sorted(shares, key=lambda cause: (-shares[cause], cause))
+    named = ranked[:1] + [cause for cause in ranked[1:_CAUSES] if shares[cause] >= _LEAST_CAUSE]
+    if named:
+        yield f"The spread of {name} comes from {_parts(row, {cause: shares[cause] for cause in named})}."
 
 
 def _parts(row: Row, shares: dict[str, float]) -> str:

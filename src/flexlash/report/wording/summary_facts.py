@@ -13,7 +13,7 @@ import polars as pl
 from flexlash.analysis.computed import Computed
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.recommendations import Recommendation
-from flexlash.analysis.run_summary import listed, quoted
+from flexlash.analysis.run_summary import dimension_words, listed, quoted
 from flexlash.analysis.whole_batch import is_straddled, verdict_place
 from flexlash.report.extent import Extent, extent_of
 from flexlash.report.report_data import DRAWN, ROW, ranked
@@ -22,7 +22,7 @@ from flexlash.report.wording.verdict import LIGHTS
 from flexlash.schema.findings import shown
 from flexlash.schema.limit_verdict import VERDICTS
 
-__all__ = ["NAMED", "Row", "SummaryFacts", "first_rows", "labels_of", "rough", "summary_facts"]
+__all__ = ["NAMED", "Row", "SummaryFacts", "first_rows", "labels_of", "main_cause", "rough", "summary_facts"]
 
 NAMED = 3
 """Most variants that a sentence names."""
@@ -104,3 +104,11 @@ def labels_of(outcome: Outcome, worst: Sequence[str]) -> dict[str, str]:
 def rough(row: Row) -> bool:
     """Whether a row's shares of the variance are estimated from too few points to be right to one per cent."""
     return bool((row["spread_points"] or math.inf) < _SURE.get(row["spread_method"], 0))
+
+
+def main_cause(row: Row) -> str:
+    """Return what causes most of a row's spread, with its share; an empty text where nothing scatters."""
+    if not row["main_contributor"]:
+        return ""
+    about = "≈" if rough(row) else ""
+    return f"{dimension_words(row['main_contributor'])} ({about}{100 * row['main_contributor_share']:.0f} %)"

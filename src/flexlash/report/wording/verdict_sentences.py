@@ -12,9 +12,10 @@ from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, firs
 from flexlash.report.wording.verdict import NO_VERDICT, RULES, UNSETTLED, firm, light, straddled, verdict_counts
 from flexlash.schema.number_words import angle_words, share_words
 
-__all__ = ["failing", "sureness"]
+__all__ = ["extremes", "failing", "judged", "sureness"]
 
 _PERCENTILES = {"p97_5": "97.5 %", "p99_865": "99.865 %"}
+_IN_BRACKETS = "In brackets the 95 % interval of the calculation, for the tolerances as entered."
 
 
 def failing(facts: SummaryFacts) -> Iterator[str]:
@@ -61,13 +62,36 @@ def sureness(facts: SummaryFacts) -> Iterator[str]:
     if shares:
         yield f"Units over the limit: {listed([f'{name} {words}' for name, words in shares], NAMED)}."
         if any("(" in words for _, words in shares):
-            yield "In brackets the 95 % interval of the calculation, for the tolerances as entered."
+            yield _IN_BRACKETS
     yield from _unsettled(facts)
-    low, high = worst["worst_case_low_arcmin"], worst["worst_case_high_arcmin"]
+    yield from extremes(facts, worst)
+
+
+def extremes(facts: SummaryFacts, row: Row) -> Iterator[str]:
+    """Yield between which bounds the backlash of a variant lies whatever the parts are, where it scatters."""
+    low, high = row["worst_case_low_arcmin"], row["worst_case_high_arcmin"]
     if low < high:
         low, high = angle_words(low), angle_words(high)
-        name = facts.named(worst["variant"])
+        name = facts.named(row["variant"])
         yield f"With every dimension at a limit the backlash of {name} lies between {low} and {high}."
+
+
+def judged(row: Row) -> Iterator[str]:
+    """Yield of one variant how far its percentiles are from its limit, its verdict, and the share over the limit."""
+    tails = {words: _tail(row, key) for key, words in _PERCENTILES.items()}
+    (first, low), (second, high) = tails.items()
+    if row["backlash_limit_arcmin"] is None:
+        yield f"{first} of its units stay below {low}, {second} below {high}."
+        yield "No limit was given, so nothing is judged."
+        return
+    near, far = (distance_words(row, key) for key in _PERCENTILES)
+    limit, verdict = f"{row['backlash_limit_arcmin']:g}′", light(row)
+    yield f"{first} of its units stay below {low}, {near} its limit of {limit}; {second} below {high}, {far} it."
+    yield f"Verdict {verdict}: {RULES[firm(verdict)]}."
+    words = share_words(row)
+    yield f"Units over the limit: {words}."
+    if "(" in words:
+        yield _IN_BRACKETS
 
 
 def _doubt(doubtful: int, count: int) -> str:

@@ -1,0 +1,127 @@
+"""An outcome → all that a page shows of it, in the report's own words and numbers, as JSON of bounded size."""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+
+from flexlash import __version__
+from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.run_summary import points_words, state_words, to_fix
+from flexlash.feedback.fixing.fix import Fix
+from flexlash.feedback.returned_files import certain_fixes
+from flexlash.report.layout.links import row_of, rule_counts
+from flexlash.report.page.cards import cards_of
+from flexlash.report.page.grids import Sheets
+from flexlash.report.page.shape import PageFacts, Refused, Sentence
+from flexlash.report.page.tiles import TARGET, finding_tiles, verdict_tiles
+from flexlash.report.page.variant_page import variant_pages
+from flexlash.report.page.variants import chart_of, lost_variants, shown_names, table_rows
+from flexlash.report.report_data import ReportData
+from flexlash.report.wording.sentences import sentences
+from flexlash.report.wording.summary_facts import summary_facts
+from flexlash.schema.findings import CATALOGUE, Finding, shown
+
+__all__ = ["PAGED", "TABLED", "page_bytes", "page_facts"]
+
+PAGED, TABLED = 100, 500
+"""Most variants with a page of their own, and most in the table; worst first."""
+
+_NAME = 120
+"""Most characters of the submission's name."""
+
+_KINDS: Mapping[str, str] = {
+    "Computed": "computed",
+    "Which fail": "verdict",
+    "How sure": "verdict",
+    "Why": "cause",
+    "What to tighten": "advice",
+    "What to stiffen": "advice",
+    "Findings": "findings",
+}
+"""What the topics of the Summary are about; any other is a note."""
+
+
+def page_bytes(
+    outcome: Outcome, *, ran: bool, data: ReportData | None = None, fixes: Sequence[Fix] | None = None
+) -> bytes:
+    """Return `page_facts` as JSON; the same bytes for the same outcome."""
+    facts = page_facts(outcome, ran=ran, data=data, fixes=fixes)
+    return json.dumps(facts, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
+
+
+def page_facts(
+    outcome: Outcome, *, ran: bool, data: ReportData | None = None, fixes: Sequence[Fix] | None = None
+) -> PageFacts:
+    """Return what a page shows of an outcome; `ran` says that its spread was computed.
+
+    `data` is what the report draws, needed for variants; `fixes` are those that were made, by default those that may.
+    """
+    made = certain_fixes(outcome.findings) if fixes is None else fixes
+    fixable = len({fix.place for fix in made})
+    cells = to_fix(outcome.findings)[0]
+    headers = outcome.validated.header_rows if outcome.validated else {}
+    sheets = Sheets(submission=outcome.submission, header_rows=headers, fixes=made)
+    facts = PageFacts(
+        name=shown(outcome.submission.name, _NAME),
+        sha256=outcome.submission.sha256,
+        version=__version__,
+        ran=ran,
+        method=outcome.settings.method,
+        seed=outcome.settings.seed,
+        points=points_words(outcome) if ran else "",
+        target_percent=TARGET,
+        counts=outcome.counts,
+        cells_to_fix=cells,
+        fixable=fixable,
+        state=state_words(outcome, ran=ran),
+        tiles=list(finding_tiles(outcome, ran=ran, to_fix=cells, fixable=fixable)),
+        verdict_tiles=list(verdict_tiles(outcome)) if ran else [],
+        refused=_refused(outcome),
+        findings=sum(rule_counts(outcome).values()),
+        cards=[] if outcome.submission.kind == "refused" else list(cards_of(outcome.findings, sheets)),
+        sentences=[],
+        chart=None,
+        table=[],
+        computed=outcome.counts["computed"],
+        lost=[],
+        lost_in_all=0,
+        variants=[],
+    )
+    if ran and data is not None:
+        _add_variants(facts, outcome, data)
+    return facts
+
+
+def _refused(outcome: Outcome) -> Refused | None:
+    """Return why a file is no readable submission; None for one that is."""
+    if outcome.submission.kind != "refused":
+        return None
+    found = outcome.findings[0]
+    return Refused(
+        code=found.code,
+        title=CATALOGUE[found.code].title,
+        message=found.message,
+        fix=found.fix,
+        skipped=outcome.skipped,
+    )
+
+
+def _add_variants(facts: PageFacts, outcome: Outcome, data: ReportData) -> None:
+    """Add what the computed variants show."""
+    summary = summary_facts(outcome, data.recommendations)
+    rows = summary.ranked.head(TABLED).to_dicts()
+    names = shown_names(rows)
+    drawn = data.drawn[:PAGED]
+    facts["sentences"] = [
+        Sentence(topic=topic, text=text, kind=_KINDS.get(topic, "note"))  # type: ignore[typeddict-item]
+        for topic, text in sentences(outcome, data.recommendations)
+    ]
+    facts["chart"] = chart_of(rows, names, len(drawn), summary.extent.total)
+    facts["table"] = list(table_rows(rows, names, len(drawn)))
+    facts["lost"], facts["lost_in_all"] = lost_variants(outcome)
+    by_row: dict[int, list[Finding]] = defaultdict(list)
+    for found in outcome.findings:
+        by_row[row_of(outcome, found)].append(found)
+    facts["variants"] = list(variant_pages(summary, drawn, names[: len(drawn)], by_row))

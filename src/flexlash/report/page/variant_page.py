@@ -1,0 +1,193 @@
+"""A drawn variant → its own page: verdict, distribution, causes, segments, limits used, numbers, its findings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import polars as pl
+
+from flexlash.analysis.run_summary import dimension_words
+from flexlash.report.explorer.curves_sheet import CAUSES, SEGMENTS
+from flexlash.report.layout.result_formats import number_codes
+from flexlash.report.page.cards import finding_facts
+from flexlash.report.page.excel_texts import number_text
+from flexlash.report.page.shape import (
+    Density,
+    Number,
+    Segment,
+    Sentence,
+    Share,
+    UsedLimits,
+    VariantPage,
+)
+from flexlash.report.page.variants import verdict_of
+from flexlash.report.report_data import ROW, Drawn
+from flexlash.report.wording.advice import stiffening, tightening_of
+from flexlash.report.wording.sentences import cause_of
+from flexlash.report.wording.summary_facts import SummaryFacts, rough
+from flexlash.report.wording.verdict import light, straddled
+from flexlash.report.wording.verdict_sentences import extremes, judged
+from flexlash.schema.columns import DIMENSIONS, Column
+from flexlash.schema.findings import Finding, shown
+from flexlash.schema.limit_verdict import misses_limit
+from flexlash.schema.result_columns import result_columns
+from flexlash.schema.units import ARCMIN, as_entered
+from flexlash.schema.variant import Limits
+from flexlash.tolerance.dimension_limits import distribution_of
+from flexlash.tolerance.distribution_curves import HISTOGRAM_BINS
+
+__all__ = ["variant_pages"]
+
+_FINDINGS = 10
+"""Most findings of a variant that are told."""
+
+_TEXT = 200
+"""Most characters of a text of Results."""
+
+_NUMBERS = (
+    "backlash_arcmin", "mean_arcmin", "sd_arcmin", "p0_135_arcmin", "p2_5_arcmin", "p5_arcmin", "p50_arcmin",
+    "p95_arcmin", "p97_5_arcmin", "p99_865_arcmin", "coverage_low_arcmin", "coverage_high_arcmin",
+    "worst_case_low_arcmin", "worst_case_high_arcmin", "first_order_sd_arcmin", "first_order_valid", "skewness",
+    "backlash_limit_arcmin", "probability_over_limit", "probability_over_limit_low", "probability_over_limit_high",
+    "ppm_over_limit", "ppk", "ppk_normal", "interaction_share", "disk_share", "cylinder_only_backlash_arcmin",
+    "two_term_backlash_arcmin", "lost_motion_arcmin", "drive_lost_motion_arcmin", "stiffness_Nm_per_rad",
+    "stiffness_Nm_per_arcmin", "catalogue_stiffness_Nm_per_rad", "wall_shear_MPa", "rim_shear_MPa", "hub_shear_MPa",
+    "hub_shear_radius_mm", "von_mises_MPa", "governing_section", "elastic_limit_torque_Nm", "buckling_shear_MPa",
+    "buckling_range", "natural_frequency_Hz", "resonance_speed_rpm", "cross_check", "cross_check_deviation",
+    "elasticity_difference_percent", "elasticity_error_percent", "elasticity_hub_fillet_shear_MPa",
+    "elasticity_junction_fillet_shear_MPa", "spread_method", "spread_points", "spread_note",
+)  # fmt: skip
+"""Results that a variant's own page has, in the order in which a reader wants them."""
+
+_COLUMNS = {column.key: column for column in result_columns(cross_check=True, elasticity=True)}
+
+
+def variant_pages(
+    facts: SummaryFacts, drawn: Sequence[Drawn], names: Sequence[str], findings: Mapping[int, Sequence[Finding]]
+) -> Iterator[VariantPage]:
+    """Yield the pages of variants of these short names; `findings` are those of each row of Variants."""
+    numbers = _numbers(facts.ranked.head(len(drawn)))
+    for place, (variant, name, own) in enumerate(zip(drawn, names, numbers, strict=True)):
+        row = variant.row
+        found = findings.get(row[ROW], ())
+        yield VariantPage(
+            variant=name,
+            row=row[ROW],
+            place=place + 1,
+            verdict=verdict_of(row),
+            settled=not straddled(row),
+            light="" if row["backlash_limit_arcmin"] is None else light(row),
+            sentences=list(_sentences(facts, variant)),
+            density=_density(variant),
+            shares=list(_shares(variant)),
+            segments=list(_segments(variant)),
+            limits=list(_limits(variant)),
+            numbers=own,
+            findings=[finding_facts(one) for one in found[:_FINDINGS]],
+            more_findings=max(0, len(found) - _FINDINGS),
+        )
+
+
+def _sentences(facts: SummaryFacts, variant: Drawn) -> Iterator[Sentence]:
+    """Yield what is said of a variant, as the Summary says it of the worst."""
+    row = variant.row
+    yield Sentence(topic="Verdict", text=" ".join([*judged(row), *extremes(facts, row)]), kind="verdict")
+    yield Sentence(topic="Why", text=" ".join(cause_of(facts, row)), kind="cause")
+    if misses_limit(row["probability_over_limit"]):
+        its_own = [one for one in facts.recommendations if one.variant == row["variant"]]
+        tighter = " ".join(tightening_of(facts, row))
+        stiffer = " ".join(stiffening(replace(facts, recommendations=its_own)))
+        for topic, text in (("What to tighten", tighter), ("What to stiffen", stiffer)):
+            if text:
+                yield Sentence(topic=topic, text=text, kind="advice")
+
+
+def _density(variant: Drawn) -> Density:
+    """Return the histogram that Explorer draws."""
+    curve, row = variant.curve, variant.row
+    return Density(
+        start=float(curve.edges[0]) / ARCMIN,
+        width=float(curve.edges[-1] - curve.edges[0]) / HISTOGRAM_BINS / ARCMIN,
+        heights=[float(f"{height:.5e}") for height in curve.heights.tolist()],
+        nominal=row["backlash_arcmin"],
+        limit=row["backlash_limit_arcmin"],
+    )
+
+
+def _shares(variant: Drawn) -> Iterator[Share]:
+    """Yield the dimensions that move the backlash most, by their share of the variance."""
+    spread = variant.computed.spread
+    about = "≈" if rough(variant.row) else ""
+    shares = spread.shares if spread else {}
+    for name in sorted(shares, key=lambda name: (-shares[name], name))[:CAUSES]:
+        low, high = spread.swings[name] if spread and name in spread.swings else (None, None)
+        yield Share(
+            name=dimension_words(name),
+            share=shares[name],
+            words=f"{about}{100 * shares[name]:.0f} %",
+            low=None if low is None else low / ARCMIN,
+            high=None if high is None else high / ARCMIN,
+        )
+
+
+def _segments(variant: Drawn) -> Iterator[Segment]:
+    """Yield the stretches of the part in which the nominal backlash arises, from the open end to the hub."""
+    nominal = variant.computed.nominal
+    for segment, name in SEGMENTS.items():
+        angle = getattr(nominal, f"{segment}_windup")
+        if isinstance(angle, float) and angle > 0:
+            share = angle / nominal.windup
+            yield Segment(
+                name=name,
+                backlash=2 * angle / ARCMIN,
+                share=share,
+                words=f"{2 * angle / ARCMIN:.4f}′, {100 * share:.1f} %",
+            )
+
+
+def _limits(variant: Drawn) -> Iterator[UsedLimits]:
+    """Yield the dimensions as they were used, in the order of the template."""
+    entered, limits = variant.computed.variant.dimensions, variant.computed.limits
+    for name, column in DIMENSIONS.items():
+        is_unused = column.sheet == "Settings" and entered.get(name) == column.default
+        if name in entered and not is_unused:
+            yield _used(column, entered[name], limits.get(name))
+
+
+def _used(column: Column, nominal: float, limits: Limits | None) -> UsedLimits:
+    """Return how a dimension was used; what has no limits, or no room between them, is exact."""
+    size = column.si_unit.si
+    used = UsedLimits(
+        name=column.name if column.sheet != "Settings" else column.plain_name.replace("_", " "),
+        unit="" if column.unit == "-" else column.unit,
+        nominal=_entry(nominal, size),
+        lower="",
+        upper="",
+        sd="",
+        distribution="exact",
+    )
+    if limits is not None and limits.high > limits.low:
+        scatter = f", limits at ± {limits.sigma:g} sigma" if "normal" in limits.distribution else ""
+        used["lower"], used["upper"] = _entry(limits.low, size), _entry(limits.high, size)
+        used["sd"] = f"{distribution_of(limits).standard_deviation / size:.3g}"
+        used["distribution"] = f"{limits.distribution}{scatter}"
+    return used
+
+
+def _entry(number: float, size: float) -> str:
+    return f"{as_entered(number, size):.10g}"
+
+
+def _numbers(results: pl.DataFrame) -> list[list[Number]]:
+    """Return the numbers of each Results row as the sheet Results shows them."""
+    pages: list[list[Number]] = [[] for _ in range(results.height)]
+    for key in (key for key in _NUMBERS if key in results.columns):
+        column = _COLUMNS[key]
+        codes = number_codes(results, column) if column.is_number else [""] * results.height
+        name, _, unit = column.label.partition(" [")
+        for page, value, code in zip(pages, results[key].to_list(), codes, strict=True):
+            if value is not None:
+                text = number_text(value, code) if column.is_number else shown(value, _TEXT)
+                page.append(Number(key=key, label=name, value=text, unit=unit.rstrip("]"), help=column.help))
+    return pages

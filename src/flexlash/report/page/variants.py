@@ -1,0 +1,118 @@
+"""Computed variants, worst first → the chart of all of them, the table, and those that were not computed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import polars as pl
+
+from flexlash.analysis.outcome import Outcome
+from flexlash.report.page.shape import Axis, Chart, ChartVariant, Lost, TableRow
+from flexlash.report.report_data import ROW
+from flexlash.report.summary.summary_chart import CHARTED, chart_axis, chart_title
+from flexlash.report.wording.distances import distance_words
+from flexlash.report.wording.labels import distinct_labels
+from flexlash.report.wording.summary_facts import Row, main_cause
+from flexlash.report.wording.verdict import light, straddled
+from flexlash.schema.findings import shown
+from flexlash.schema.limit_verdict import limit_verdict
+from flexlash.schema.number_words import angle_words, share_words
+
+__all__ = ["chart_of", "lost_variants", "shown_names", "table_rows", "verdict_of"]
+
+_LOST = 100
+"""Most variants that were not computed that are told."""
+
+_NAME = 80
+"""Most characters of a variant's name."""
+
+_WHY = 400
+"""Most characters of the errors of a variant."""
+
+
+def shown_names(rows: Sequence[Row]) -> list[str]:
+    """Return short names of the variants of some Results rows, distinct where they are."""
+    return distinct_labels([row["variant"] for row in rows], _NAME)
+
+
+def chart_of(rows: Sequence[Row], names: Sequence[str], paged: int, total: int) -> Chart | None:
+    """Return the chart of the worst of so many variants, the first of which have a page of their own."""
+    drawn = rows[:CHARTED]
+    if not drawn:
+        return None
+    start, step, decimals = chart_axis(drawn)
+    limits = {row["backlash_limit_arcmin"] for row in drawn} - {None}
+    return Chart(
+        title=chart_title(len(drawn), total),
+        unit="arcmin",
+        axis=Axis(start=start, step=step, decimals=decimals),
+        limits=sorted(limits),
+        variants=[
+            _bar(row, name, _page(place, paged)) for place, (row, name) in enumerate(zip(drawn, names, strict=False))
+        ],
+        drawn=len(drawn),
+        of=total,
+    )
+
+
+def _page(place: int, paged: int) -> int | None:
+    return place if place < paged else None
+
+
+def _bar(row: Row, name: str, page: int | None) -> ChartVariant:
+    return ChartVariant(
+        variant=name,
+        low=row["p2_5_arcmin"],
+        median=row["p50_arcmin"],
+        high=row["p97_5_arcmin"],
+        nominal=row["backlash_arcmin"],
+        limit=row["backlash_limit_arcmin"],
+        verdict=verdict_of(row),
+        page=page,
+    )
+
+
+def verdict_of(row: Row) -> str:
+    """Return the verdict on a Results row, an empty text without a limit."""
+    return limit_verdict(row["probability_over_limit"]) or ""
+
+
+def table_rows(rows: Sequence[Row], names: Sequence[str], paged: int) -> Iterator[TableRow]:
+    """Yield rows of the table, with the digits of the Summary."""
+    for place, (row, name) in enumerate(zip(rows, names, strict=True)):
+        limit = row["backlash_limit_arcmin"]
+        yield TableRow(
+            variant=name,
+            row=row[ROW],
+            status=row["status"],
+            verdict=verdict_of(row),
+            settled=not straddled(row),
+            light="" if limit is None else light(row),
+            nominal=angle_words(row["backlash_arcmin"]),
+            median=_percentile(row, "p50"),
+            p97_5=_percentile(row, "p97_5"),
+            p99_865=_percentile(row, "p99_865"),
+            limit="" if limit is None else f"{limit:g}′",
+            distance="" if limit is None else distance_words(row, "p97_5"),
+            over_limit="" if limit is None else share_words(row),
+            main_cause=main_cause(row),
+            page=_page(place, paged),
+        )
+
+
+def _percentile(row: Row, key: str) -> str:
+    return angle_words(row[f"{key}_arcmin"], row[f"{key}_standard_error_arcmin"])
+
+
+def lost_variants(outcome: Outcome) -> tuple[list[Lost], int]:
+    """Return the first variants that were submitted and not computed, and how many there are in all."""
+    table = outcome.validated.table if outcome.validated else None
+    if table is None:
+        return [], 0
+    rows = outcome.results.select("variant", "status", "findings").with_columns(table.frame["row"].alias(ROW))
+    lost = rows.filter(pl.col("status") == "error")
+    first = [
+        Lost(variant=shown(name, _NAME), row=row, why=shown(why or "", _WHY))
+        for name, _, why, row in lost.head(_LOST).iter_rows()
+    ]
+    return first, lost.height
