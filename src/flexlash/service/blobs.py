@@ -14,7 +14,7 @@ from typing import BinaryIO
 
 from flexlash.outputs.writing import Filling, put_new, remove_leftovers, sync_folder, temporary
 
-__all__ = ["Blobs", "ChangedFileError"]
+__all__ = ["Blobs", "ChangedFileError", "DamagedFileError"]
 
 _PIECE = 2**20
 
@@ -23,16 +23,24 @@ class ChangedFileError(OSError):
     """A file changed while it was copied."""
 
 
+class DamagedFileError(OSError):
+    """A kept file is gone or no longer has the bytes that it was kept with."""
+
+
 class Blobs:
     """Write-once files in a folder of their own, two levels deep: `blobs/9c/9c1f…`."""
 
     def __init__(self, folder: Path) -> None:
-        """Use a folder, made where there is none; raise OSError where that cannot be."""
         self._folder = folder
         self._incoming = folder / "incoming"
-        self._incoming.mkdir(parents=True, exist_ok=True)
-        remove_leftovers(self._incoming)
         self._keeping = threading.RLock()
+
+    def prepare(self) -> None:
+        """Make the folders where there are none, and remove what interrupted runs left; raise OSError."""
+        self._incoming.mkdir(parents=True, exist_ok=True)
+        sync_folder(self._folder)
+        sync_folder(self._folder.parent)
+        remove_leftovers(self._incoming)
 
     @contextlib.contextmanager
     def keeping(self) -> Iterator[None]:
@@ -44,12 +52,39 @@ class Blobs:
         """Return where the file of a digest lies, or would lie."""
         return self._folder / sha256[:2] / sha256
 
+    def checked(self, sha256: str) -> Path:
+        """Return where the file of a digest lies, once its bytes are found to be those of the digest.
+
+        Raises DamagedFileError where they are not or there is none, OSError where it cannot be read.
+        """
+        digest = hashlib.sha256()
+        try:
+            with self.path(sha256).open("rb") as file:
+                while piece := file.read(_PIECE):
+                    digest.update(piece)
+        except FileNotFoundError:
+            raise DamagedFileError(f"the kept file {sha256} is gone") from None
+        if digest.hexdigest() != sha256:
+            raise DamagedFileError(f"the kept file {sha256} is damaged")
+        return self.path(sha256)
+
+    def is_whole(self, sha256: str) -> bool:
+        """Return whether the file of a digest is there with the bytes of the digest; raise OSError as `checked`."""
+        try:
+            self.checked(sha256)
+        except DamagedFileError:
+            return False
+        return True
+
     def read(self, sha256: str) -> bytes:
-        """Return the bytes of a digest; raise OSError where they are not there or cannot be read."""
-        return self.path(sha256).read_bytes()
+        """Return the bytes of a digest; raise as `checked`."""
+        return self.checked(sha256).read_bytes()
 
     def put(self, content: bytes | Filling) -> tuple[str, int]:
-        """Keep bytes, or what a function writes, safe on the disk; return digest and size."""
+        """Keep bytes, or what a function writes, safe on the disk; return digest and size.
+
+        A file that is there already stays, unless it is damaged.
+        """
         digest, size = hashlib.sha256(), 0
 
         def fill(file: BinaryIO) -> None:
@@ -66,8 +101,11 @@ class Blobs:
         with temporary(self._incoming, fill) as made:
             path = self.path(digest.hexdigest())
             path.parent.mkdir(exist_ok=True)
-            if put_new(made, path):
-                sync_folder(path.parent.parent)
+            if not put_new(made, path) and not self.is_whole(path.name):
+                made.replace(path)
+            # Whoever put it before may have been killed before its names were safe.
+            sync_folder(path.parent)
+            sync_folder(self._folder)
         return digest.hexdigest(), size
 
     def put_file(self, path: Path) -> tuple[str, int]:
@@ -97,10 +135,17 @@ class Blobs:
                     continue
                 for path in folder.iterdir():
                     if path.name not in named and path.stat().st_mtime < oldest:
-                        path.unlink()
-                        removed += 1
+                        removed += _removed(path)
         return removed
 
 
 def _identity(status: os.stat_result) -> tuple[int, int, int, int]:
     return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
+
+
+def _removed(path: Path) -> bool:
+    """Remove a file; return whether that could be, since somebody may be reading it where that forbids it."""
+    with contextlib.suppress(PermissionError, FileNotFoundError):
+        path.unlink()
+        return True
+    return False

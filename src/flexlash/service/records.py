@@ -143,7 +143,8 @@ class Delivery:
     """Something that is to leave the store, in the order of `number`: files first, the original last, then a message.
 
     `kind` is `file`, `original` (moved to done/ or rejected/) or `message` (to the webhook). `target` is the name that
-    was chosen for it, empty before. `tries` are those that failed, `not_before` when the next may be made.
+    was chosen for it, empty before. `tries` are those that failed, the last because of a `trouble`, `not_before` when
+    the next may be made.
     """
 
     number: int
@@ -153,3 +154,4 @@ class Delivery:
     target: str = ""
     tries: int = 0
     not_before: float = 0.0
+    trouble: str = ""

@@ -30,6 +30,8 @@ CREATE TABLE submission (
 ) STRICT;
 CREATE INDEX submission_by_state ON submission (state, number);
 CREATE INDEX submission_by_content ON submission (sha256, name, options);
+CREATE INDEX submission_by_end ON submission (ended_at);
+CREATE INDEX submission_by_repeat ON submission (same_as) WHERE same_as <> '';
 CREATE INDEX submission_by_name ON submission (name, number);
 
 CREATE TABLE file (
@@ -61,9 +63,11 @@ CREATE TABLE delivery (
   target TEXT NOT NULL DEFAULT '',
   is_done INTEGER NOT NULL DEFAULT 0,
   tries INTEGER NOT NULL DEFAULT 0,
-  not_before REAL NOT NULL DEFAULT 0
+  not_before REAL NOT NULL DEFAULT 0,
+  trouble TEXT NOT NULL DEFAULT ''
 ) STRICT;
-CREATE INDEX delivery_by_state ON delivery (is_done, number);
+CREATE INDEX delivery_by_state ON delivery (is_done, submission);
+CREATE INDEX delivery_by_submission ON delivery (submission, kind);
 
 CREATE TABLE event (
   number INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -73,3 +77,5 @@ CREATE TABLE event (
   text TEXT NOT NULL
 ) STRICT;
 CREATE INDEX event_by_submission ON event (submission, number);
+
+CREATE TABLE forgotten (id TEXT PRIMARY KEY, at REAL NOT NULL) STRICT;
