@@ -16,6 +16,7 @@ from typing import Self
 
 from filelock import FileLock, Timeout
 
+from flexlash.outputs.writing import Filling
 from flexlash.schema.findings import shown
 from flexlash.service.database import Database
 from flexlash.service.outbox import Outbox
@@ -77,8 +78,8 @@ class Store(Outbox):
 
     # What is handed in
 
-    def accept(self, handed: HandedIn, content: bytes | Path) -> StoredSubmission:
-        """Keep a submission, given as bytes or as a file; with an ID that is there already return what is there.
+    def accept(self, handed: HandedIn, content: bytes | Path | Filling) -> StoredSubmission:
+        """Keep a submission, given as bytes, as a file or by what writes it; return what is there of a known ID.
 
         The same content, name and options as of a submission that has ended are answered with its result at once.
         Raises OSError where it cannot be kept, ChangedFileError where the file changed meanwhile.
@@ -86,7 +87,7 @@ class Store(Outbox):
         with self.blobs.keeping():
             if known := self.submission(handed.id):
                 return known
-            sha256, size = self.blobs.put(content) if isinstance(content, bytes) else self.blobs.put_file(content)
+            sha256, size = self.blobs.put_file(content) if isinstance(content, Path) else self.blobs.put(content)
             with self._database.transaction():
                 self._database.run(
                     "INSERT INTO submission (id, name, sha256, size, options, door, sender, received_at, state)"

@@ -150,6 +150,17 @@ class StoreQuestions:
         free = shutil.disk_usage(self.folder).free
         return [f"the disk of the store has only {free // 2**20} MiB left"] if free < _LOW else []
 
+    def figures(self) -> Mapping[str, float]:
+        """Return what whoever watches wants to know: deliveries outstanding, workers lost, rows done, seconds waited."""
+        row = self._database.one(
+            "SELECT (SELECT count(*) FROM delivery WHERE NOT is_done) AS deliveries_outstanding,"
+            " coalesce(sum(tries), 0) AS workers_lost, coalesce(sum(rows_done), 0) AS rows_done,"
+            " coalesce(? - min(CASE WHEN state = 'waiting' THEN received_at END), 0) AS oldest_waiting_seconds"
+            " FROM submission",
+            self._clock(),
+        )
+        return dict(row)
+
     def failing_most(self, most: int = 50) -> Sequence[Mapping[str, Any]]:
         """Return which rules in which columns are broken most: `level, code, sheet, column, cells, submissions`.
 

@@ -1,0 +1,1 @@
+"""The page: what the store has, over HTTP, as pages and as JSON."""
