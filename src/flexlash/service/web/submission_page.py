@@ -1,0 +1,278 @@
+"""What the page of a submission shows: how far it is, what was found, what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+from typing import Any, Literal
+
+from markupsafe import Markup
+
+from flexlash.report.page.shape import Card, PageFacts, Tile
+from flexlash.schema.number_words import grouped
+from flexlash.service.records import StoredFile, StoredSubmission
+from flexlash.service.web.chart import UNIT, Spread, spread_chart
+from flexlash.service.web.words import DOORS, Moment, StateLine, counted, remaining, size_words, state_line
+
+__all__ = [
+    "CheckedView",
+    "Download",
+    "Progress",
+    "SubmissionView",
+    "checked_view",
+    "submission_view",
+]
+
+_CARDS = 6
+"""Cards that are open; the others wait behind a line."""
+
+Stage = Literal["waiting", "working", "done", "rejected"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Download:
+    """A file to download: its address, what its button says, how large it is, whether it is what one wants first."""
+
+    role: str
+    words: str
+    size: str
+    is_first: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Progress:
+    """How far a submission is: rows done of how many (0 when not known yet), in words, and what waits behind it."""
+
+    done: int
+    rows: int
+    title: str
+    words: str
+    checked: str
+    next: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Event:
+    """Something that happened to a submission, and when."""
+
+    when: Moment
+    words: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class SubmissionView:
+    """The page of a submission.
+
+    `refresh` is in how many seconds it is asked for again, 0 once nothing changes any more. `first_cards` are open,
+    `more_cards` behind a line; `findings_first` says that they come before what was computed.
+    """
+
+    id: str
+    name: str
+    stage: Stage
+    state: StateLine
+    received: Moment
+    ended: Moment | None
+    sender: str
+    door: str
+    sha256: str
+    size: str
+    options: str
+    refresh: int
+    progress: Progress | None
+    trouble: str
+    reason: str
+    repeated: Line | None
+    previous: Line | None
+    facts: PageFacts | None
+    tiles: Sequence[Tile]
+    verdict_tiles: Sequence[Tile]
+    first_cards: Sequence[Card]
+    more_cards: Sequence[Card]
+    findings_first: bool
+    chart: Markup | None
+    downloads: Sequence[Download]
+    events: Sequence[Event]
+
+    @property
+    def title(self) -> str:
+        """What the browser's tab says: how far it is, then whose page it is."""
+        if self.stage == "working" and self.progress and self.progress.rows:
+            return f"{100 * self.progress.done // self.progress.rows} % · {self.name}"
+        return f"{self.name} · {self.state.words}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Line:
+    """Another submission that a page leads to."""
+
+    id: str
+    name: str
+    when: Moment
+
+
+def submission_view(
+    submission: StoredSubmission, now: float, *, facts: PageFacts | None = None,
+    files: Mapping[str, StoredFile] | None = None, before: int = 0, waiting: int = 0,
+    first: StoredSubmission | None = None, previous: StoredSubmission | None = None,
+    events: Iterable[Mapping[str, Any]] = (),
+) -> SubmissionView:  # fmt: skip
+    """Return the page of a submission.
+
+    `before` are those that are begun before it while it waits, `waiting` those that wait in all; `first` is the one
+    whose result it was answered with, `previous` the last one of its name that differs and has a report.
+    """
+    cards = facts["cards"] if facts else []
+    partly = bool(facts and facts["counts"].get("errors"))
+    return SubmissionView(
+        id=submission.id,
+        name=submission.name,
+        stage=submission.state,
+        state=state_line(submission, now, before),
+        received=Moment.of(submission.received_at, now),
+        ended=None if submission.ended_at is None else Moment.of(submission.ended_at, now),
+        sender=submission.sender,
+        door=DOORS[submission.door],
+        sha256=submission.sha256,
+        size=size_words(submission.size),
+        options=submission.options,
+        refresh=0 if submission.has_ended else _refresh(submission, now),
+        progress=_progress(submission, now, waiting) if submission.state == "working" else None,
+        trouble=_trouble(submission, now),
+        reason=submission.reason,
+        repeated=_line(first, now),
+        previous=_line(previous, now),
+        facts=facts,
+        tiles=_tiles(facts, partly=partly),
+        verdict_tiles=facts["verdict_tiles"][:-1] if facts else [],
+        first_cards=cards[:_CARDS],
+        more_cards=cards[_CARDS:],
+        findings_first=partly,
+        chart=_spreads(facts),
+        downloads=_downloads(submission, facts, files or {}, partly=partly),
+        events=[Event(when=Moment.of(row["at"], now), words=_event(row)) for row in events],
+    )
+
+
+def _line(submission: StoredSubmission | None, now: float) -> Line | None:
+    if submission is None:
+        return None
+    return Line(id=submission.id, name=submission.name, when=Moment.of(submission.received_at, now))
+
+
+def _refresh(submission: StoredSubmission, now: float) -> int:
+    """Return in how many seconds to look again: soon after handing in, seldom at what takes long."""
+    past = max(now - submission.received_at, submission.not_before - now)
+    return next((seconds for until, seconds in ((15, 1), (60, 2), (600, 5)) if past < until), 10)
+
+
+def _progress(submission: StoredSubmission, now: float, waiting: int) -> Progress:
+    """Return how far a submission at work is."""
+    speed, left = remaining(submission, now)
+    rows, counts = submission.rows, submission.counts
+    words = [f"{grouped(submission.rows_done)} of {counted(rows, 'row')}"] if rows else []
+    words += [f"{grouped(round(speed))} rows a second" if speed >= 1 else "", left]
+    checked = ""
+    if counts.get("rows"):
+        wrong = counts["rows"] - counts.get("computed", 0)
+        checked = f"{counted(counts.get('computed', 0), 'row')} ready"
+        checked += f", {counted(wrong, 'row')} with errors" if wrong else ", none with errors"
+    return Progress(
+        done=submission.rows_done,
+        rows=rows,
+        title="Computing" if rows else "Reading and checking",
+        words=" · ".join(filter(None, words)),
+        checked=checked,
+        next=counted(waiting, "submission") if waiting else "",
+    )
+
+
+def _trouble(submission: StoredSubmission, now: float) -> str:
+    """Return what keeps this machine from working on a submission, and when it is tried again."""
+    if not submission.trouble or submission.state != "waiting":
+        return ""
+    again = submission.not_before - now
+    when = "It is tried again in a moment" if again < 1 else f"It is tried again in {round(again)} seconds"
+    return f"{submission.trouble}. The fault is this machine's, not your file's. {when}; nothing is lost."
+
+
+def _tiles(facts: PageFacts | None, *, partly: bool) -> Sequence[Tile]:
+    """Return the figures at the top: those of the findings where there are errors, else those of the verdicts."""
+    if facts is None or facts["refused"]:
+        return []
+    return facts["tiles"] if partly or not facts["verdict_tiles"] else facts["verdict_tiles"]
+
+
+def _spreads(facts: PageFacts | None) -> Markup | None:
+    """Return the chart of all variants."""
+    chart = facts["chart"] if facts else None
+    if chart is None or not chart["variants"]:
+        return None
+    spreads = [
+        Spread(variant=one["variant"], low=one["low"], median=one["median"], high=one["high"], nominal=one["nominal"],
+               limit=one["limit"], verdict=one["verdict"])
+        for one in chart["variants"]
+    ]  # fmt: skip
+    return spread_chart("spread", spreads, UNIT, chart["of"])
+
+
+def _downloads(
+    submission: StoredSubmission, facts: PageFacts | None, files: Mapping[str, StoredFile], *, partly: bool
+) -> Sequence[Download]:
+    """Return the files to download, in the order in which they are wanted."""
+    if not submission.has_ended:
+        return []
+    computed = facts["counts"].get("computed", 0) if facts else 0
+    fixes = facts["fixable"] if facts else 0
+    words = {
+        "checked": "Marked copy",
+        "mended": f"File with {counted(fixes, 'certain fix')}".replace("fixs", "fixes"),
+        "report": f"Report of the {counted(computed, 'row')}" if partly and computed > 1 else "Report",
+        "results": "Results",
+        "findings": "All findings",
+        "reasons": "Reasons",
+    }
+    order = (
+        list(words)
+        if partly or submission.state == "rejected"
+        else ["report", "results", "findings", "checked", "mended", "reasons"]
+    )
+    there = [role for role in order if role in files]
+    return [
+        Download(
+            role=role,
+            words=f"{words[role]} ({PurePosixPath(files[role].name).suffix or 'file'})",
+            size=size_words(files[role].size),
+            is_first=role == there[0],
+        )
+        for role in there
+    ]
+
+
+_EVENTS = {"received": "handed in", "begun": "computing began", "done": "computed", "put back": "put back in the queue",
+           "handed back": "put back in the queue", "retried": "asked to be computed anew"}  # fmt: skip
+
+
+def _event(row: Mapping[str, Any]) -> str:
+    """Return an event in words."""
+    return ": ".join(filter(None, (_EVENTS.get(row["kind"], row["kind"]), row["text"])))
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckedView:
+    """What was found in a file of which nothing is kept."""
+
+    name: str
+    facts: PageFacts
+    tiles: Sequence[Tile]
+    first_cards: Sequence[Card]
+    more_cards: Sequence[Card]
+
+
+def checked_view(name: str, facts: PageFacts) -> CheckedView:
+    """Return the findings of a file that was checked only."""
+    cards = facts["cards"]
+    return CheckedView(
+        name=name, facts=facts, tiles=_tiles(facts, partly=True), first_cards=cards[:_CARDS], more_cards=cards[_CARDS:]
+    )

@@ -1,0 +1,52 @@
+"""What the page of a variant shows: how its backlash is spread, what causes that, where the wind-up sits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from flexlash.report.page.shape import PageFacts, VariantPage
+from flexlash.service.records import StoredSubmission
+from flexlash.service.web.chart import UNIT, Cause, causes_chart, density_chart, shares_chart
+
+__all__ = ["VariantView", "variant_view"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class VariantView:
+    """A variant's own page; `place` is from 0 among so many, `before` and `after` the names of its neighbours."""
+
+    id: str
+    name: str
+    page: VariantPage
+    place: int
+    of: int
+    before: str
+    after: str
+    density: Markup
+    causes: Markup | None
+    segments: Markup | None
+
+
+def variant_view(submission: StoredSubmission, facts: PageFacts, place: int) -> VariantView | None:
+    """Return the page of the variant at a place, from 0; None where there is none."""
+    pages = facts["variants"]
+    if not 0 <= place < len(pages):
+        return None
+    page = pages[place]
+    causes = [Cause(name=one["name"], words=one["words"], share=one["share"], low=one["low"], high=one["high"])
+              for one in page["shares"]]  # fmt: skip
+    segments = [(one["name"], one["share"]) for one in page["segments"]]
+    return VariantView(
+        id=submission.id,
+        name=submission.name,
+        page=page,
+        place=place,
+        of=len(pages),
+        before=pages[place - 1]["variant"] if place else "",
+        after=pages[place + 1]["variant"] if place + 1 < len(pages) else "",
+        density=density_chart("density", page["density"], UNIT),
+        causes=causes_chart("causes", causes, page["density"]["nominal"], UNIT) if causes else None,
+        segments=shares_chart("segments", "Where the wind-up sits", segments) if segments else None,
+    )  # fmt: skip
