@@ -20,7 +20,17 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["Filling", "held", "put_new", "remove_leftovers", "replace", "sync_folder", "temporary"]
+__all__ = [
+    "Filling",
+    "held",
+    "hold_folder",
+    "put_new",
+    "remove_leftovers",
+    "replace",
+    "sync_file",
+    "sync_folder",
+    "temporary",
+]
 
 Filling: TypeAlias = Callable[[BinaryIO], object]
 """Writes the content of a file, piece by piece, into an empty one that is open for writing and reading."""
@@ -32,6 +42,9 @@ _HOLDS_OPEN_FILES = os.name == "nt"
 
 _NO_LINKS = {errno.EPERM, errno.EACCES, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK}
 """What a file system says that cannot give a file a second name."""
+
+_NO_SYNC = {errno.EINVAL, errno.EACCES, errno.EPERM, errno.ENOTSUP, errno.EBADF}
+"""What a system says that cannot synchronise this."""
 
 _TRIES = 100
 
@@ -99,6 +112,24 @@ def held(path: Path) -> int | None:
             return handle
         os.close(handle)
     return None
+
+
+def hold_folder(folder: Path) -> int | None:
+    """Return a folder that is open and locked until it is closed; None where another process has it.
+
+    Not for Windows, which does not open folders. Raises OSError when it cannot be opened.
+    """
+    handle = os.open(folder, os.O_RDONLY | _OPENED)
+    if fcntl is not None:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(handle)
+            return None
+        except OSError:
+            # A file system without locks on folders locks nothing.
+            pass
+    return handle
 
 
 def _is_still(path: Path, handle: int) -> bool:
@@ -175,6 +206,19 @@ def replace(temporary_file: Path, path: Path, known: os.stat_result) -> bool:
     return True
 
 
+def sync_file(path: Path) -> None:
+    """Make the content of a file that another program wrote durable; raise OSError where it cannot be read."""
+    handle = os.open(path, os.O_RDONLY | _OPENED)
+    try:
+        os.fsync(handle)
+    except OSError as fault:
+        # Some systems synchronise only what is open for writing.
+        if fault.errno not in _NO_SYNC:
+            raise
+    finally:
+        os.close(handle)
+
+
 def sync_folder(folder: Path) -> None:
     """Make a new name durable where folders can be synchronised."""
     if _HOLDS_OPEN_FILES:
@@ -187,5 +231,5 @@ def sync_folder(folder: Path) -> None:
             os.close(handle)
     except OSError as fault:
         # Some network drives and folders without permission to list them cannot; the file has its name all the same.
-        if fault.errno not in {errno.EINVAL, errno.EACCES, errno.EPERM, errno.ENOTSUP}:
+        if fault.errno not in _NO_SYNC:
             raise

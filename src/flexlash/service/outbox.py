@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sqlite3
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -96,6 +96,19 @@ class Outbox(StoreQuestions):
                 "UPDATE delivery SET tries = tries + 1, not_before = ?, trouble = ? WHERE number = ?",
                 self._clock() + seconds, trouble, delivery.number,
             )  # fmt: skip
+
+    def targets(self, submission: str) -> Mapping[str, str]:
+        """Return the names in OUT of a submission's files by what they are, empty where none is chosen yet."""
+        rows = self._database.all(
+            "SELECT role, target FROM delivery WHERE submission = ? AND kind = 'file' ORDER BY number", submission
+        )
+        return {row["role"]: row["target"] for row in rows}
+
+    def drop_deliveries(self, submission: str, why: str) -> None:
+        """Write down that nothing of a submission goes to OUT any more."""
+        with self._database.transaction():
+            self._database.run("UPDATE delivery SET is_done = 1 WHERE submission = ? AND kind <> 'message'", submission)
+            self._event("not delivered", submission, why)
 
     def _event(self, kind: str, submission: str, text: str) -> None:
         self._database.run(
