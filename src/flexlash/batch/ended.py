@@ -21,7 +21,7 @@ from flexlash.schema.file_faults import reason
 from flexlash.schema.findings import Finding, finding, readable, shown
 from flexlash.schema.variant import Settings
 
-__all__ = ["Ended", "fault_of", "fault_words", "how_many"]
+__all__ = ["Ended", "fault_of", "fault_words", "how_many", "refused_answer"]
 
 _FIELDS = (
     "submission", "path", "sha256", "version", "seed", "method", "seconds", "exit_code", "error", "counts", "findings",
@@ -97,17 +97,7 @@ class Ended:
     @classmethod
     def refusing(cls, path: Path, refusal: Refusal, *, several: bool, sha256: str = "") -> Ended:
         """Return how a file ended that is no submission, as far as its name, its size or its reader's end tell."""
-        found = finding(refusal.code, **{"file": readable(path.name), **refusal.facts})
-        answer = Answer(
-            exit_code=refusal.exit_code,
-            told=_told_of(path, found) | {"sha256": sha256},
-            finding_lines=tuple(finding_lines([found])),
-            words="; ".join(filter(None, ["nothing to compute", to_fix_words([found])])),
-            by_rule={found.code: 1},
-            refused=True,
-            skipped=found.level == "info",
-        )
-        return cls.answered(path, answer, Written(), several=several)
+        return cls.answered(path, refused_answer(path, refusal, sha256), Written(), several=several)
 
     @classmethod
     def failing(cls, path: Path, code: ExitCode, error: str, found: Finding | None = None) -> Ended:
@@ -138,6 +128,20 @@ class Ended:
         if not timed:
             del known["seconds"]
         return known
+
+
+def refused_answer(path: Path, refusal: Refusal, sha256: str = "") -> Answer:
+    """Return the answer to a file that no worker has read to its end, since it is refused before, or stops them."""
+    found = finding(refusal.code, **{"file": readable(path.name), **refusal.facts})
+    return Answer(
+        exit_code=refusal.exit_code,
+        told=_told_of(path, found) | {"sha256": sha256},
+        finding_lines=tuple(finding_lines([found])),
+        words="; ".join(filter(None, ["nothing to compute", to_fix_words([found])])),
+        by_rule={found.code: 1},
+        refused=True,
+        skipped=found.level == "info",
+    )
 
 
 def fault_of(exception: BaseException) -> Fault:

@@ -1,0 +1,328 @@
+"""The store → workers → the store: what waits is taken, computed and ended; whatever goes wrong, nothing is lost.
+
+One thread does all of it. Workers and their answers are heard through a queue of events, so that no other thread waits
+for the store.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable
+from concurrent.futures import CancelledError, Future
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from queue import Empty, SimpleQueue
+
+from flexlash.analysis.options import Options
+from flexlash.batch.answer import Answer, Told
+from flexlash.batch.ended import fault_of, refused_answer
+from flexlash.batch.executor import ClusterError, Executor, WorkerLostError
+from flexlash.batch.side_by_side import computed_apart
+from flexlash.reading.libraries import ChangedLibrary
+from flexlash.reading.limited_process import ProcessFaultError
+from flexlash.reading.refusal import Refusal
+from flexlash.schema.exit_codes import ExitCode
+from flexlash.schema.findings import readable, shown
+from flexlash.service.endings import PAGE, KeptFile, ending_of, kept
+from flexlash.service.log import Log
+from flexlash.service.open_executor import OpenExecutor, Opening
+from flexlash.service.questions import Questions
+from flexlash.service.records import StoredSubmission
+from flexlash.service.repeated import ENVIRONMENT_FAULTS, Repeated, back_off
+from flexlash.service.store import Store
+from flexlash.service.tasks import check_task, run_task, service_options, submitted
+
+__all__ = ["Dispatcher"]
+
+_SECONDS = 1.0
+"""Seconds after which it is looked for submissions that may be begun again, or that another process handed back."""
+
+_AHEAD = 2
+"""Submissions for each worker that are handed over, so that none waits for this thread."""
+
+_NOTED = 0.5
+"""Seconds that pass before the rows of a submission are written down again."""
+
+_MOST_LOST = 3
+"""Workers, or servers, that a submission may cost."""
+
+_MOST_QUESTIONS = 8
+"""Files that are checked or compared at once, each of which may have 20 MiB."""
+
+_LONGEST_STOP = 28.0
+"""Seconds that stopping may take; whoever stops a service kills it after 30."""
+
+
+@dataclass(kw_only=True)
+class _Begun:
+    """A submission at work, and when its rows were last written down."""
+
+    submission: StoredSubmission
+    future: Future[bytes] | None = None
+    noted: float = 0.0
+
+
+class Dispatcher:
+    """Has workers compute what the store holds, oldest first.
+
+    What was at work when a server ended runs with nothing beside it. `ended` is called after each ending.
+    """
+
+    def __init__(
+        self,
+        store: Store,
+        open_executor: Opening,
+        options: Options,
+        log: Log,
+        *,
+        ended: Callable[[], None] | None = None,
+    ) -> None:
+        self._store = store
+        self._executor = OpenExecutor(open_executor, log)
+        self._options = service_options(options)
+        self._log = log
+        self._on_end = ended
+        self._questions = Questions(_MOST_QUESTIONS)
+        self._begun: dict[str, _Begun] = {}
+        self._events: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._owed: dict[str, Callable[[], None]] = {}
+        self._faults: Counter[str] = Counter()
+        self._is_recovered = self._is_stopping = self._is_draining = False
+        self._loop = Repeated("dispatcher", self._step, _SECONDS, log)
+
+    @property
+    def workers(self) -> int:
+        """How many submissions are computed side by side, 0 while there are no workers."""
+        return self._executor.workers
+
+    @property
+    def busy(self) -> int:
+        """How many submissions are at work."""
+        return len(self._begun)
+
+    def start(self) -> None:
+        """Begin; what was at work when the last server ended comes first."""
+        self._loop.start()
+
+    def wake(self) -> None:
+        """Say that a submission has come in."""
+        self._loop.wake()
+
+    def check(self, name: str, data: bytes) -> Future[Answer]:
+        """Return what will come of checking a file of which nothing is kept.
+
+        Raises TooManyQuestionsError where too many are open; the future raises ClusterError where the workers are lost.
+        """
+        task = check_task(name, data, self._options)
+
+        def told(done: Future[bytes]) -> Answer:
+            try:
+                return self._answer(done, name)
+            except WorkerLostError as lost:
+                if not lost.losses:
+                    raise ClusterError(str(lost)) from lost
+                return refused_answer(Path(name), Refusal("E118"))
+
+        future = self._questions.ask(computed_apart, task.as_bytes(), told)
+        self.wake()
+        return future
+
+    def stop(self, seconds: float = _LONGEST_STOP) -> None:
+        """Let what is at work end within so many seconds, and hand back the rest, for which no try is counted."""
+        end = time.monotonic() + min(seconds, _LONGEST_STOP)
+        self._is_stopping = True
+        while self._begun and time.monotonic() < end:
+            self._loop.wake()
+            time.sleep(0.05)
+        self._loop.stop(max(1.0, end - time.monotonic()))
+        for begun in list(self._begun.values()):
+            self._hand_back(begun.submission)
+        try:
+            self._settle()
+        except ENVIRONMENT_FAULTS as fault:
+            # The next server finds them at work, and begins with them.
+            self._log.say("fault", what="handing back", why=readable(fault))
+        self._questions.close()
+        self._executor.close(max(1.0, end - time.monotonic()))
+
+    # Steps of the thread
+
+    def _step(self) -> None:
+        """Hear what has become of what is at work, and begin as much as there are workers for."""
+        if not self._is_recovered:
+            self._store.recover()
+            self._is_recovered = True
+        self._settle()
+        while True:
+            try:
+                event = self._events.get_nowait()
+            except Empty:
+                break
+            event()
+            self._settle()
+        executor = self._executor.get()
+        if executor is not None:
+            self._questions.hand_over(executor)
+            while self._may_begin(executor) and (taken := self._store.take()):
+                self._begin(taken, executor)
+                self._settle()
+
+    def _may_begin(self, executor: Executor) -> bool:
+        """Whether another submission is begun: beside one that runs alone there is none."""
+        if self._is_stopping:
+            return False
+        if not self._begun:
+            self._is_draining = False
+            return True
+        if self._is_draining or any(one.submission.alone for one in self._begun.values()):
+            return False
+        return len(self._begun) < _AHEAD * executor.workers
+
+    def _begin(self, submission: StoredSubmission, executor: Executor) -> None:
+        """Hand a submission over to a worker, or end it where it is refused without."""
+        if submission.alone and self._begun:
+            self._is_draining = True
+            self._hand_back(submission)
+            return
+        begun = self._begun[submission.id] = _Begun(submission=submission)
+        self._guarded(submission, partial(self._handed_over, begun, executor))
+
+    def _handed_over(self, begun: _Begun, executor: Executor) -> None:
+        """Hand a submission over to a worker, or end it where none is to see it."""
+        submission, limits = begun.submission, self._options.limits
+        if submission.server_ends >= _MOST_LOST:
+            self._end_lost(submission, f"was alone at work {submission.server_ends} times when the server ended")
+            return
+        try:
+            data = submitted(self._store.blobs.path(submission.sha256), submission.name, limits)
+        except Refusal as refusal:
+            self._end(submission, refused_answer(Path(submission.name), refusal, submission.sha256))
+            return
+        task = run_task(submission.name, data, self._options)
+        begun.future = executor.submit(computed_apart, task.as_bytes(), partial(self._say, self._told, begun))
+        begun.future.add_done_callback(lambda _: self._say(self._answered, begun))
+
+    def _say(self, event: Callable[..., None], *facts: object) -> None:
+        """Have something done by the thread of the dispatcher."""
+        self._events.put(partial(event, *facts))
+        self._loop.wake()
+
+    # What is heard of a submission at work
+
+    def _told(self, begun: _Begun, message: bytes) -> None:
+        """Write down how far a submission is, and what checking it has found; a fault here costs the news alone."""
+        id_ = begun.submission.id
+        if self._begun.get(id_) is not begun:
+            return
+        told = Told.of(message)
+        try:
+            if told.page:
+                with self._store.blobs.keeping():
+                    page = kept(self._store.blobs, begun.submission, KeptFile(role="page", ending=PAGE, data=told.page))
+                    self._store.note_checked(id_, told.counts, page)
+            if told.rows and (told.page or time.monotonic() - begun.noted >= _NOTED):
+                begun.noted = time.monotonic()
+                self._store.note_rows(id_, told.rows_done, told.rows)
+        except ENVIRONMENT_FAULTS as fault:
+            self._log.say("fault", id_, what="progress", why=readable(fault))
+
+    def _answered(self, begun: _Begun) -> None:
+        """End a submission, or hand it back; what nobody waits for any more is dropped."""
+        if begun.future is not None and self._begun.get(begun.submission.id) is begun:
+            self._guarded(begun.submission, partial(self._heard, begun.submission, begun.future))
+
+    def _heard(self, submission: StoredSubmission, future: Future[bytes]) -> None:
+        """End a submission by what a worker says of it, or because it has lost so many."""
+        try:
+            answer = self._answer(future, submission.name, submission.sha256)
+        except WorkerLostError as lost:
+            tries = submission.tries + lost.losses
+            self._log.say("worker lost", submission.id, tries=tries, why=readable(lost))
+            if not lost.losses:
+                self._wait(submission, lost)
+            elif tries < _MOST_LOST:
+                self._hand_back(submission, lost=lost.losses)
+            else:
+                self._end_lost(submission, f"stopped the worker {tries} times, so that nothing of it was computed")
+        else:
+            self._end(submission, answer)
+
+    def _answer(self, done: Future[bytes], name: str, sha256: str = "") -> Answer:
+        """Return what a worker says, or that a limit or a fault of the program stopped it.
+
+        Raises WorkerLostError where it was lost for no known reason, ClusterError, and CancelledError.
+        """
+        try:
+            return Answer.of(done.result())
+        except WorkerLostError as lost:
+            if not lost.setting:
+                raise
+            return refused_answer(Path(name), self._options.limits.exceeded(lost.setting), sha256)
+        except (ProcessFaultError, ChangedLibrary) as fault:
+            return Answer(exit_code=ExitCode.INTERNAL, fault=fault_of(fault))
+
+    # How it goes on
+
+    def _guarded(self, submission: StoredSubmission, step: Callable[[], None]) -> None:
+        """Take a step with a submission; a fault of this machine has it wait, one of the program ends it alone."""
+        try:
+            step()
+        except CancelledError:
+            self._hand_back(submission)
+        except ClusterError as fault:
+            self._wait(submission, fault)
+            self._lose_executor(fault)
+        except ENVIRONMENT_FAULTS as fault:
+            self._wait(submission, fault)
+        except Exception as fault:  # noqa: BLE001
+            why = fault_of(fault)
+            self._log.say("internal error", submission.id, why=f"{why.kind}: {readable(fault)}")
+            if self._faults[submission.id]:
+                self._wait(submission, fault)
+                return
+            self._faults[submission.id] += 1
+            self._guarded(submission, partial(self._end, submission, Answer(exit_code=ExitCode.INTERNAL, fault=why)))
+
+    def _end_lost(self, submission: StoredSubmission, why: str) -> None:
+        """End a submission that has cost as many workers or servers as it may."""
+        answer = refused_answer(Path(submission.name), Refusal("E118"), submission.sha256)
+        self._end(submission, answer, f"{submission.name} {why}.")
+
+    def _end(self, submission: StoredSubmission, answer: Answer, reason: str = "") -> None:
+        """Keep the result of a submission and write down how it ended."""
+        with self._store.blobs.keeping():
+            ending = ending_of(submission, answer, self._store.blobs, self._options.limits, reason=reason)
+            self._store.end(submission.id, ending)
+        self._begun.pop(submission.id, None)
+        self._faults.pop(submission.id, None)
+        self._log.say(ending.state, submission.id, exit_code=ending.exit_code, words=ending.words)
+        if self._on_end is not None:
+            self._on_end()
+
+    def _hand_back(self, submission: StoredSubmission, *, lost: int = 0, after: float = 0.0, trouble: str = "") -> None:
+        """Put a submission back among those that wait, as soon as the store can be written to."""
+        self._begun.pop(submission.id, None)
+        self._owed[submission.id] = partial(
+            self._store.hand_back, submission.id, lost=lost, after=after, trouble=trouble
+        )
+
+    def _wait(self, submission: StoredSubmission, fault: BaseException) -> None:
+        """Have a submission wait, longer each time, since this machine or its workers have a fault."""
+        self._faults[submission.id] += 1
+        rest = back_off(self._faults[submission.id])
+        self._log.say("fault", submission.id, why=readable(fault), again_in_seconds=rest)
+        self._hand_back(submission, after=rest, trouble=shown(fault, 400))
+
+    def _settle(self) -> None:
+        """Hand back what could not be handed back before; raise what keeps it from being."""
+        for id_, hand_back in list(self._owed.items()):
+            hand_back()
+            del self._owed[id_]
+
+    def _lose_executor(self, fault: ClusterError) -> None:
+        """Hand back whatever the workers have, since they are of no more use, and have others come."""
+        for begun in list(self._begun.values()):
+            self._hand_back(begun.submission)
+        self._executor.lose(fault)

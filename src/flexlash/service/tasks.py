@@ -1,0 +1,63 @@
+"""A submission as a task for a worker, with the options and limits that hold for all submissions of a service."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from flexlash.analysis.options import Options
+from flexlash.batch.answer import Task
+from flexlash.reading.gate import read_bytes
+from flexlash.reading.products import Companions
+from flexlash.reading.read import Source
+from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.reading.refusal import Refusal
+
+__all__ = ["check_task", "run_task", "service_options", "submitted"]
+
+_SECONDS = 20
+"""Seconds that reading may take: a file that hangs its reader keeps a worker from all others for so long."""
+
+_LOCK = "~$"
+"""How the name of a file begins by which Excel marks a workbook as open."""
+
+
+def service_options(options: Options) -> Options:
+    """Return options as the service computes with them: nothing of one place or one caller, and its own limits.
+
+    On these its digest of options depends (`manifest.options_digest(service_options(options), {}, marked=True)`).
+    """
+    limits = options.limits
+    limits = replace(
+        limits,
+        parquet_mebibytes=min(limits.parquet_mebibytes, limits.file_mebibytes),
+        seconds=min(limits.seconds, _SECONDS),
+    )
+    return replace(
+        options, jobs=1, given=(), marked_copy=None, progress=None, tolerances=None, materials=None, limits=limits
+    )
+
+
+def run_task(name: str, data: bytes, options: Options) -> Task:
+    """Return the task to compute a submission, with everything that its page and its sender get."""
+    return Task(command="run", source=_source(name, data), options=options, report=".xlsx", copy=".xlsx", pages=True)
+
+
+def check_task(name: str, data: bytes, options: Options) -> Task:
+    """Return the task to check a submission of which nothing is kept."""
+    return Task(command="check", source=_source(name, data), options=options, pages=True)
+
+
+def _source(name: str, data: bytes) -> Source:
+    # As a file that is given alone: what flexlash itself wrote is skipped.
+    return Source(name=name, data=data, companions=Companions())
+
+
+def submitted(path: Path, name: str, limits: ReadingLimits) -> bytes:
+    """Return the bytes of a submission of this name, kept at a path.
+
+    Raises OSError when they cannot be read, Refusal when they are too many, none, or those of a lock file.
+    """
+    if name.startswith(_LOCK):
+        raise Refusal("I525")
+    return read_bytes(path, limits)
