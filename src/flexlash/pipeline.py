@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from flexlash.analysis.examination import examined, opened
+from flexlash.analysis.examination import Examined, examined, opened
 from flexlash.analysis.options import Options
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_result import outcome_of
@@ -20,7 +20,7 @@ from flexlash.reading.refusal import Refusal
 if TYPE_CHECKING:
     from flexlash.feedback.fixing.fix import Fix
 
-__all__ = ["Options", "Outcome", "check", "computed", "mend", "run"]
+__all__ = ["Options", "Outcome", "check", "computed", "mend", "run", "spread_out"]
 
 
 def check(submission: str | Path | Source | ReadReport, **options: Any) -> Outcome:
@@ -83,7 +83,11 @@ def computed(
     source: Source | ReadReport | Refusal, options: Options, tables: Mapping[str, Source] | None = None
 ) -> Outcome:
     """Return the outcome of a submission with the spread of its rows; `tables` as for `examined`."""
-    found = examined(source, options, tables)
+    return spread_out(examined(source, options, tables), options)
+
+
+def spread_out(found: Examined, options: Options) -> Outcome:
+    """Return the outcome of an examined submission with the spread of its rows."""
     options = options.completed(found.submission.run_with)
     if options.elasticity:
         require_libraries()

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, Self
 
@@ -12,6 +13,7 @@ from flexlash.feedback.fixing.fix import Fix
 from flexlash.reading.inside_limits import Fault
 from flexlash.reading.read import Source
 from flexlash.schema.exit_codes import ExitCode
+from flexlash.schema.findings import Finding
 from flexlash.schema.number_words import share_words
 
 __all__ = ["Answer", "Command", "FileBytes", "RuleTotal", "Stage", "Task", "Told", "Travelling", "WorstVariant"]
@@ -73,7 +75,7 @@ class Told(Travelling):
 class RuleTotal:
     """How often a rule is broken in a column of a sheet: at how many cells, and at which first.
 
-    What has no cell counts as one.
+    What has no cell counts as one. Sheet and column are as the findings name them: the former is a stranger's text.
     """
 
     level: str
@@ -82,6 +84,17 @@ class RuleTotal:
     column: str = ""
     cells: int = 1
     first: str = ""
+
+    @classmethod
+    def all_of(cls, findings: Iterable[Finding]) -> tuple[RuleTotal, ...]:
+        """Return the totals of findings, worst level first, then by code, sheet and column."""
+        places: dict[tuple[str, str, str, str], dict[str, None]] = defaultdict(dict)
+        for found in findings:
+            places[found.level, found.code, found.sheet, found.column][found.cell] = None
+        return tuple(
+            cls(level=key[0], code=key[1], sheet=key[2], column=key[3], cells=len(cells), first=next(iter(cells)))
+            for key, cells in sorted(places.items())
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

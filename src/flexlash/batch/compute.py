@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from typing import TYPE_CHECKING
 
 from flexlash.analysis.examination import examined
 from flexlash.analysis.outcome import Outcome
@@ -16,7 +17,10 @@ from flexlash.reading.inside_limits import Fault
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.schema.exit_codes import ExitCode
 
-__all__ = ["answer_of", "compute"]
+if TYPE_CHECKING:
+    from flexlash.report.report_data import ReportData
+
+__all__ = ["answer_of", "compute", "copy_of", "file_of", "report_of"]
 
 _WORST = 3
 """Most variants that an answer names."""
@@ -41,12 +45,16 @@ def _answered(task: Task) -> Answer:
     if task.command == "mend":
         found = fixed(task.source, task.options, task.tables)
         file = FileBytes(data=found.data, role=found.role) if found.fixes else None
-        return answer_of(found.outcome, ran=False, file=file, copy=_copy(found.outcome, task), fixes=found.fixes)
+        return answer_of(found.outcome, ran=False, file=file, copy=copy_of(found.outcome, task), fixes=found.fixes)
+    if task.pages:
+        from flexlash.batch.page_answer import answer_with_page
+
+        return answer_with_page(task)
     if task.command == "check":
         outcome = outcome_of(examined(task.source, task.options, task.tables))
-        return answer_of(outcome, ran=False, copy=_copy(outcome, task))
+        return answer_of(outcome, ran=False, copy=copy_of(outcome, task))
     outcome = computed(task.source, task.options, task.tables)
-    return answer_of(outcome, ran=True, file=_report(outcome, task), copy=_copy(outcome, task))
+    return answer_of(outcome, ran=True, file=report_of(outcome, task), copy=copy_of(outcome, task))
 
 
 def answer_of(
@@ -76,17 +84,20 @@ def answer_of(
     )
 
 
-def _report(outcome: Outcome, task: Task) -> FileBytes | None:
+def report_of(outcome: Outcome, task: Task, data: ReportData | None = None) -> FileBytes | None:
     """Return the report in the form that is wanted, if a row was computed."""
-    if not task.report or not outcome.computed:
-        return None
+    return file_of(outcome, task.report, data) if task.report and outcome.computed else None
+
+
+def file_of(outcome: Outcome, ending: str, data: ReportData | None = None) -> FileBytes:
+    """Return an outcome in the form that an ending names; `data` is what a report draws."""
     from flexlash.report.output import outcome_bytes
 
-    data, role = outcome_bytes(outcome, task.report)
-    return FileBytes(data=data, role=role)
+    content, role = outcome_bytes(outcome, ending, data)
+    return FileBytes(data=content, role=role)
 
 
-def _copy(outcome: Outcome, task: Task) -> FileBytes | None:
+def copy_of(outcome: Outcome, task: Task) -> FileBytes | None:
     """Return the marked copy, when there is something to mark."""
     if not task.copy or not worth_marking(outcome):
         return None

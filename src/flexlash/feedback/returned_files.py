@@ -23,7 +23,7 @@ from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.findings import Finding
 
-__all__ = ["Fixed", "certain_fixes", "fixed", "marked", "worth_marking"]
+__all__ = ["Fixed", "certain_fixes", "fixed", "fixed_from", "marked", "worth_marking"]
 
 _PASSES = 3
 """Most times that a mended submission is looked at again, since one fix may uncover another fault."""
@@ -44,7 +44,16 @@ class Fixed:
 
 def fixed(source: Source | ReadReport | Refusal, options: Options, tables: Mapping[str, Source] | None = None) -> Fixed:
     """Return a submission with the certain fixes made, until there are no more of them; `tables` stand beside it."""
-    outcome = outcome_of(examined(source, options, tables))
+    return fixed_from(outcome_of(examined(source, options, tables)), options, tables)
+
+
+def fixed_from(
+    outcome: Outcome, options: Options, tables: Mapping[str, Source] | None = None, *, numbers: bool = True
+) -> Fixed:
+    """Return the same of a submission by what came of checking it; `numbers` says whether the mended one is computed.
+
+    Bytes and fixes do not depend on that: validation alone knows what is certain.
+    """
     original = outcome.submission
     data, fixes = original.data, dict[str, Fix]()
     for _ in range(_PASSES):
@@ -55,7 +64,7 @@ def fixed(source: Source | ReadReport | Refusal, options: Options, tables: Mappi
         fixes |= {fix.place: fix for fix in made}
         if not made:
             break
-        outcome = outcome_of(examined(Source(name=original.name, data=data), options, tables))
+        outcome = outcome_of(examined(Source(name=original.name, data=data), options, tables, numbers=numbers))
     return Fixed(data=data, role=fixed_role(original.data), outcome=outcome, fixes=tuple(fixes.values()))
 
 

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import io
 import json
+from typing import TYPE_CHECKING
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.results_table import csv_text, results_table
 from flexlash.schema.stamps import placeholder
+
+if TYPE_CHECKING:
+    from flexlash.report.report_data import ReportData
 
 __all__ = ["ROLE", "ROWS_TOGETHER", "outcome_bytes"]
 
@@ -18,12 +22,15 @@ ROWS_TOGETHER = 2**17
 """Rows of a row group of Parquet: so many have to be held at once, however many there are."""
 
 
-def outcome_bytes(outcome: Outcome, ending: str) -> tuple[bytes, str]:
-    """Return the outcome in the form that an ending names, and what that file is: `report` or `results`."""
+def outcome_bytes(outcome: Outcome, ending: str, data: ReportData | None = None) -> tuple[bytes, str]:
+    """Return the outcome in the form that an ending names, and what that file is: `report` or `results`.
+
+    `data` is what the report draws, made here where it is None.
+    """
     if ending == ".xlsx":
         from flexlash.report.workbook import report_bytes
 
-        return report_bytes(outcome), "report"
+        return report_bytes(outcome, data), "report"
     return _TABLES[ending](outcome), ROLE
 
 

@@ -20,7 +20,7 @@ from flexlash.report.explorer.explorer_sheet import write_explorer
 from flexlash.report.extent import extent_of
 from flexlash.report.findings_sheet import write_findings
 from flexlash.report.layout.styles import Book
-from flexlash.report.report_data import report_data
+from flexlash.report.report_data import ReportData, report_data
 from flexlash.report.results_sheet import write_results
 from flexlash.report.sections_sheet import write_sections
 from flexlash.report.sensitivity_sheet import write_sensitivity
@@ -36,15 +36,15 @@ __all__ = ["report_bytes"]
 _NO_DATE = datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=None)
 
 
-def report_bytes(outcome: Outcome) -> bytes:
-    """Return the report as an .xlsx file."""
+def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
+    """Return the report as an .xlsx file; `data` is what it draws, made here where it is None."""
     buffer = io.BytesIO()
     workbook = xlsxwriter.Workbook(buffer, {"in_memory": True, "strings_to_urls": False})
     created = outcome.submission.modified or _NO_DATE
     workbook.set_properties({"title": f"flexlash report on {outcome.submission.name}", "created": created})
     workbook.set_custom_property("flexlash", "report")
     book = Book(workbook)
-    data = report_data(outcome)
+    data = report_data(outcome) if data is None else data
     drawn = data.drawn
     curves = stored_curves(drawn)
     extent = extent_of(outcome)

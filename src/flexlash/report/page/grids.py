@@ -59,6 +59,14 @@ class Sheets:
         return {name: schema for schema, name in sheet_names(self.submission).items()}
 
     @cached_property
+    def _places(self) -> dict[str, dict[str, int]]:
+        """The columns of each entry sheet by key."""
+        return {
+            name: _places(self.submission.sheets[name].rows.get(self.header_rows.get(schema, 0), {}), schema)
+            for name, schema in self._schemas.items()
+        }
+
+    @cached_property
     def _mends(self) -> dict[tuple[str, str], str]:
         return {(fix.sheet, fix.cell): self._written(fix) for fix in self.fixes}
 
@@ -77,7 +85,7 @@ class Sheets:
         numbers = [*dict.fromkeys(address.row for _, address in placed)][:GRID_ROWS]
         here = [(found, address) for found, address in placed if address.row in numbers]
         header = self.header_rows.get(self._schemas.get(sheet.name, ""), 0)
-        columns = self._columns(sheet, header, here)
+        columns = self._columns(sheet, here)
         if header >= min(numbers):
             header = 0
         cells = sheet.rows.get(header, {})
@@ -90,11 +98,10 @@ class Sheets:
             rows=[self._row(sheet, number, columns, guilty) for number in sorted(numbers)],
         )
 
-    def _columns(self, sheet: RawSheet, header: int, here: Sequence[tuple[Finding, CellAddress]]) -> list[int]:
+    def _columns(self, sheet: RawSheet, here: Sequence[tuple[Finding, CellAddress]]) -> list[int]:
         """Return the columns to draw: whose row it is, the guilty, those they are compared with; 0 for a gap."""
-        schema = self._schemas.get(sheet.name, "")
-        places = _places(sheet.rows.get(header, {}), schema) if schema else {}
-        owners = [places[key] for key in _OWNERS.get(schema, ()) if key in places]
+        places = self._places.get(sheet.name, {})
+        owners = [places[key] for key in _OWNERS.get(self._schemas.get(sheet.name, ""), ()) if key in places]
         guilty = [address.column for _, address in here]
         keys = [key for found, _ in here for key in _compared(found)]
         wanted = dict.fromkeys([*owners, *guilty, *(places[key] for key in keys if key in places)])
