@@ -11,6 +11,7 @@ from flexlash.cli.check_command import check
 from flexlash.cli.diff_command import diff
 from flexlash.cli.reference_commands import explain, schema
 from flexlash.cli.run_command import run
+from flexlash.cli.status_command import retry, status
 from flexlash.cli.streams import lost_output, patient_streams
 from flexlash.cli.template_command import template
 from flexlash.cli.terminal import colour, complain, internal_error, named
@@ -41,7 +42,7 @@ def cli() -> None:
     """  # noqa: D301
 
 
-for _command in (template, check, run, diff, schema, explain):
+for _command in (template, check, run, diff, schema, explain, status, retry):
     cli.add_command(_command)
 
 

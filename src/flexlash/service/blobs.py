@@ -68,6 +68,12 @@ class Blobs:
             raise DamagedFileError(f"the kept file {sha256} is damaged")
         return self.path(sha256)
 
+    def has(self, sha256: str, size: int) -> bool:
+        """Return whether there is a file of a digest with so many bytes, whatever they are."""
+        with contextlib.suppress(OSError):
+            return self.path(sha256).stat().st_size == size
+        return False
+
     def is_whole(self, sha256: str) -> bool:
         """Return whether the file of a digest is there with the bytes of the digest; raise OSError as `checked`."""
         try:

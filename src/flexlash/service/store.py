@@ -270,8 +270,7 @@ class Store(Outbox):
     def sweep(self, older_than: float = 86_400.0) -> int:
         """Remove files that nothing names any more; return how many. While a backup is made none are removed."""
         with suppress(Timeout), FileLock(self.folder / KEEPING_LOCK, timeout=0), self.blobs.keeping():
-            rows = self._database.all("SELECT sha256 FROM submission UNION SELECT sha256 FROM file")
-            return self.blobs.sweep({row["sha256"] for row in rows}, older_than)
+            return self.blobs.sweep({sha256 for sha256, _ in self.named()}, older_than)
         return 0
 
     def _put_file(self, submission: str, file: StoredFile) -> None:

@@ -10,7 +10,16 @@ from pathlib import Path
 
 from flexlash.schema.findings import shown
 
-__all__ = ["DATABASE", "KEEPING_LOCK", "SERVER_LOCK", "StoreError", "default_store", "prepared", "remote_kind"]
+__all__ = [
+    "DATABASE",
+    "KEEPING_LOCK",
+    "SERVER_LOCK",
+    "StoreError",
+    "default_store",
+    "foreign",
+    "prepared",
+    "remote_kind",
+]
 
 DATABASE = "flexlash.sqlite"
 SERVER_LOCK, KEEPING_LOCK = "server.lock", "keeping.lock"
@@ -52,7 +61,7 @@ def prepared(folder: Path) -> Path:
             "name a folder on a disk of this machine with --store"
         )
     folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-    if other := min((path.name for path in folder.iterdir() if not _OURS.fullmatch(path.name)), default=""):
+    if other := foreign(folder):
         raise StoreError(
             f"the folder {_named(folder)} holds other files ({shown(other)}) and can be no store; "
             "name an empty folder with --store"
@@ -66,6 +75,11 @@ def prepared(folder: Path) -> Path:
                 "name a folder of your own with --store"
             ) from None
     return folder
+
+
+def foreign(folder: Path) -> str:
+    """Return the name of a file in a folder that is none of a store's, an empty text where there is none."""
+    return min((path.name for path in folder.iterdir() if not _OURS.fullmatch(path.name)), default="")
 
 
 def remote_kind(folder: Path) -> str:

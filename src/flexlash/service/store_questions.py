@@ -29,6 +29,9 @@ _LOW = 500 * 2**20
 
 _SHORTEST_ID = 4
 
+_NAMED = "SELECT sha256, size FROM submission UNION SELECT sha256, size FROM file"
+"""Every file that is kept for something."""
+
 
 class StoreQuestions:
     """A store as it is read. All methods may be called by any thread."""
@@ -79,6 +82,13 @@ class StoreQuestions:
             return []
         rows = self._database.all("SELECT id FROM submission WHERE substr(id, 1, ?) = ? LIMIT 2", len(start), start)
         return [row["id"] for row in rows]
+
+    def queue(self, most: int = 50) -> Sequence[StoredSubmission]:
+        """Return the submissions that wait, in the order in which they are to be begun."""
+        rows = self._database.all(
+            "SELECT * FROM submission WHERE state = 'waiting' ORDER BY alone DESC, number LIMIT ?", most
+        )
+        return [_submission(row) for row in rows]
 
     def was_forgotten(self, id_: str) -> bool:
         """Return whether there once was a submission of this ID that has been forgotten since."""
@@ -139,11 +149,11 @@ class StoreQuestions:
 
     def kept_bytes(self) -> int:
         """Return the size of all submissions and results, each content counted once."""
-        row = self._database.one(
-            "SELECT coalesce(sum(size), 0) AS n FROM"
-            " (SELECT sha256, size FROM submission UNION SELECT sha256, size FROM file)"
-        )
-        return int(row["n"])
+        return sum(size for _, size in self.named())
+
+    def named(self) -> Sequence[tuple[str, int]]:
+        """Return digest and size of every file that is kept for something."""
+        return [(row["sha256"], row["size"]) for row in self._database.all(_NAMED)]
 
     def warnings(self) -> Sequence[str]:
         """Return what whoever looks after the service should mend, in sentences."""
@@ -182,6 +192,17 @@ class StoreQuestions:
             "SELECT * FROM event WHERE ?1 = '' OR submission = ?1 ORDER BY number DESC LIMIT ?2", submission, most
         )
         return [dict(row) for row in rows]
+
+    def copy_database(self, path: Path) -> Sequence[tuple[str, int]]:
+        """Copy the database into a new file, marked as a backup; return digest and size of every file that it names."""
+        self._database.copy_to(path)
+        copy = Database(path)
+        try:
+            with copy.transaction():
+                copy.run("INSERT OR REPLACE INTO meta VALUES ('backup', ?)", self.name)
+            return [(row["sha256"], row["size"]) for row in copy.all(_NAMED)]
+        finally:
+            copy.close()
 
 
 def _submission(row: sqlite3.Row) -> StoredSubmission:
