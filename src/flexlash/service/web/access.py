@@ -68,7 +68,9 @@ class Access:
         names = [name.lower() for name in host_names]
         if wrong := [name for name in names if not _NAME.fullmatch(name)]:
             raise AccessError(f"--host-name {wrong[0]!r} is no name of a machine: give it without scheme and port.")
-        own = [] if local else [socket.gethostname().lower()]
+        if opens and behind_proxy:
+            raise AccessError("--open is for the one who starts flexlash, --behind-proxy for others: give one of them.")
+        own = [] if local else [socket.gethostname().lower(), host.lower()]
         return cls(
             host=host,
             port=port,
@@ -86,7 +88,8 @@ class Access:
 
     def address(self, port: int | None = None) -> str:
         """Return the address of the page, at the port that was taken where any would do."""
-        host = f"[{self.host}]" if ":" in self.host else self.host
+        host = {"0.0.0.0": LOOPBACK[0], "::": LOOPBACK[1]}.get(self.host, self.host)  # noqa: S104
+        host = f"[{host}]" if ":" in host else host
         return f"http://{host}:{self.port if port is None else port}/"
 
 

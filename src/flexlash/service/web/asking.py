@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Future
 from typing import TypeVar
@@ -22,16 +23,17 @@ class Asking:
         self._most = most
         self._seconds = seconds
         self._asked = 0
+        self._counting = threading.Lock()
 
     async def answer(self, ask: Callable[[], Future[Result]]) -> Result:
         """Return what a worker answers; raise Refused where too many are asked, or none answers."""
         if self._asked >= self._most:
             raise Refused(503, "Others are having files looked through just now: try again in a minute.")
         future = ask()
-        self._asked += 1
+        with self._counting:
+            self._asked += 1
         # As long as a worker is at it, whoever has left it is counted: the next visitor would wait behind it.
-        loop = asyncio.get_running_loop()
-        future.add_done_callback(lambda _: loop.call_soon_threadsafe(self._answered))
+        future.add_done_callback(self._answered)
         try:
             return await asyncio.wait_for(asyncio.shield(asyncio.wrap_future(future)), self._seconds)
         except TimeoutError:
@@ -43,5 +45,6 @@ class Asking:
                 raise Refused(503, "flexlash is being stopped: try again when it runs.") from None
             raise
 
-    def _answered(self) -> None:
-        self._asked -= 1
+    def _answered(self, _: object) -> None:
+        with self._counting:
+            self._asked -= 1

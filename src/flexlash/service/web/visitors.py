@@ -122,6 +122,8 @@ class Visitors:
 
     def opened(self, request: Request) -> Response:
         """Return the way in, with a cookie, for the token that works once."""
+        if request.method != "GET":
+            raise Refused(405, headers={"Allow": "GET"})
         token = request.path_params["token"]
         if self._access.once and not self._once:
             raise Refused(403, "This address has been used once already, and works once alone.")
