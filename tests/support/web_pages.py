@@ -30,6 +30,7 @@ class Idle:
         self.woken = 0
 
     def wake(self):
+        """Count who says that something has come in."""
         self.woken += 1
 
 

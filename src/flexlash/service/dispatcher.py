@@ -18,7 +18,7 @@ from queue import Empty, SimpleQueue
 from flexlash.analysis.options import Options
 from flexlash.batch.answer import Answer, Told
 from flexlash.batch.ended import fault_of, refused_answer
-from flexlash.batch.executor import ClusterError, Executor, WorkerLostError
+from flexlash.batch.executor import ClusterError, Executor, Work, WorkerLostError
 from flexlash.batch.side_by_side import computed_apart
 from flexlash.reading.libraries import ChangedLibrary
 from flexlash.reading.limited_process import ProcessFaultError
@@ -102,6 +102,11 @@ class Dispatcher:
         """How many submissions are at work."""
         return len(self._begun)
 
+    @property
+    def is_alive(self) -> bool:
+        """Whether what waits is being taken."""
+        return self._loop.is_alive
+
     def start(self) -> None:
         """Begin; what was at work when the last server ended comes first."""
         self._loop.start()
@@ -126,6 +131,12 @@ class Dispatcher:
                 return refused_answer(Path(name), Refusal("E118"))
 
         future = self._questions.ask(computed_apart, task.as_bytes(), told)
+        self.wake()
+        return future
+
+    def ask(self, work: Work, data: bytes) -> Future[bytes]:
+        """Return what a worker will answer; raises TooManyQuestionsError, and the future what the work raises."""
+        future: Future[bytes] = self._questions.ask(work, data, Future.result)
         self.wake()
         return future
 

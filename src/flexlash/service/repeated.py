@@ -45,6 +45,11 @@ class Repeated:
         """Begin."""
         self._thread.start()
 
+    @property
+    def is_alive(self) -> bool:
+        """Whether steps are being done."""
+        return self._thread.is_alive()
+
     def wake(self) -> None:
         """Have the next step done at once."""
         self._woken.set()

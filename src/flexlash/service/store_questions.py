@@ -161,7 +161,7 @@ class StoreQuestions:
         return [f"the disk of the store has only {free // 2**20} MiB left"] if free < _LOW else []
 
     def figures(self) -> Mapping[str, float]:
-        """Return what whoever watches wants to know: deliveries outstanding, workers lost, rows done, seconds waited."""
+        """Return what whoever watches wants to know: deliveries outstanding, workers lost, rows done, seconds."""
         row = self._database.one(
             "SELECT (SELECT count(*) FROM delivery WHERE NOT is_done) AS deliveries_outstanding,"
             " coalesce(sum(tries), 0) AS workers_lost, coalesce(sum(rows_done), 0) AS rows_done,"

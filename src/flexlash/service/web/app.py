@@ -15,7 +15,6 @@ from starlette.routing import Route
 from flexlash.service.log import Log
 from flexlash.service.store import Store
 from flexlash.service.web.access import Access
-from flexlash.service.web.asking import Asking
 from flexlash.service.web.forms import Forms
 from flexlash.service.web.guard import Guard
 from flexlash.service.web.health import Health
@@ -58,8 +57,7 @@ def application(
 
 
 def _routes(site: Site, visitors: Visitors) -> list[Route]:
-    asking = Asking(site.limits.checks, site.limits.answer_seconds)
-    pages, forms, health = Pages(site, asking), Forms(site, asking), Health(site)
+    pages, forms, health = Pages(site), Forms(site), Health(site)
     one = "/submissions/{id}"
     small = site.limits.form
 

@@ -12,7 +12,7 @@ from starlette.responses import JSONResponse, RedirectResponse, Response
 
 from flexlash.service.records import HandedIn
 from flexlash.service.web import views
-from flexlash.service.web.asking import Asking
+from flexlash.service.web.asking import answer_of
 from flexlash.service.web.negotiation import wants_json
 from flexlash.service.web.refusals import Refused
 from flexlash.service.web.site import Site
@@ -25,9 +25,8 @@ __all__ = ["Forms"]
 class Forms:
     """The handlers of POST."""
 
-    def __init__(self, site: Site, asking: Asking) -> None:
+    def __init__(self, site: Site) -> None:
         self._site = site
-        self._asking = asking
         self._accepting = threading.Lock()
 
     async def submissions(self, request: Request) -> Response:
@@ -78,7 +77,9 @@ class Forms:
         """Show what is found in a submission, of which nothing is kept."""
         self._require_token(request, one.token)
         data = await run_in_threadpool(one.content)
-        answer = await self._asking.answer(lambda: self._site.works.check(one.name, data))
+        answer = await answer_of(lambda: self._site.works.check(one.name, data), self._site.limits.answer_seconds)
+        if not answer.page:
+            raise Refused(500, "This file could not be looked through: that is a fault of flexlash.")
         page = json.loads(answer.page)
         if wants_json(request):
             return JSONResponse({"name": one.name, "told": dict(answer.told), "page": page})

@@ -11,7 +11,7 @@ from starlette.responses import JSONResponse, Response
 
 from flexlash.service.records import STATES, StoredFile, StoredSubmission
 from flexlash.service.web import views
-from flexlash.service.web.asking import Asking
+from flexlash.service.web.asking import answer_of
 from flexlash.service.web.downloads import attachment, download
 from flexlash.service.web.negotiation import wants_json
 from flexlash.service.web.refusals import Refused
@@ -28,9 +28,8 @@ _REMEMBERED = 32
 class Pages:
     """The handlers of GET."""
 
-    def __init__(self, site: Site, asking: Asking) -> None:
+    def __init__(self, site: Site) -> None:
         self._site = site
-        self._asking = asking
         self._compared: dict[tuple[str, str], bytes] = {}
         self._made: dict[bytes, bytes] = {}
 
@@ -86,7 +85,7 @@ class Pages:
         """Return the differences of two reports as a worker tells them, once for each pair."""
         pair = (old.sha256, new.sha256)
         if pair not in self._compared:
-            told = await self._asking.answer(lambda: self._site.works.compare(old, new))
+            told = await answer_of(lambda: self._site.works.compare(old, new), self._site.limits.answer_seconds)
             while len(self._compared) >= _REMEMBERED:
                 self._compared.pop(next(iter(self._compared)))
             self._compared[pair] = told
@@ -134,7 +133,9 @@ class Pages:
         if filling not in self._made:
             from flexlash.batch.template_files import template_file
 
-            self._made[filling] = await self._asking.answer(lambda: self._site.works.ask(template_file, filling))
+            self._made[filling] = await answer_of(
+                lambda: self._site.works.ask(template_file, filling), self._site.limits.answer_seconds
+            )
         return self._made[filling]
 
 

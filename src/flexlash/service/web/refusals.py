@@ -24,6 +24,7 @@ _WORDS = {
     413: ("This file is too large", "At most 20 MiB are taken here: flexlash run takes larger tables from the screen."),
     415: ("This form cannot be read", "Send it as multipart/form-data, as the page does."),
     421: ("This address is not that of flexlash", "Use the address that flexlash printed when it was started."),
+    422: ("This file cannot be read", "Hand in the template, filled in, or a table."),
     429: ("Too many wrong tokens", "Wait a minute and try again."),
     500: ("flexlash has failed here", "This is a fault of flexlash, which has written it down. Nothing is lost."),
     503: ("flexlash is busy", "Try again in a minute; what has been handed in is kept."),

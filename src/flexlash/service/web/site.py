@@ -67,7 +67,6 @@ class Limits:
     waiting_bytes: int = 2_048 * _MiB
     free_bytes: int = 128 * _MiB
     requests: int = 64
-    checks: int = 4
     idle_seconds: float = 20.0
     body_seconds: float = 300.0
     answer_seconds: float = 120.0
