@@ -194,7 +194,8 @@ def _trouble(submission: StoredSubmission, now: float) -> str:
         return ""
     again = submission.not_before - now
     when = "It is tried again in a moment" if again < 1 else f"It is tried again in {round(again)} seconds"
-    return f"{submission.trouble}. The fault is this machine's, not your file's. {when}; nothing is lost."
+    trouble = submission.trouble[:1].upper() + submission.trouble[1:].rstrip(".")
+    return f"{trouble}. The fault is this machine's, not your file's. {when}; nothing is lost."
 
 
 def _tiles(facts: PageFacts | None, *, partly: bool) -> Sequence[Tile]:
