@@ -116,20 +116,25 @@ class Difference:
                 users.setdefault(change, []).append(variant.name)
         return users
 
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many variants both have, differ, are equal, or are in one alone."""
+        return {
+            "common": self.common,
+            "differing": len(self.differing),
+            "within_error": len(self.within_error),
+            "equal": self.common - len(self.variants),
+            "removed": len(self.removed),
+            "added": len(self.added),
+        }
+
     def as_dictionary(self) -> dict[str, Any]:
         """Return the object that `flexlash diff --json` prints."""
         return {
             "old": self.old.as_dictionary(),
             "new": self.new.as_dictionary(),
             "results_compared": self.has_results,
-            "counts": {
-                "common": self.common,
-                "differing": len(self.differing),
-                "within_error": len(self.within_error),
-                "equal": self.common - len(self.variants),
-                "removed": len(self.removed),
-                "added": len(self.added),
-            },
+            "counts": self.counts,
             "removed": [name.text for name in self.removed],
             "added": [name.text for name in self.added],
             "variants": [variant.as_dictionary() for variant in self.variants],

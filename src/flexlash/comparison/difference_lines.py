@@ -25,8 +25,11 @@ _UNITS = ((1e-3, 100.0, " %"), (1e-7, 1e6, " ppm"), (0.0, 1e9, " ppb"))
 _BLANK = "–"
 
 
-def difference_lines(difference: Difference, *, every: bool = False) -> Iterator[str]:
-    """Yield a difference line by line; `every` tells all columns of Results and all variants."""
+def difference_lines(difference: Difference, *, every: bool = False, all_by: str = "--all") -> Iterator[str]:
+    """Yield a difference line by line; `every` tells all columns of Results and all variants.
+
+    `all_by` is how a reader asks for that, empty for one who cannot.
+    """
     if difference.variants:
         yield _count(difference)
     yield from _how_reports_differ(difference)
@@ -35,7 +38,7 @@ def difference_lines(difference: Difference, *, every: bool = False) -> Iterator
     if difference.within_error:
         who = _who(difference.within_error, difference.common)
         yield f"Within the error of the calculation ({AGREEING:g} combined standard errors): {who}"
-    yield from _each_variant(difference, every=every)
+    yield from _each_variant(difference, every=every, all_by=all_by)
     for file, names in zip(_files(difference), (difference.removed, difference.added), strict=True):
         if names:
             yield f"Only in {file}: {_named(names, None if every else _LISTED)}"
@@ -78,15 +81,15 @@ def _files(difference: Difference) -> tuple[str, str]:
     return (f"{old} (A)", f"{new} (B)") if old == new else (old, new)
 
 
-def _each_variant(difference: Difference, *, every: bool) -> Iterator[str]:
+def _each_variant(difference: Difference, *, every: bool, all_by: str) -> Iterator[str]:
     """Yield the variants that differ, the most important first."""
     ordered = sorted(difference.variants if every else difference.differing, key=_importance, reverse=True)
     own = [variant for variant in ordered if variant.entered or variant.results]
     for variant in own if every else own[:_LISTED]:
         yield _listed(variant.name)
-        yield from (f"    {line}" for line in _variant_lines(variant, every=every))
+        yield from (f"    {line}" for line in _variant_lines(variant, every=every, all_by=all_by))
     if len(own) > _LISTED and not every:
-        yield f"… and {len(own) - _LISTED} more variants (--all tells every one)"
+        yield f"… and {len(own) - _LISTED} more variants{f' ({all_by} tells every one)' if all_by else ''}"
 
 
 def _importance(variant: Differing) -> tuple[bool, float]:
@@ -95,7 +98,7 @@ def _importance(variant: Differing) -> tuple[bool, float]:
     return bool(variant.limit), max((parts.get(key, 0.0) for key in ("p97_5_arcmin", "backlash_arcmin")), default=0.0)
 
 
-def _variant_lines(variant: Differing, *, every: bool) -> Iterator[str]:
+def _variant_lines(variant: Differing, *, every: bool, all_by: str) -> Iterator[str]:
     """Yield what differs of one variant."""
     for change in variant.entered:
         yield _words(change)
@@ -103,7 +106,8 @@ def _variant_lines(variant: Differing, *, every: bool) -> Iterator[str]:
     for change in listed:
         yield _words(change) + (_limit_words(variant) if change.key == "p97_5_arcmin" else "")
     if rest := len(variant.results) - len(listed):
-        yield f"{rest} {'further ' if listed else ''}{'column' if rest == 1 else 'columns'} of Results (--all)"
+        columns = "column" if rest == 1 else "columns"
+        yield f"{rest} {'further ' if listed else ''}{columns} of Results{f' ({all_by})' if all_by else ''}"
 
 
 def _limit_words(variant: Differing) -> str:

@@ -31,7 +31,7 @@ from flexlash.validation.validated import Table, Validated
 if TYPE_CHECKING:
     import polars as pl
 
-__all__ = ["Name", "Side", "Used", "Value", "by_variant", "frame_rows", "result_rows", "side_of"]
+__all__ = ["Name", "Side", "Used", "Value", "by_variant", "frame_rows", "result_rows", "side_of", "side_of_source"]
 
 _TOP = 15
 _NAMED = 3
@@ -195,7 +195,12 @@ def side_of(path: Path, limits: ReadingLimits) -> Side:
 
     Raises OSError when the file cannot be opened, Refusal when it is neither.
     """
-    return ask(_side, limits_of_reports(limits), Source.at(path, limits), limits)
+    return side_of_source(Source.at(path, limits), limits)
+
+
+def side_of_source(source: Source, limits: ReadingLimits) -> Side:
+    """Return the same of bytes."""
+    return ask(_side, limits_of_reports(limits), source, limits)
 
 
 def _side(source: Source, limits: ReadingLimits) -> Side:

@@ -14,9 +14,9 @@ from flexlash.feedback.returned_files import certain_fixes
 from flexlash.report.layout.links import row_of, rule_counts
 from flexlash.report.page.cards import cards_of
 from flexlash.report.page.grids import Sheets
+from flexlash.report.page.one_variant import variant_pages
 from flexlash.report.page.shape import PageFacts, Refused, Sentence
 from flexlash.report.page.tiles import TARGET, finding_tiles, verdict_tiles
-from flexlash.report.page.variant_page import variant_pages
 from flexlash.report.page.variants import chart_of, lost_variants, shown_names, table_rows
 from flexlash.report.report_data import ReportData
 from flexlash.report.wording.sentences import sentences
