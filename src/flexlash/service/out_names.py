@@ -10,6 +10,7 @@ __all__ = ["longest_name", "number_of", "numbered", "out_name"]
 
 _NUMBERED = re.compile(r".* \((\d+)\)(\.[^.]*)?", re.DOTALL)
 _ROOM = len(" (9999)")
+_ENDING = len("-findings.parquet")
 _LONGEST = 255
 """Bytes of a name on nearly every file system."""
 
@@ -24,9 +25,9 @@ def out_name(name: str, longest: int = _LONGEST) -> str:
     ('a__b-report.xlsx', 248)
     """
     safe = "".join(letter if letter.isprintable() and letter not in "/\\" else "_" for letter in name)
-    stem, dash, ending = safe.rpartition("-")
-    room = longest - _ROOM - len(f"{dash}{ending}".encode())
-    return f"{stem.encode()[: max(0, room)].decode(errors='ignore')}{dash}{ending}"
+    stem, ending = safe[:-_ENDING], safe[-_ENDING:]
+    room = longest - _ROOM - len(ending.encode())
+    return f"{stem.encode()[:room].decode(errors='ignore')}{ending}"
 
 
 def longest_name(folder: Path) -> int:

@@ -171,7 +171,7 @@ def _holding(what: str, folder: Path, lock: BaseFileLock) -> Iterator[None]:
         raise _in_use(what, folder) from None
     except (OSError, NotImplementedError) as fault:
         why = reason(fault) if isinstance(fault, OSError) else str(fault)
-        raise PlacesError(f"{what}, {_told(folder)}, cannot be locked: {why}.") from fault
+        raise PlacesError(f"{what}, {_told(folder)}, cannot be locked by {_told(lock.lock_file)}: {why}.") from fault
     try:
         yield
     finally:
