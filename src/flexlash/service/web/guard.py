@@ -70,7 +70,9 @@ class Guard:
             raise Refused(503)
         limits = self._site.limits
         length = request.headers.get("content-length", "0")
-        if not length.isdecimal() or int(length[:20]) > (limits.body if request.url.path == _UPLOADS else limits.form):
+        if not length.isdecimal() or int(length[:20]) > (
+            limits.body if request.scope["path"] == _UPLOADS else limits.form
+        ):
             raise Refused(413)
         return known
 
@@ -79,10 +81,10 @@ class Guard:
         if isinstance(fault, Refused):
             return fault
         if isinstance(fault, OSError | sqlite3.OperationalError):
-            self._site.log.say("fault", what=f"{request.method} {request.url.path}", why=readable(fault))
+            self._site.log.say("fault", what=f"{request.method} {request.scope['path']}", why=readable(fault))
             return full_or_busy(fault)
         words = f"{type(fault).__name__}: {readable(fault)}"
-        self._site.log.say("internal error", what=f"{request.method} {request.url.path}", why=words)
+        self._site.log.say("internal error", what=f"{request.method} {request.scope['path']}", why=words)
         return Refused(500)
 
     def _note(self, request: Request, status: int) -> None:
@@ -91,7 +93,7 @@ class Guard:
             return
         sender = request.scope["state"]["sender"]
         who = {"sender": sender} if sender else {}
-        self._site.log.say("request", what=f"{request.method} {request.url.path}", status=status or "left", **who)
+        self._site.log.say("request", what=f"{request.method} {request.scope['path']}", status=status or "left", **who)
 
 
 class _Body:

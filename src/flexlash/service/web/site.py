@@ -96,7 +96,7 @@ class Site:
         headers: Mapping[str, str] | None = None,
     ) -> Response:
         """Return a page; every template also has `version`, `path` and `token`, which forms send back."""
-        shared = {"version": __version__, "path": request.url.path, "token": self.form_token(request)}
+        shared = {"version": __version__, "path": request.scope["path"], "token": self.form_token(request)}
         return self.templates.TemplateResponse(
             request, f"{name}.html", {**shared, **context}, status_code=status, headers=headers
         )
@@ -121,7 +121,7 @@ class Site:
             return JSONResponse({"error": told}, refused.status_code, refused.headers)
         name = "login" if refused.asks_for_token else "refused"
         again = request.headers.get("sec-fetch-site") == "cross-site"
-        context = told | ({"wanted": request.url.path, "again": again} if refused.asks_for_token else {})
+        context = told | ({"wanted": request.scope["path"], "again": again} if refused.asks_for_token else {})
         return self.page(request, name, context, status=refused.status_code, headers=refused.headers)
 
     def known(self, id_: str) -> StoredSubmission:

@@ -44,11 +44,12 @@ class Visitors:
     def let_in(self, request: Request) -> Mapping[str, str]:
         """Return what is known of who asks: `sender`, `session`, `bearer`; raise Refused where they are not let in."""
         self._require_host(request)
-        if request.url.path in _OPEN_TO_ALL:
+        path = request.scope["path"]
+        if path in _OPEN_TO_ALL:
             return {"sender": "", "session": ""}
         sender = self._sender(request)
         self._require_own_form(request)
-        if not self._access.asks or request.url.path.startswith(("/static/", "/login", OPENING)):
+        if not self._access.asks or path == "/login" or path.startswith(("/static/", OPENING)):
             return {"sender": sender, "session": ""}
         return {"sender": sender, **self._session(request)}
 
