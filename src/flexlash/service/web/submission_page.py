@@ -181,11 +181,18 @@ def _progress(submission: StoredSubmission, now: float, waiting: int) -> Progres
     return Progress(
         done=submission.rows_done,
         rows=rows,
-        title="Computing" if rows else "Reading and checking",
+        title=_doing(submission),
         words=" · ".join(filter(None, words)),
         checked=checked,
         next=counted(waiting, "submission") if waiting else "",
     )
+
+
+def _doing(submission: StoredSubmission) -> str:
+    """Return what is done with a submission at work."""
+    if not submission.rows:
+        return "Reading and checking"
+    return "Computing" if submission.rows_done < submission.rows else "Writing the report"
 
 
 def _trouble(submission: StoredSubmission, now: float) -> str:

@@ -1,0 +1,340 @@
+"""The pages as HTML: well formed, within the policy, readable by ear and eye, whatever stands in a file."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from importlib.resources import files
+from typing import Literal, get_args, get_origin, get_type_hints, is_typeddict
+
+import pytest
+from grids import for_each
+from html_pages import HtmlPage, faults_of
+
+from flexlash.report.page.shape import PageFacts
+from flexlash.schema.columns import ENTRY_SHEETS
+from flexlash.schema.finding_catalogue import CATALOGUE
+from flexlash.service.records import StoredFile, StoredSubmission
+from flexlash.service.web import lists, views
+from flexlash.service.web.site import page_templates
+from flexlash.service.web.submission_page import checked_view, submission_view
+from flexlash.service.web.variant_page import variant_view
+from flexlash.service.web.words import Moment, state_line
+
+NOW = 1_800_000_000.0
+HOSTILE = """</title><script>alert(1)</script>"'><x-evil onclick=a>{{ 7*7 }}{% x %}<!-- &amp; </svg></textarea>"""
+COUNTS = {"rows": 27, "computed": 24, "errors": 3, "warnings": 2, "meets": 1, "marginal": 1, "fails": 2}
+
+
+def made(kind, text):
+    """Return a value of a type of the facts: every text in it is the one given, every list has two of its kind."""
+    if is_typeddict(kind):
+        return {key: made(value, text) for key, value in get_type_hints(kind).items()}
+    if get_origin(kind) is list:
+        return [made(*get_args(kind), text)] * 2
+    if get_origin(kind) is dict:
+        return dict(COUNTS)
+    if get_origin(kind) is Literal:
+        return get_args(kind)[0]
+    if get_args(kind):
+        return made(get_args(kind)[0], text)
+    return {str: text, int: 1, float: 1.5, bool: True}[kind]
+
+
+def submission(**known):
+    """Return a submission as the store has it."""
+    usual = {"id": "a" * 32, "number": 7, "name": "cup.xlsx", "sha256": "9c1f" * 16, "size": 34_567, "options": "o",
+             "door": "page", "sender": "", "received_at": NOW - 130, "state": "waiting"}  # fmt: skip
+    return StoredSubmission(**usual | known)
+
+
+def render(name, path="/", **context):
+    """Return a page as the service renders it."""
+    template = page_templates().env.get_template(f"{name}.html")
+    return template.render(version="0.5.0", path=path, **{"token": "tok"}, **context)
+
+
+FILES = {role: StoredFile(role=role, sha256="a" * 64, size=9, name=f"x{ending}") for role, ending in {
+    "report": ".xlsx", "results": ".csv", "findings": ".csv", "checked": ".xlsx", "mended": ".xlsx", "reasons": ".txt",
+    "page": ".json"}.items()}  # fmt: skip
+
+
+def pages(text):
+    """Return every page, with a text in each of its fields, by a name."""
+    facts = made(PageFacts, text)
+    done = submission(name=text, sender=text, state="done", words=text, reason=text, counts=COUNTS, ended_at=NOW)
+    event = {"number": 1, "at": NOW, "kind": text, "submission": "", "text": text}
+    rule = {"level": "error", "code": "E202", "sheet": text, "column": text, "cells": 3, "submissions": 2}
+    at_work = {"began_at": NOW - 9, "rows": 100, "rows_done": 41, "counts": COUNTS}
+    shown = {"working": at_work, "waiting": {"trouble": text}, "done": {}, "rejected": {"words": text, "reason": text}}
+    made_pages = {
+        "hand in": render("hand_in", view=lists.hand_in_view([done] * 3, NOW, waiting=2), fault=text),
+        "history": render("history", "/history", view=lists.history_view(
+            [done] * 51, NOW, text=text, state="done", before=9, totals={"done": 3})),
+        "rules": render("rules", "/rules", view=lists.rules_view([rule])),
+        "explained": render("explained", explanation=lists.explained("E202")),
+        "help": render("help", "/help", sheets=ENTRY_SHEETS, codes=lists.codes_by_level()),
+        "login": render("login", title=text, sentence=text, status=401, wanted=text, again=True),
+        "refused": render("refused", title=text, sentence=text, status=410),
+        "checked": render("checked", view=checked_view(text, facts)),
+        "difference": render("difference", submission=done, previous=done, when=Moment.of(NOW, NOW),
+                             told={"lines": [text]}),
+        "no difference": render("difference", submission=done, previous=None, when=None, told=None),
+        "variant": render("variant", view=variant_view(done, facts, 1)),
+        "empty": render("submission", view=submission_view(submission(), NOW)),
+    }  # fmt: skip
+    for state, known in shown.items():
+        one = replace(done, state=state, **known)
+        view = submission_view(one, NOW, facts=facts, files=FILES, first=done, previous=done, events=[event], waiting=3)
+        made_pages[state] = render("submission", view=view)
+    return made_pages
+
+
+PLAIN, EVIL = pages("some words"), pages(HOSTILE)
+
+
+@for_each("name", PLAIN)
+def test_pages_are_well_formed_and_within_the_policy(name):
+    """Every page nests rightly, has unique IDs, labels, landmarks and headings, no script, style or foreign address."""
+    faults = faults_of(PLAIN[name])
+    assert not faults, "; ".join(faults[:8])
+
+
+@for_each("name", EVIL)
+def test_nothing_that_a_stranger_typed_becomes_part_of_the_page(name):
+    """With a hostile text in every field a page has the very elements that it has with a harmless one."""
+    faults = faults_of(EVIL[name])
+    assert not faults, "; ".join(faults[:8])
+    assert [tag for tag, _ in HtmlPage(EVIL[name]).elements if tag not in {"title", "br"}] == [
+        tag for tag, _ in HtmlPage(PLAIN[name]).elements if tag not in {"title", "br"}
+    ]
+
+
+@pytest.mark.parametrize("name", ["hand in", "done", "variant", "checked", "difference", "refused"])
+def test_a_hostile_text_is_shown_as_it_was_typed(name):
+    """What a stranger typed is read on the page letter by letter."""
+    assert " ".join(HOSTILE.split()) in HtmlPage(EVIL[name]).text
+
+
+def test_a_checker_that_finds_no_fault_would_be_none():
+    """A page with a fault of each kind is told of each."""
+    page = PLAIN["hand in"].replace('id="lately"', 'id="file"').replace("<h2", "<h4", 1).replace("</h2>", "</h4>", 1)
+    page = page.replace("<main", "<div style='x' onclick='y'><script src='//evil'></script></div><!-- c --><main", 1)
+    page = page.replace('<label for="file">', "<label>", 1).replace('scope="col"', "", 1)
+    told = " ".join(faults_of(page))
+    for fault in ("twice", "style", "onclick", "script", "leaves", "no label", "heading", "comment", "row or a column"):
+        assert fault in told, fault
+
+
+def test_only_what_still_changes_is_asked_for_again():
+    """A page is refreshed while its submission waits or is at work, soon at first, never once it has ended."""
+    again = {state: "http-equiv" in PLAIN[state] for state in ("waiting", "working", "done", "rejected")}
+    assert again == {"waiting": True, "working": True, "done": False, "rejected": False}
+    ages = (1, 30, 300, 3000)
+    assert [submission_view(submission(received_at=NOW - age), NOW).refresh for age in ages] == [1, 2, 5, 10]
+
+
+def test_progress_says_rows_speed_and_time_left():
+    """A submission at work shows true rows, their speed, the time left and what the check found."""
+    at_work = submission(state="working", began_at=NOW - 166, rows=1_000_000, rows_done=412_000,
+                         counts={**COUNTS, "rows": 1_000_000, "computed": 999_998})  # fmt: skip
+    page = HtmlPage(render("submission", view=submission_view(at_work, NOW, waiting=3)))
+    assert "Computing · 412,000 of 1,000,000 rows · 2482 rows a second · about 4 minutes left" in page.text
+    assert "Checked: 999,998 rows ready, 2 rows with errors. Next in the queue: 3 submissions." in page.text
+    assert {"max": "1000000", "value": "412000", "aria-label": "Rows computed"} in page.all("progress")
+    assert "41 % · cup.xlsx" in page.text
+
+
+def test_the_queue_and_a_fault_of_the_machine_are_told():
+    """What waits is told its place; a fault of the machine is no fault of the file, and when it is tried again."""
+    waiting = HtmlPage(render("submission", view=submission_view(submission(), NOW, before=2)))
+    assert "Waiting; 2 submissions before it" in waiting.text
+    faulty = submission(trouble="no space left on the disk", not_before=NOW + 40)
+    told = HtmlPage(render("submission", view=submission_view(faulty, NOW))).text
+    assert "No space left on the disk. The fault is this machine's, not your file's. It is tried again in 40" in told
+
+
+def test_findings_come_before_the_report_where_a_file_needs_fixing():
+    """With errors the findings and the marked copy come first, without any the report does."""
+    facts = made(PageFacts, "words")
+    html = PLAIN["done"]
+    assert html.index('id="findings"') < html.index('id="variants"')
+    assert html.index("Marked copy (.xlsx)") < html.index("Report of the 24 rows (.xlsx)")
+    facts["counts"] = {**COUNTS, "errors": 0}
+    clean = render("submission", view=submission_view(submission(state="done"), NOW, facts=facts, files=FILES))
+    assert clean.index('id="variants"') < clean.index('id="findings"')
+    assert clean.index("Report (.xlsx)") < clean.index("Marked copy (.xlsx)")
+
+
+def test_many_rules_wait_behind_a_line():
+    """The first six rules are open, in the order of the facts; the others open by a line that says how many."""
+    facts = made(PageFacts, "words")
+    facts["cards"] = [{**facts["cards"][0], "title": f"rule {index}"} for index in range(9)]
+    html = render("checked", view=checked_view("x", facts))
+    assert "3 more rules with findings" in HtmlPage(html).text
+    assert html.index("Rule 5") < html.index("3 more rules") < html.index("Rule 6")
+
+
+def test_cells_are_drawn_like_the_sheet():
+    """A card shows column letters, row numbers, the guilty cell marked and what it would become."""
+    facts = made(PageFacts, "words")
+    row = {"row": 9, "cells": ["V-05", "", "1,6 mm"], "marked": [2], "mended": ["", "", "1.6"]}
+    grid = {"sheet": "Variants", "columns": ["A", "…", "H"], "header_row": 4, "header": ["Variant", "", "Wall [mm]"]}
+    grid["rows"] = [row]
+    facts["cards"] = [{**facts["cards"][0], "grid": grid}]
+    html = render("checked", view=checked_view("x", facts))
+    table = html[html.index('<table class="sheet">') : html.index("</table>")]
+    cells = re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", table)
+    assert cells[1:] == [
+        "A",
+        "…",
+        "H",
+        "4",
+        "Variant",
+        "",
+        "Wall [mm]",
+        "9",
+        "V-05",
+        "",
+        "1,6 mm",
+        "fixed",
+        "",
+        "",
+        "1.6",
+    ]
+    assert re.findall(r'<td class="mark ?">(.*?)</td>', table) == ["1,6 mm"]
+
+
+def test_states_are_sentences():
+    """Each state of a list is a sentence with a colour and a link that says what is there."""
+    told = {
+        state_line(one, NOW): None
+        for one in (
+            submission(state="done", words="12 of 12 rows computed", counts={"rows": 12, "computed": 12, "fails": 2}),
+            submission(state="done", words="9 of 12 rows computed; 3 cells to fix", counts={"rows": 12, "computed": 9}),
+            submission(state="rejected", words="password-protected file"),
+            submission(state="working"),
+        )
+    }
+    assert [(line.words, line.kind, line.link) for line in told] == [
+        ("12 of 12 rows computed; 2 fail", "good", "report"),
+        ("9 of 12 rows computed; 3 cells to fix", "warn", "findings"),
+        ("password-protected file", "bad", "reason"),
+        ("being read and checked", "plain", "watch"),
+    ]
+
+
+def test_history_leads_to_older_ones_only_where_there_are_some():
+    """A full page of the history with one more behind it leads on, by the last number that it shows."""
+    found = [submission(number=number) for number in range(60, 0, -1)]
+    more = lists.history_view(found[:51], NOW, text="a&b", totals={})
+    assert (len(more.lines), more.older) == (50, 11)
+    assert lists.history_view(found[:50], NOW, totals={}).older is None
+    assert "/history?text=a%26b&amp;state=&amp;before=11" in render("history", "/history", view=more)
+
+
+def test_every_finding_has_a_page():
+    """Each code of the catalogue is explained under its address, in any case; other codes are not."""
+    for code, rule in CATALOGUE.items():
+        context = views.explained(code.lower())
+        assert context, code
+        assert rule.title[1:] in HtmlPage(render("explained", **context)).text
+    assert views.explained("E999") is None
+
+
+def test_the_help_has_every_column():
+    """How to fill the template names every column of every sheet, and what its cells must be."""
+    text = HtmlPage(render("help", "/help", **views.how_to_fill())).text
+    for sheet in ENTRY_SHEETS.values():
+        for column in sheet:
+            for words in (column.label, column.requirement, column.help):
+                assert " ".join(words.split()) in text, column.key
+
+
+def test_a_variant_that_there_is_not_has_no_page():
+    """The place of a variant is one of those that have facts."""
+    facts = json.loads(json.dumps(made(PageFacts, "words")))
+    assert variant_view(submission(), facts, 1)
+    assert variant_view(submission(), facts, 2) is None
+    assert variant_view(submission(), facts, -1) is None
+
+
+def test_moments_are_near_and_exact():
+    """A moment is told as one says it, and exactly beside it."""
+    said = [Moment.of(NOW - past, NOW).near for past in (5, 130, 2 * 3600 + 5)]
+    assert said == ["just now", "2 min ago", "2 h ago"]
+    assert re.fullmatch(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d", Moment.of(NOW, NOW).exact)
+    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d[+-]\d\d:\d\d", Moment.of(NOW, NOW).machine)
+
+
+# Colours
+
+
+def _luminance(colour):
+    parts = [int(colour[at : at + 2], 16) / 255 for at in (1, 3, 5)]
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return sum(weight * part for weight, part in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
+
+
+def contrast(one, other):
+    """Return the contrast of two colours by WCAG, from 1 to 21."""
+    low, high = sorted((_luminance(one), _luminance(other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+def _css():
+    return files("flexlash.service.web").joinpath("static", "flexlash.css").read_text(encoding="utf-8")
+
+
+def _rules():
+    """Yield each rule of the style sheet: its selector, and its declarations, in them colours instead of their names."""
+    css = re.sub(r"/\*.*?\*/", "", _css(), flags=re.DOTALL)
+    names = dict(re.findall(r"(--[\w-]+): (#[0-9a-f]{6});", css))
+    css = re.sub(r"var\((--[\w-]+)\)", lambda found: names[found[1]], css)
+    for selector, body in re.findall(r"([^{}]+)\{([^{}]*)\}", css):
+        yield selector.strip(), dict(part.split(":", 1) for part in body.split(";") if ":" in part)
+
+
+def _colours():
+    """Yield selector, letters and ground of every rule that colours letters; without a ground, both of the page."""
+    for selector, body in _rules():
+        told = {key.strip(): re.search(r"#[0-9a-f]{6}", value) for key, value in body.items()}
+        letters, ground = told.get("color"), told.get("background")
+        if letters and ground:
+            yield selector, letters[0], ground[0]
+        elif letters:
+            for behind in ("#ffffff", "#f7f9fc"):
+                yield selector, letters[0], behind
+
+
+@for_each("selector, letters, ground", _colours())
+def test_letters_stand_out_from_their_ground(selector, letters, ground):
+    """Every pair of colours of the style sheet has a contrast of 4.5 or more."""
+    assert contrast(letters, ground) >= 4.5, f"{selector}: {contrast(letters, ground):.2f}"
+
+
+def test_contrast_is_that_of_wcag():
+    """Black on white has 21, and the grey that is known for it 4.54."""
+    assert contrast("#000000", "#ffffff") == pytest.approx(21)
+    assert contrast("#767676", "#ffffff") == pytest.approx(4.54, abs=0.005)
+
+
+def test_the_style_sheet_asks_for_nothing_and_keeps_the_focus_visible():
+    """No other resource is asked for; what has the focus has an outline; who wants no motion gets none."""
+    css = _css()
+    assert "url(" not in css
+    assert "@import" not in css
+    assert ":focus-visible { outline: 3px" in css
+    assert css.count("transition") == 1
+    assert css.index("prefers-reduced-motion: no-preference") < css.index("transition")
+
+
+def test_server_side_of_the_pages_loads_nothing_heavy():
+    """The server keeps small: its pages import no library of numbers or workbooks."""
+    heavy = ("polars", "numpy", "openpyxl", "xlsxwriter", "scipy", "pandera")
+    program = f"import flexlash.service.web.views, sys; print([name for name in {heavy} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
