@@ -284,7 +284,7 @@ def _program(folder):
 @pytest.mark.skipif(os.name != "posix", reason="signals are sent otherwise on Windows")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_ends_it_in_order(tmp_path, number):
-    """A signal lets what is on its way be answered, then all returns; nothing heavy was loaded, below 60 MB are used."""
+    """A signal lets what is on its way be answered, then all returns; nothing heavy was loaded, nor 60 MB used."""
     with _program(tmp_path) as program:
         address = program.stdout.readline().strip()
         port = int(re.search(r":(\d+)/", address)[1])
