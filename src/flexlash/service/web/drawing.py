@@ -153,7 +153,7 @@ class Picture:
         box = SubElement(
             self._root, "svg",
             {"x": "0", "y": _short(y), "width": "100%", "height": _short(height), "viewBox": "0 0 1000 1000",
-             "preserveAspectRatio": "none"},
+             "preserveAspectRatio": "none", "aria-hidden": "true"},
         )  # fmt: skip
         outline = [(points[0][0], 0.0), *points, (points[-1][0], 0.0)]
         drawn = " ".join(f"{_short(10 * x)},{_short(1000 - 1000 * share)}" for x, share in outline)
