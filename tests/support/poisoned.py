@@ -8,7 +8,7 @@ import signal
 from flexlash.batch.chunk import ChunkTask, compute_chunk
 from flexlash.reading.read import submission_of
 
-__all__ = ["POISON", "lost_at_poison", "lost_at_reading_poison"]
+__all__ = ["POISON", "lost_at_poison", "lost_at_reading_poison", "stopped_by_name"]
 
 POISON = "poison"
 """Name of the variant that stops whoever computes it."""

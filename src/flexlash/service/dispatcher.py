@@ -18,10 +18,8 @@ from queue import Empty, SimpleQueue
 from flexlash.analysis.options import Options
 from flexlash.batch.answer import Answer, Told
 from flexlash.batch.ended import fault_of, refused_answer
-from flexlash.batch.executor import ClusterError, Executor, Work, WorkerLostError
+from flexlash.batch.executor import ClusterError, Executor, WorkerLostError
 from flexlash.batch.side_by_side import computed_apart
-from flexlash.reading.libraries import ChangedLibrary
-from flexlash.reading.limited_process import ProcessFaultError
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.findings import readable, shown
@@ -32,7 +30,7 @@ from flexlash.service.questions import Questions
 from flexlash.service.records import StoredSubmission
 from flexlash.service.repeated import ENVIRONMENT_FAULTS, Repeated, back_off
 from flexlash.service.store import Store
-from flexlash.service.tasks import check_task, run_task, service_options, submitted
+from flexlash.service.tasks import answer_of, run_task, service_options, submitted
 
 __all__ = ["Dispatcher"]
 
@@ -48,9 +46,6 @@ _NOTED = 0.5
 _MOST_LOST = 3
 """Workers, or servers, that a submission may cost."""
 
-_MOST_QUESTIONS = 8
-"""Files that are checked or compared at once, each of which may have 20 MiB."""
-
 _LONGEST_STOP = 28.0
 """Seconds that stopping may take; whoever stops a service kills it after 30."""
 
@@ -64,7 +59,7 @@ class _Begun:
     noted: float = 0.0
 
 
-class Dispatcher:
+class Dispatcher(Questions):
     """Has workers compute what the store holds, oldest first.
 
     What was at work when a server ended runs with nothing beside it. `ended` is called after each ending.
@@ -79,12 +74,11 @@ class Dispatcher:
         *,
         ended: Callable[[], None] | None = None,
     ) -> None:
+        super().__init__(service_options(options), store.blobs)
         self._store = store
         self._executor = OpenExecutor(open_executor, log)
-        self._options = service_options(options)
         self._log = log
         self._on_end = ended
-        self._questions = Questions(_MOST_QUESTIONS)
         self._begun: dict[str, _Begun] = {}
         self._events: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._owed: dict[str, Callable[[], None]] = {}
@@ -104,8 +98,8 @@ class Dispatcher:
 
     @property
     def is_alive(self) -> bool:
-        """Whether what waits is being taken."""
-        return self._loop.is_alive
+        """Whether what waits is taken as soon as there are workers."""
+        return self._loop.is_alive and not self._is_stopping
 
     def start(self) -> None:
         """Begin; what was at work when the last server ended comes first."""
@@ -114,31 +108,6 @@ class Dispatcher:
     def wake(self) -> None:
         """Say that a submission has come in."""
         self._loop.wake()
-
-    def check(self, name: str, data: bytes) -> Future[Answer]:
-        """Return what will come of checking a file of which nothing is kept.
-
-        Raises TooManyQuestionsError where too many are open; the future raises ClusterError where the workers are lost.
-        """
-        task = check_task(name, data, self._options)
-
-        def told(done: Future[bytes]) -> Answer:
-            try:
-                return self._answer(done, name)
-            except WorkerLostError as lost:
-                if not lost.losses:
-                    raise ClusterError(str(lost)) from lost
-                return refused_answer(Path(name), Refusal("E118"))
-
-        future = self._questions.ask(computed_apart, task.as_bytes(), told)
-        self.wake()
-        return future
-
-    def ask(self, work: Work, data: bytes) -> Future[bytes]:
-        """Return what a worker will answer; raises TooManyQuestionsError, and the future what the work raises."""
-        future: Future[bytes] = self._questions.ask(work, data, Future.result)
-        self.wake()
-        return future
 
     def stop(self, seconds: float = _LONGEST_STOP) -> None:
         """Let what is at work end within so many seconds, and hand back the rest, for which no try is counted."""
@@ -155,7 +124,7 @@ class Dispatcher:
         except ENVIRONMENT_FAULTS as fault:
             # The next server finds them at work, and begins with them.
             self._log.say("fault", what="handing back", why=readable(fault))
-        self._questions.close()
+        self._cancel()
         self._executor.close(max(1.0, end - time.monotonic()))
 
     # Steps of the thread
@@ -175,7 +144,7 @@ class Dispatcher:
             self._settle()
         executor = self._executor.get()
         if executor is not None:
-            self._questions.hand_over(executor)
+            self._hand_over(executor)
             while self._may_begin(executor) and (taken := self._store.take()):
                 self._begin(taken, executor)
                 self._settle()
@@ -247,7 +216,7 @@ class Dispatcher:
     def _heard(self, submission: StoredSubmission, future: Future[bytes]) -> None:
         """End a submission by what a worker says of it, or because it has lost so many."""
         try:
-            answer = self._answer(future, submission.name, submission.sha256)
+            answer = answer_of(future, submission.name, self._options.limits, submission.sha256)
         except WorkerLostError as lost:
             tries = submission.tries + lost.losses
             self._log.say("worker lost", submission.id, tries=tries, why=readable(lost))
@@ -259,20 +228,6 @@ class Dispatcher:
                 self._end_lost(submission, f"stopped the worker {tries} times, so that nothing of it was computed")
         else:
             self._end(submission, answer)
-
-    def _answer(self, done: Future[bytes], name: str, sha256: str = "") -> Answer:
-        """Return what a worker says, or that a limit or a fault of the program stopped it.
-
-        Raises WorkerLostError where it was lost for no known reason, ClusterError, and CancelledError.
-        """
-        try:
-            return Answer.of(done.result())
-        except WorkerLostError as lost:
-            if not lost.setting:
-                raise
-            return refused_answer(Path(name), self._options.limits.exceeded(lost.setting), sha256)
-        except (ProcessFaultError, ChangedLibrary) as fault:
-            return Answer(exit_code=ExitCode.INTERNAL, fault=fault_of(fault))
 
     # How it goes on
 

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 
 from flexlash.analysis.options import Options
-from flexlash.batch.answer import Task
+from flexlash.batch.answer import Answer, Task
+from flexlash.batch.ended import fault_of, refused_answer
+from flexlash.batch.executor import WorkerLostError
 from flexlash.reading.gate import read_bytes
+from flexlash.reading.libraries import ChangedLibrary
+from flexlash.reading.limited_process import ProcessFaultError
 from flexlash.reading.products import Companions
 from flexlash.reading.read import Source
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
+from flexlash.schema.exit_codes import ExitCode
 
-__all__ = ["check_task", "run_task", "service_options", "submitted"]
+__all__ = ["answer_of", "check_task", "run_task", "service_options", "submitted"]
 
 _SECONDS = 20
 """Seconds that reading may take: a file that hangs its reader keeps a worker from all others for so long."""
@@ -61,3 +67,18 @@ def submitted(path: Path, name: str, limits: ReadingLimits) -> bytes:
     if name.startswith(_LOCK):
         raise Refusal("I525")
     return read_bytes(path, limits)
+
+
+def answer_of(done: Future[bytes], name: str, limits: ReadingLimits, sha256: str = "") -> Answer:
+    """Return what a worker says of a submission, or that it exceeded a limit, or that the program failed.
+
+    Raises WorkerLostError where the worker was lost for no known reason, ClusterError, and CancelledError.
+    """
+    try:
+        return Answer.of(done.result())
+    except WorkerLostError as lost:
+        if not lost.setting:
+            raise
+        return refused_answer(Path(name), limits.exceeded(lost.setting), sha256)
+    except (ProcessFaultError, ChangedLibrary) as fault:
+        return Answer(exit_code=ExitCode.INTERNAL, fault=fault_of(fault))
