@@ -230,7 +230,8 @@ def test_a_fault_of_the_machine_has_a_submission_wait(store, clock, monkeypatch,
     real, left = getattr(owner, name), [times]
 
     def failing(*facts, **further):
-        if threading.current_thread().name == "flexlash dispatcher" and left[0]:
+        is_result = name != "put" or facts[0].startswith(b"PK")
+        if threading.current_thread().name == "flexlash dispatcher" and left[0] and is_result:
             left[0] -= 1
             raise fault
         return real(*facts, **further)
@@ -266,7 +267,7 @@ def test_a_store_that_cannot_be_written_to_loses_nothing(store, clock, monkeypat
         _until(lambda: executor.held)
         is_full.set()
         executor.let_go()
-        _until(lambda: "disk is full" in dispatcher.lines.getvalue())
+        _until(lambda: "what=dispatcher why=database or disk is full" in dispatcher.lines.getvalue())
         is_full.clear()
         dispatcher.wake()
         _until(lambda: store.submission(id_).state == "waiting")
@@ -373,7 +374,7 @@ def test_a_stop_lets_work_end_and_hands_back_the_rest(store, held):
         threading.Timer(0.3, held.let_go).start()
         begun = time.monotonic()
         dispatcher.stop(1.0)
-        assert time.monotonic() - begun < 4
+        assert time.monotonic() - begun < 7
     assert _states(store, ids) == ["done"] + ["waiting"] * 4
     left = [store.submission(id_) for id_ in ids[1:]]
     assert {(one.tries, one.alone, one.server_ends, one.not_before) for one in left} == {(0, False, 0, 0.0)}
@@ -394,7 +395,7 @@ def test_a_stop_ends_though_workers_do_not(store):
         _until(lambda: store.submission(id_).state == "working")
         begun = time.monotonic()
         dispatcher.stop(0.5)
-        assert time.monotonic() - begun < 4
+        assert time.monotonic() - begun < 7
         is_over.set()
     assert store.submission(id_).state == "waiting"
 
