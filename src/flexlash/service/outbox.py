@@ -89,6 +89,15 @@ class Outbox(StoreQuestions):
             self._database.run("UPDATE delivery SET is_done = 1, trouble = '' WHERE number = ?", delivery.number)
             self._event("delivered", delivery.submission, delivery.target or delivery.kind)
 
+    def give_up(self, delivery: Delivery, trouble: str) -> None:
+        """Write down that something will not leave the store, and why."""
+        with self._database.transaction():
+            self._database.run(
+                "UPDATE delivery SET is_done = 1, tries = tries + 1, trouble = ? WHERE number = ?",
+                trouble, delivery.number,
+            )  # fmt: skip
+            self._event("given up", delivery.submission, f"{delivery.target or delivery.kind}: {trouble}")
+
     def postpone(self, delivery: Delivery, seconds: float, trouble: str = "") -> None:
         """Write down that something could not leave the store, why, and when it is tried again."""
         with self._database.transaction():
