@@ -39,7 +39,7 @@ from flexlash.tolerance.distribution_curves import HISTOGRAM_BINS
 
 __all__ = ["variant_pages"]
 
-_FINDINGS = 10
+_FINDINGS = 5
 """Most findings of a variant that are told."""
 
 _TEXT = 200
