@@ -186,17 +186,18 @@ def test_the_id_is_not_made_of_the_name(service):
     assert len(first.id) == 32
 
 
-def test_the_oldest_are_taken_first_and_not_all_at_once(service):
+def test_the_oldest_are_taken_first_and_not_all_at_once(service, monkeypatch):
     """Of many files a step takes some, in the order in which they came; the next go on."""
-    for number in range(60):
-        service.put(f"{number:03}.csv", f"{number}\n".encode())
+    monkeypatch.setattr(inbox_room, "_AT_ONCE", 4)
+    for number in reversed(range(6)):
+        service.put(f"{number}.csv", f"{number}\n".encode())
         service.folder.step()
         service.now += 0.05
     service.now += 10
     assert service.folder.step()
-    assert [one.name for one in service.submissions()] == [f"{number:03}.csv" for number in range(50)]
+    assert [one.name for one in service.submissions()] == ["5.csv", "4.csv", "3.csv", "2.csv"]
     assert not service.folder.step()
-    assert len(service.submissions()) == 60
+    assert len(service.submissions()) == 6
 
 
 def failing(path: Path) -> bool:

@@ -15,7 +15,7 @@ from itertools import count
 from pathlib import Path, PurePath
 from typing import BinaryIO
 
-from flexlash.outputs.writing import Filling, put_new, remove_leftovers, sync_folder, temporary
+from flexlash.outputs.writing import Filling, put_new, sync_folder, temporary
 from flexlash.schema.file_faults import reason
 from flexlash.service.log import Log
 from flexlash.service.out_names import longest_name, number_of, numbered, out_name
@@ -54,7 +54,6 @@ class Delivering:
 
     def begin(self) -> None:
         """Find again what was left half delivered; raise OSError where OUT cannot be read."""
-        remove_leftovers(self._places.out)
         undelivered = {one.submission for one in self._store.undelivered()}
         for folder in self._places.claimed(self._store.name):
             known = self._store.submission(folder.name)

@@ -56,7 +56,6 @@ class Places:
             _made(f"the folder {name} of OUT", out / name)
         # Again, since only what is there tells by which names it goes.
         _require_apart(inbox, out, store)
-        _require_one_disk(inbox, out)
         places = cls(inbox=inbox, out=out, made=made)
         with contextlib.ExitStack() as held:
             held.enter_context(_holding("OUT", out, FileLock(out / "work" / _LOCK, thread_local=False)))
@@ -139,15 +138,6 @@ def _is_in(folder: Path, outer: Path) -> bool:
             if ancestor.samefile(real_outer):
                 return True
     return False
-
-
-def _require_one_disk(inbox: Path, out: Path) -> None:
-    try:
-        is_one = len({folder.stat().st_dev for folder in (inbox, *_inside(out))}) == 1
-    except OSError as fault:
-        raise PlacesError(f"{_told(fault.filename)} cannot be used: {reason(fault)}.") from fault
-    if not is_one:
-        raise _of_two_disks(inbox, out)
 
 
 def _of_two_disks(inbox: Path, out: Path) -> PlacesError:

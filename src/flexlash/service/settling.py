@@ -19,7 +19,6 @@ Identity: TypeAlias = tuple[int, int, int, int]
 _SETTLED, _UNCHANGED = 5.0, 60.0
 """Seconds for which a file stays as it is before it is taken: a whole one, and one that seems torn or is empty."""
 
-_SCANS = 2
 _ZIP, _ZIP_END, _ZIP_64_PLACE = b"PK\x03\x04", b"PK\x05\x06", b"PK\x06\x07"
 _ZIP_END_SIZE, _LONGEST_COMMENT = 22, 65_535
 _ZIP_64_SIZE = 56 + 20
@@ -38,11 +37,10 @@ def identity(status: os.stat_result) -> Identity:
 
 @dataclass(frozen=True, kw_only=True)
 class _Seen:
-    """A file as it was seen: so often the same, since when [s], and whether it is whole, None where not yet known."""
+    """A file as it was seen: since when the same [s], and whether it is whole, None where not yet known."""
 
     identity: Identity
     since: float
-    scans: int = 1
     whole: bool | None = None
 
 
@@ -59,16 +57,13 @@ class Settling:
         """
         seen = self._seen.get(path)
         if seen is None or seen.identity != identity(status):
-            seen = _Seen(identity=identity(status), since=now)
-        else:
-            seen = replace(seen, scans=seen.scans + 1)
-        self._seen[path] = seen
+            seen = self._seen[path] = _Seen(identity=identity(status), since=now)
+        # At the first look these are none: what is taken was seen twice.
         unchanged = now - seen.since
-        if seen.scans < _SCANS or unchanged < _SETTLED:
+        if unchanged < _SETTLED:
             return None
         if seen.whole is None:
-            seen = replace(seen, whole=is_whole(path))
-            self._seen[path] = seen
+            seen = self._seen[path] = replace(seen, whole=is_whole(path))
         return seen.identity if seen.whole or unchanged >= _UNCHANGED else None
 
     def since(self, path: Path) -> float:
