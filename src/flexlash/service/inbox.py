@@ -189,10 +189,12 @@ class Inbox:
         try:
             one.path.rename(claimed)
         except OSError as fault:
-            folder.rmdir()
-            if isinstance(fault, FileNotFoundError):
-                return None
-            raise
+            # A network drive may say so of what it has done, when its answer was lost.
+            if not os.path.lexists(claimed):
+                folder.rmdir()
+                if isinstance(fault, FileNotFoundError):
+                    return None
+                raise
         self._unaccepted.add(folder)
         sync_folder(folder)
         sync_folder(self._places.inbox)

@@ -200,8 +200,8 @@ def _in_use(what: str, folder: Path) -> PlacesError:
 
 def _try_out(places: Places) -> None:
     """Move a probe the way an original goes, so that a folder without permission is told before anything is taken."""
-    remove_leftovers(places.inbox)
-    remove_leftovers(places.out)
+    for folder in (places.inbox, *_inside(places.out)):
+        remove_leftovers(folder)
     at = places.inbox
     doing = "made"
     try:

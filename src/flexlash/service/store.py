@@ -199,9 +199,9 @@ class Store(Outbox):
         with self._database.transaction():
             done = self._database.run(
                 "UPDATE submission SET state = ?, exit_code = ?, words = ?, reason = ?, counts = ?, is_repeatable = ?,"
-                " ended_at = ?, rows_done = rows, alone = 0, server_ends = 0 WHERE id = ? AND state = 'working'",
+                " ended_at = ?, rows_done = ?, rows = ?, alone = 0, server_ends = 0 WHERE id = ? AND state = 'working'",
                 ending.state, ending.exit_code, ending.words, ending.reason, json.dumps(dict(ending.counts)),
-                ending.is_repeatable, self._clock(), submission,
+                ending.is_repeatable, self._clock(), *(ending.counts.get("rows", 0),) * 2, submission,
             )  # fmt: skip
             if not done:
                 return False

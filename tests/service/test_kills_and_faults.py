@@ -1,0 +1,126 @@
+"""R1 to R3: whatever step of the service a kill or a fault meets, what was handed in ends once, whole and the same."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import pickle
+import random
+import subprocess
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from filled import SOUND, filled
+from service_steps import scene_of
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not hasattr(os, "fork"), reason="a kill at each step needs processes that are forked"),
+]
+
+_PROGRAM = Path(__file__).resolve().parents[1] / "support" / "service_steps.py"
+_SOURCE = Path(__file__).resolve().parents[2] / "src"
+_FAULTS = ("ENOSPC", "EIO", "EACCES", "late")
+
+
+def _table(row):
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(row))
+    writer.writeheader()
+    writer.writerow(row)
+    return text.getvalue().encode()
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    """Return three submissions for INBOX, one of them good, one partly, one not, and the same one twice by page."""
+    wrong = SOUND | {"variant": "B", "torque_Nm": -5}
+    path = tmp_path_factory.mktemp("scene") / "scene.pickle"
+    path.write_bytes(
+        pickle.dumps(
+            scene_of(
+                {"good.csv": _table(SOUND), "partly.xlsx": filled([SOUND, wrong]), "broken.csv": b"no,table\n1,2\n"},
+                {f"{number:032x}": ("page.csv", _table(SOUND)) for number in (1, 2)},
+            )
+        )
+    )
+    return path
+
+
+@contextmanager
+def _judge(scene):
+    """Give the durable steps of an undisturbed run, and a function that says what is wrong after points."""
+    program = subprocess.Popen(
+        [sys.executable, str(_PROGRAM), str(scene)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join((str(_SOURCE), str(_PROGRAM.parent)))},
+    )  # fmt: skip
+
+    def wrong(points):
+        found = {}
+        for point in points:
+            program.stdin.write(f"{json.dumps(point)}\n")
+            program.stdin.flush()
+            if said := json.loads(program.stdout.readline()):
+                found[json.dumps(point)] = said
+        return found
+
+    with program:
+        try:
+            yield json.loads(program.stdout.readline()), wrong
+        finally:
+            program.stdin.close()
+
+
+def _kills(steps, every):
+    """Return kills before and after every so manieth step, and half way through what is written."""
+    chosen = range(1, len(steps) + 1, every)
+    whole = [{"steps": [step], "how": how} for step in chosen for how in ("before", "after")]
+    return whole + [{"steps": [step], "how": "half"} for step in chosen if steps[step - 1] == "write"]
+
+
+def _pairs(steps, number):
+    """Return kills at one step and, in the run that finishes what was left, at another."""
+    drawn = random.Random(0)  # noqa: S311
+    places = range(1, len(steps) + 1)
+    return [{"steps": drawn.choices(places, k=2), "how": drawn.choice(("before", "after"))} for _ in range(number)]
+
+
+def _faulty(steps, every, lasting):
+    chosen = range(1, len(steps) + 1, every)
+    return [{"steps": [step], "how": how, "lasting": last} for step in chosen for how in _FAULTS for last in lasting]
+
+
+def test_r1_r2_a_kill_at_some_steps_loses_doubles_and_alters_nothing(scene):
+    """Killed at a sample of its steps and finished by another run, the service comes to the same bytes and states.
+
+    Right after the kill each original is in one place, and each file in OUT is whole.
+    """
+    with _judge(scene) as (steps, wrong):
+        assert len(steps) > 300
+        assert wrong(_kills(steps, 17)) == {}
+        assert wrong(_pairs(steps, 10)) == {}
+
+
+def test_r3_faults_of_this_machine_at_some_steps_lose_nothing(scene):
+    """A full disk, a failing one, missing permission, and a fault after the deed: once or for a while, it goes on."""
+    with _judge(scene) as (steps, wrong):
+        assert wrong(_faulty(steps, 61, (1, 20))) == {}
+
+
+@pytest.mark.long
+def test_r1_r2_a_kill_at_every_step_loses_doubles_and_alters_nothing(scene):
+    """The same at every step, and at a thousand pairs of steps."""
+    with _judge(scene) as (steps, wrong):
+        assert wrong(_kills(steps, 1)) == {}
+        assert wrong(_pairs(steps, 1_000)) == {}
+
+
+@pytest.mark.long
+def test_r3_faults_of_this_machine_at_every_step_lose_nothing(scene):
+    """The same at every step, for one step and for thirty."""
+    with _judge(scene) as (steps, wrong):
+        assert wrong(_faulty(steps, 1, (1, 30))) == {}

@@ -1,0 +1,429 @@
+"""A whole service, taken step by step, that is killed or gets a fault at any one of its durable steps.
+
+Run as a program it reads points, one a line, from standard input, and answers each with one line: what was wrong
+afterwards, an empty list where nothing was. Each point is a process of its own, forked from one that has loaded
+everything; what it was killed over is finished by another. Store, drop folder and dispatcher are those of the service;
+the workers are played by answers that real ones gave before.
+"""
+
+from __future__ import annotations
+
+import errno
+import functools
+import hashlib
+import io
+import json
+import os
+import pickle
+import re
+import shutil
+import signal
+import sqlite3
+import sys
+import tempfile
+import traceback
+from concurrent.futures import Future
+from contextlib import ExitStack, nullcontext, suppress
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+from flexlash.analysis.options import Options
+from flexlash.batch.answer import Task
+from flexlash.service.dispatcher import Dispatcher
+from flexlash.service.drop_folder import DropFolder
+from flexlash.service.log import Log
+from flexlash.service.places import Places, PlacesError
+from flexlash.service.records import HandedIn
+from flexlash.service.repeated import ENVIRONMENT_FAULTS
+from flexlash.service.store import Store
+from flexlash.service.tasks import run_task, service_options
+
+__all__ = ["Point", "Replayed", "Scene", "scene_of"]
+
+KILLED = -signal.SIGKILL
+_ROUNDS = 80
+_FAULTS = {"ENOSPC": errno.ENOSPC, "EIO": errno.EIO, "EACCES": errno.EACCES, "late": errno.EIO}
+_NEEDS_SPACE = {"open", "write", "fsync", "mkdir", "link", "COMMIT", "BEGIN IMMEDIATE"}
+_ID = re.compile(r"[0-9a-f]{32}(?![0-9a-f])")
+_FREE_STEPS = 10**9
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """What is handed in: files for INBOX, files for the page by their ID, and the answers that workers gave to them.
+
+    An answer stands by name and digest of a submission: what was told meanwhile, and the answer.
+    """
+
+    inbox: dict[str, bytes]
+    page: dict[str, tuple[str, bytes]]
+    answers: dict[tuple[str, str], tuple[list[bytes], bytes]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Point:
+    """Steps, counted from one, and what happens there; each further step belongs to the run after the one before.
+
+    `how` is `before`, `after` or `half` (a kill before or after the step, or when half is written), or a fault, which
+    goes on for `lasting` steps; `late` is one that is told although the step was taken, as network drives do.
+    """
+
+    steps: tuple[int, ...] = ()
+    how: str = "before"
+    lasting: int = 1
+
+
+def scene_of(inbox, page):
+    """Return a scene, for which workers answer to every submission."""
+    from flexlash.batch.local_executor import local_executor
+    from flexlash.batch.side_by_side import computed_apart
+
+    answers, options = {}, service_options(Options())
+    with local_executor(2) as executor:
+        for name, data in {*inbox.items(), *page.values()}:
+            told = []
+            task = run_task(name, data, options).as_bytes()
+            answers[name, hashlib.sha256(data).hexdigest()] = (told, executor.submit(computed_apart, task, told.append))
+        answers = {key: (told, answer.result()) for key, (told, answer) in answers.items()}
+    return Scene(inbox=inbox, page=page, answers=answers)
+
+
+class Replayed:
+    """An executor that gives the answers that real workers gave before."""
+
+    workers = 1
+
+    def __init__(self, answers) -> None:
+        self._answers = answers
+
+    def submit(self, work, data, told=None):
+        """Return the answer to a task, having told what was told."""
+        del work
+        source, future = Task.of(data).source, Future()
+        messages, answer = self._answers[source.name, hashlib.sha256(source.data).hexdigest()]
+        for message in messages if told else ():
+            told(message)
+        future.set_result(answer)
+        return future
+
+
+class Steps:
+    """The durable steps of this process: each is counted, and the one that was chosen goes wrong."""
+
+    def __init__(self, step: int = _FREE_STEPS, how: str = "before", lasting: int = 1) -> None:
+        self.done = 0
+        self.names = []
+        self._step, self._how, self._lasting = step, how, lasting
+
+    def take(self, name, step, *arguments, half=None, fault=OSError, **named):
+        """Take a step, or what has been chosen instead."""
+        self.done += 1
+        self.names.append(name)
+        if self._how in _FAULTS:
+            result = step(*arguments, **named) if self._how == "late" else None
+            self._fail(name, fault)
+            return result if self._how == "late" else step(*arguments, **named)
+        is_chosen = self.done == self._step
+        if is_chosen and self._how == "before":
+            os.kill(os.getpid(), signal.SIGKILL)
+        if is_chosen and self._how == "half" and half:
+            half()
+            os.kill(os.getpid(), signal.SIGKILL)
+        result = step(*arguments, **named)
+        if is_chosen:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return result
+
+    def _fail(self, name, fault):
+        is_chosen = self._step <= self.done < self._step + self._lasting
+        if self._how == "late" and fault is not OSError:
+            # A transaction of which SQLite says that it failed does not hold.
+            return
+        if is_chosen and (self._how != "ENOSPC" or name in _NEEDS_SPACE):
+            number = _FAULTS[self._how]
+            if fault is OSError:
+                raise OSError(number, os.strerror(number))
+            raise fault({"ENOSPC": "database or disk is full"}.get(self._how, "disk I/O error"))
+
+    def watch(self):
+        """Have every durable step of this process counted."""
+        for name in ("fsync", "rename", "replace", "link", "unlink", "remove", "mkdir", "rmdir"):
+            setattr(os, name, functools.partial(self.take, name, getattr(os, name)))
+        real_open, real_fdopen, real_connect = os.open, os.fdopen, sqlite3.connect
+
+        def opened(path, flags, *arguments, **named):
+            if flags & (os.O_CREAT | os.O_WRONLY | os.O_RDWR):
+                return self.take("open", real_open, path, flags, *arguments, **named)
+            return real_open(path, flags, *arguments, **named)
+
+        def connected(*arguments, **named):
+            return real_connect(*arguments, **named, factory=functools.partial(_Connection, self))
+
+        os.open = opened
+        os.fdopen = lambda handle, *arguments, **named: _File(self, real_fdopen(handle, *arguments, **named))
+        sqlite3.connect = connected
+
+
+class _File:
+    """A file whose writes are counted."""
+
+    def __init__(self, steps, file) -> None:
+        self._steps, self._file = steps, file
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._file.close()
+
+    def __getattr__(self, name):
+        return getattr(self._file, name)
+
+    def write(self, data):
+        """Write, or write half of it."""
+
+        def half():
+            self._file.write(data[: len(data) // 2])
+            self._file.flush()
+
+        return self._steps.take("write", self._file.write, data, half=half)
+
+
+class _Connection(sqlite3.Connection):
+    """A database whose transactions are counted where they begin and where they are committed."""
+
+    def __init__(self, steps, *arguments, **named) -> None:
+        self._steps = steps
+        super().__init__(*arguments, **named)
+
+    def execute(self, query, *values):
+        """Carry out a statement."""
+        if query in {"COMMIT", "BEGIN IMMEDIATE"}:
+            return self._steps.take(query, super().execute, query, fault=sqlite3.OperationalError)
+        return super().execute(query, *values)
+
+
+class Service:
+    """Store, drop folder and dispatcher on one folder, taken step by step until all is done."""
+
+    def __init__(self, root, scene, restarts, said) -> None:
+        self._scene, self._now = scene, 1_000_000.0 * (restarts + 1)
+        self._root, self._log = root, Log(stream=said)
+
+    def run(self):
+        """Go on until all is done; return whether it is."""
+        with ExitStack() as stack:
+            store = stack.enter_context(Store(self._root / "store", serving=True, clock=lambda: 1.7e9 + self._now))
+            places = stack.enter_context(Places.of(self._root / "in", self._root / "out", self._root / "store"))
+            opened = lambda: nullcontext(Replayed(self._scene.answers))  # noqa: E731
+            dispatcher = Dispatcher(store, opened, Options(), self._log)
+            folder = DropFolder(store, places, "options", self._log, clock=lambda: self._now)
+            for _ in range(_ROUNDS):
+                self._now += 10.0
+                for step in (self._hand_in, lambda _: folder.step(), lambda _: dispatcher._step(), self._retry,
+                             lambda each: each.sweep(0.0)):  # fmt: skip
+                    try:
+                        step(store)
+                    except ENVIRONMENT_FAULTS as fault:
+                        self._log.say("fault", why=fault)
+                        self._now += 300.0
+                if self._is_done(store) and folder.is_idle:
+                    return True
+        return False
+
+    def _hand_in(self, store):
+        """Send what the page sends, again and again until it is there; each once the one before has ended."""
+        for id_, (name, data) in self._scene.page.items():
+            found = store.accept(HandedIn(id=id_, name=name, options="options", door="page"), data)
+            if not found.has_ended:
+                return
+
+    def _retry(self, store):
+        """Have what came through the folder computed anew, once it was delivered."""
+        for found in store.history():
+            if found.door == "folder" and found.has_ended and not _was_retried(store, found.id):
+                delivered = all(one.submission != found.id for one in store.undelivered())
+                if delivered:
+                    store.retry(found.id)
+
+    def _is_done(self, store):
+        found = store.history()
+        wanted = len(self._scene.inbox) + len(self._scene.page)
+        return len(found) == wanted and all(
+            one.has_ended and (one.door == "page" or _was_retried(store, one.id)) for one in found
+        )
+
+
+def _was_retried(store, id_):
+    return any(event["kind"] == "retried" for event in store.events(id_))
+
+
+# What is left, and what is wrong with it
+
+
+def _digest(data):
+    """Return the digest of bytes in which IDs, which are drawn by chance, do not count."""
+    with suppress(UnicodeDecodeError):
+        data = _ID.sub("ID", data.decode()).encode()
+    return hashlib.sha256(data).hexdigest()
+
+
+def _tree(folder):
+    """Return every file below a folder by its place, in which IDs do not count."""
+    found = []
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and path.name != "service.lock" and not path.name.startswith(".filelock-"):
+            place = "/".join("ID" if _ID.fullmatch(part) else part for part in path.relative_to(folder).parts)
+            found.append((place, _digest(path.read_bytes())))
+    return sorted(found)
+
+
+def _held(root):
+    """Return what the store holds when all is done, and what is wrong with that."""
+    wrong, held = [], []
+    with Store(root / "store", serving=True) as store:
+        for one in store.history(most=1000):
+            files = store.files(one.id)
+            wrong += [f"{one.name}: {file.role} is not whole" for file in files.values()
+                      if not store.blobs.is_whole(file.sha256)]  # fmt: skip
+            digests = {role: _digest(store.blobs.path(file.sha256).read_bytes()) for role, file in files.items()}
+            facts = asdict(one)
+            kept = {key: facts[key] for key in ("name", "sha256", "door", "state", "exit_code", "words", "counts",
+                                                "tries", "alone", "rows", "rows_done")}  # fmt: skip
+            held.append(json.dumps(kept | {"files": digests, "again": bool(one.same_as)}, sort_keys=True))
+        named = {sha256 for sha256, _ in store.named()}
+        store.sweep(0.0)
+        kept = {path.name for path in (root / "store" / "blobs").glob("??/*")}
+        if kept != named:
+            wrong.append(f"{len(kept - named)} blobs that nothing names, {len(named - kept)} missing")
+        if left := list((root / "store" / "blobs" / "incoming").iterdir()):
+            wrong.append(f"left over: {left}")
+        if store.undelivered():
+            wrong.append("something is not delivered")
+    return sorted(held), wrong
+
+
+def _after_kill(root, scene, whole):
+    """Return what is wrong at once after a kill: an original that is lost or doubled, an output that is not whole."""
+    wrong = []
+    places = [*(root / "in").iterdir(), *(root / "out" / "work").glob("*/*/*"), *(root / "out" / "done").glob("*/*"),
+              *(root / "out" / "rejected").glob("*/*")]  # fmt: skip
+    found = sorted(hashlib.sha256(path.read_bytes()).hexdigest() for path in places if not path.name.startswith("."))
+    if found != sorted(hashlib.sha256(data).hexdigest() for data in scene.inbox.values()):
+        wrong.append(f"originals lost, doubled or altered: {[str(path) for path in places]}")
+    outputs = [one for one in _tree(root / "out") if "/" not in one[0] and not one[0].startswith(".flexlash-")]
+    wrong += [f"{one[0]} is not whole" for one in outputs if one not in whole]
+    return wrong
+
+
+def _in_child(work):
+    """Do something in a process of its own; return how that ended and what it wrote."""
+    read, write = os.pipe()
+    child = os.fork()
+    if not child:
+        os.close(read)
+        code = 1
+        try:
+            told = json.dumps(work())
+            os.write(write, told.encode())
+            code = 0
+        except BaseException:  # noqa: BLE001
+            os.write(write, traceback.format_exc()[-3000:].encode())
+        os._exit(code)
+    os.close(write)
+    with open(read, "rb") as pipe:  # noqa: PTH123
+        told = pipe.read().decode()
+    _, status = os.waitpid(child, 0)
+    return os.waitstatus_to_exitcode(status), told
+
+
+def _run(root, scene, restarts, **chosen):
+    """Run the service in a process of its own; return how it ended, its steps, and whether all was done."""
+
+    def work():
+        steps, said = Steps(**chosen), io.StringIO()
+        steps.watch()
+        try:
+            done = Service(root, scene, restarts, said).run()
+        except (*ENVIRONMENT_FAULTS, PlacesError) as fault:
+            # It could not start, and says so.
+            done = False
+            said.write(f"could not start: {fault}\n")
+        return {"done": done, "steps": steps.names, "said": said.getvalue()}
+
+    return _in_child(work)
+
+
+class Judge:
+    """An undisturbed run, and what every other one must come to."""
+
+    def __init__(self, scene, folder) -> None:
+        self._scene, self._folder = scene, folder
+        self._root = folder / "run"
+        self._begin()
+        code, told = _run(self._root, scene, 0)
+        if code or not json.loads(told)["done"]:
+            raise RuntimeError(f"the undisturbed run ended with {code}: {told}")
+        self.steps = json.loads(told)["steps"]
+        self._tree = _tree(self._root / "out")
+        self._held, wrong = _held(self._root)
+        if wrong:
+            raise RuntimeError(f"the undisturbed run: {wrong}")
+
+    def _begin(self):
+        shutil.rmtree(self._root, ignore_errors=True)
+        (self._root / "in").mkdir(parents=True)
+        for name, data in self._scene.inbox.items():
+            (self._root / "in" / name).write_bytes(data)
+
+    def wrong(self, point):
+        """Return what is wrong once a run that was killed, or had faults, was finished; how many steps it took."""
+        self._begin()
+        wrong, count, restarts = [], 0, 0
+        for step in point.steps:
+            code, told = _run(self._root, self._scene, restarts, step=step, how=point.how, lasting=point.lasting)
+            restarts += 1
+            count += 1
+            if code == KILLED:
+                wrong += _after_kill(self._root, self._scene, self._tree)
+                continue
+            if code:
+                return [f"ended with {code}: {told}"]
+            said = json.loads(told)
+            if "internal error" in said["said"] or not (said["done"] or "could not start" in said["said"]):
+                wrong.append(said["said"][-2000:])
+        code, told = _run(self._root, self._scene, restarts)
+        if code or not json.loads(told)["done"]:
+            return [*wrong, f"not finished: {code} {told[-3000:]}"]
+        held, more = _in_child_held(self._root)
+        wrong += more
+        wrong += [f"held otherwise: {one}" for one in {*held} ^ {*self._held}]
+        if len(held) != len(self._held):
+            wrong.append(f"{len(held)} submissions instead of {len(self._held)}")
+        tree = _tree(self._root / "out")
+        if tree != self._tree:
+            wrong.append(f"OUT differs: {sorted({*tree} ^ {*self._tree})}")
+        return wrong
+
+
+def _in_child_held(root):
+    code, told = _in_child(lambda: _held(root))
+    return json.loads(told) if not code else ([], [told])
+
+
+def main():
+    """Answer points, one a line."""
+    scene = pickle.loads(Path(sys.argv[1]).read_bytes())  # noqa: S301
+    memory = Path("/dev/shm")  # noqa: S108
+    where = memory if os.access(memory, os.W_OK) else None
+    with tempfile.TemporaryDirectory(dir=where) as folder:
+        judge = Judge(scene, Path(folder))
+        print(json.dumps(judge.steps), flush=True)  # noqa: T201
+        for line in sys.stdin:
+            given = json.loads(line)
+            point = replace(Point(), **given | {"steps": tuple(given["steps"])})
+            print(json.dumps(judge.wrong(point)), flush=True)  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()
