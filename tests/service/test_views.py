@@ -80,7 +80,9 @@ def pages(text):
         "refused": render("refused", title=text, sentence=text, status=410),
         "checked": render("checked", view=checked_view(text, facts)),
         "difference": render("difference", submission=done, previous=done, when=Moment.of(NOW, NOW),
-                             told={"lines": [text]}),
+                             told={"lines": [text] * 3, "refused": None}),
+        "no comparison": render("difference", submission=done, previous=done, when=Moment.of(NOW, NOW),
+                                told={"lines": [text], "refused": {"code": text, "message": text, "fix": text}}),
         "no difference": render("difference", submission=done, previous=None, when=None, told=None),
         "variant": render("variant", view=variant_view(done, facts, 1)),
         "empty": render("submission", view=submission_view(submission(), NOW)),
@@ -145,6 +147,15 @@ def test_progress_says_rows_speed_and_time_left():
     assert "Checked: 999,998 rows ready, 2 rows with errors. Next in the queue: 3 submissions." in page.text
     assert {"max": "1000000", "value": "412000", "aria-label": "Rows computed"} in page.all("progress")
     assert "41 % · cup.xlsx" in page.text
+
+
+def test_no_time_left_is_told_before_it_can_be_known():
+    """After a second, or with one row of thousands, nobody can say how long the rest takes."""
+    for past, done in ((1, 500), (9, 1), (9, 0), (9, 1000)):
+        at_work = submission(state="working", began_at=NOW - past, rows=1000, rows_done=done)
+        assert "left" not in HtmlPage(render("submission", view=submission_view(at_work, NOW))).text, (past, done)
+    at_work = submission(state="working", began_at=NOW - 9, rows=1000, rows_done=20)
+    assert "about 7 minutes left" in HtmlPage(render("submission", view=submission_view(at_work, NOW))).text
 
 
 def test_the_queue_and_a_fault_of_the_machine_are_told():

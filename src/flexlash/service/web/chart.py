@@ -31,7 +31,7 @@ __all__ = ["UNIT", "Cause", "Spread", "causes_chart", "density_chart", "shares_c
 UNIT = "′"
 """The sign of an arc minute, in which all angles are."""
 
-_TOP, _ROW, _BAR, _BELOW = 26.0, 38.0, 11.0, 26.0
+_TOP, _NO_LIMIT, _ROW, _BAR, _BELOW = 26.0, 4.0, 38.0, 11.0, 26.0
 _LEAST = 0.5
 """Per cent of the width below which no bar can be seen."""
 
@@ -55,26 +55,39 @@ class Spread:
     verdict: str = ""
 
 
-def spread_chart(name: str, spreads: Sequence[Spread], unit: str, of: int = 0) -> Markup:
+def spread_chart(
+    name: str, spreads: Sequence[Spread], unit: str, *, of: int = 0, beside: Sequence[Spread] = ()
+) -> Markup:
     """Return the chart of all variants, one below the other: a bar from P2.5 to P97.5, the median, the limit.
 
-    `of` is how many variants there are, where not all of them are drawn.
+    `of` is how many variants there are, where not all of them are drawn. The scale has room for those `beside`, which
+    another chart shows.
     """
-    drawn = [one for one in spreads if all(map(finite, (one.low, one.median, one.high)))]
+    drawn = _finite(spreads)
     limits = sorted({one.limit for one in drawn if finite(one.limit)})
-    scale = Scale([value for one in drawn for value in (one.low, one.high)] + limits)
-    bottom = _TOP + _ROW * len(drawn)
+    scale = _scale([*drawn, *_finite(beside)])
+    top = _TOP if limits else _NO_LIMIT
+    bottom = top + _ROW * len(drawn)
     title = f"Backlash of {'the ' if of > len(drawn) else ''}{grouped(len(drawn))} variant{'s' * (len(drawn) != 1)}"
     title += f" that are worst, of {grouped(of)}" if of > len(drawn) else ""
     picture = Picture(name, title, _spread_words(drawn, limits, unit), bottom + _BELOW)
-    picture.grid(scale, _TOP, bottom, unit)
+    picture.grid(scale, top, bottom, unit)
     for index, one in enumerate(drawn):
-        _spread_row(picture, scale, one, _TOP + _ROW * index, shares_limit=len(limits) == 1)
+        _spread_row(picture, scale, one, top + _ROW * index, shares_limit=len(limits) == 1)
     if len(limits) == 1:
-        picture.limit(scale, limits[0], _TOP, bottom, f"limit {number(limits[0])}{unit}")
+        picture.limit(scale, limits[0], top, bottom, f"limit {number(limits[0])}{unit}")
     elif limits:
-        picture.text(0, _TOP - 8, "dashed: each variant's limit", colour=DARK_VERMILION)
+        picture.text(0, top - 8, "dashed: each variant's limit", colour=DARK_VERMILION)
     return picture.markup()
+
+
+def _finite(spreads: Sequence[Spread]) -> list[Spread]:
+    return [one for one in spreads if all(map(finite, (one.low, one.median, one.high)))]
+
+
+def _scale(spreads: Sequence[Spread]) -> Scale:
+    values = [value for one in spreads for value in (one.low, one.high)]
+    return Scale(values + [one.limit for one in spreads if finite(one.limit)])
 
 
 def _spread_row(picture: Picture, scale: Scale, one: Spread, top: float, *, shares_limit: bool) -> None:

@@ -24,8 +24,8 @@ __all__ = [
     "submission_view",
 ]
 
-_CARDS = 6
-"""Cards that are open; the others wait behind a line."""
+_CARDS, _DRAWN = 6, 20
+"""Cards that are open and variants that are drawn; the others wait behind a line."""
 
 Stage = Literal["waiting", "working", "done", "rejected"]
 
@@ -91,7 +91,8 @@ class SubmissionView:
     first_cards: Sequence[Card]
     more_cards: Sequence[Card]
     findings_first: bool
-    chart: Markup | None
+    charts: Sequence[Markup]
+    drawn_more: int
     downloads: Sequence[Download]
     events: Sequence[Event]
 
@@ -149,7 +150,8 @@ def submission_view(
         first_cards=cards[:_CARDS],
         more_cards=cards[_CARDS:],
         findings_first=partly,
-        chart=_spreads(facts),
+        charts=_charts(facts),
+        drawn_more=max(0, len(facts["chart"]["variants"]) - _DRAWN) if facts and facts["chart"] else 0,
         downloads=_downloads(submission, facts, files or {}, partly=partly),
         events=[Event(when=Moment.of(row["at"], now), words=_event(row)) for row in events],
     )
@@ -212,17 +214,23 @@ def _tiles(facts: PageFacts | None, *, partly: bool) -> Sequence[Tile]:
     return facts["tiles"] if partly or not facts["verdict_tiles"] else facts["verdict_tiles"]
 
 
-def _spreads(facts: PageFacts | None) -> Markup | None:
-    """Return the chart of all variants."""
+def _charts(facts: PageFacts | None) -> Sequence[Markup]:
+    """Return the chart of all variants: the first of them, and the others, on the same scale."""
     chart = facts["chart"] if facts else None
     if chart is None or not chart["variants"]:
-        return None
+        return []
     spreads = [
         Spread(variant=one["variant"], low=one["low"], median=one["median"], high=one["high"], nominal=one["nominal"],
                limit=one["limit"], verdict=one["verdict"])
         for one in chart["variants"]
     ]  # fmt: skip
-    return spread_chart("spread", spreads, UNIT, chart["of"])
+    first, others = spreads[:_DRAWN], spreads[_DRAWN:]
+    charts = [spread_chart("spread", first, UNIT, of=chart["of"], beside=others)]
+    return [*charts, spread_chart("spread-others", others, UNIT, beside=first)] if others else charts
+
+
+_SAID = {"report", "checked"}
+"""Files beside which one with the reasons, which the page says, is of no use."""
 
 
 def _downloads(
@@ -246,7 +254,7 @@ def _downloads(
         if partly or submission.state == "rejected"
         else ["report", "results", "findings", "checked", "mended", "reasons"]
     )
-    there = [role for role in order if role in files]
+    there = [role for role in order if role in files and (role != "reasons" or not _SAID & set(files))]
     return [
         Download(
             role=role,

@@ -18,7 +18,8 @@ DOORS = {"page": "page", "folder": "drop folder"}
 
 _MINUTE, _HOUR, _DAY = 60.0, 3600.0, 86_400.0
 _SETTLED = 2.0
-"""Seconds of computing before which no one can say how long the rest takes."""
+_TOLD = 0.02
+"""Seconds of computing, and part of the rows, before which no one can say how long the rest takes."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,7 +92,7 @@ def remaining(submission: StoredSubmission, now: float) -> tuple[float, str]:
     0 and an empty text where that cannot be said yet.
     """
     past = now - (submission.began_at or now)
-    if past < _SETTLED or not submission.rows_done or submission.rows_done >= submission.rows:
+    if past < _SETTLED or not _TOLD * submission.rows <= submission.rows_done < submission.rows:
         return 0.0, ""
     speed = submission.rows_done / past
     return speed, f"about {span((submission.rows - submission.rows_done) / speed)} left"
