@@ -24,7 +24,7 @@ from flexlash.batch.executor import ClusterError, Executor, Told, Work, WorkerLo
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.findings import shown
 
-__all__ = ["LOCAL", "ClusterError", "MissingDaskError", "dask_executor"]
+__all__ = ["LOCAL", "ClusterError", "MissingDaskError", "dask_executor", "require_address"]
 
 Result = TypeVar("Result")
 
@@ -161,6 +161,14 @@ class _DaskExecutor:
         raise WorkerLostError(message, losses=_TRIES)
 
 
+def require_address(address: str) -> None:
+    """Raise ValueError for what is no address of a scheduler, MissingDaskError where Dask is missing."""
+    if address != LOCAL and not _ADDRESS.fullmatch(address):
+        raise ValueError(f"{shown(address)} is no address of a Dask scheduler: local or tcp://HOST:PORT is required")
+    if find_spec("distributed") is None:
+        raise MissingDaskError
+
+
 @contextmanager
 def dask_executor(address: str, workers: int | None = None) -> Iterator[Executor]:
     """Give an executor of all workers of the Dask scheduler at an address such as `tcp://10.0.0.1:8786`.
@@ -169,10 +177,7 @@ def dask_executor(address: str, workers: int | None = None) -> Iterator[Executor
     when the executor is left. Raises ValueError for what is no address, MissingDaskError, and ClusterError when the
     scheduler or its workers do not answer.
     """
-    if address != LOCAL and not _ADDRESS.fullmatch(address):
-        raise ValueError(f"{shown(address)} is no address of a Dask scheduler: local or tcp://HOST:PORT is required")
-    if find_spec("distributed") is None:
-        raise MissingDaskError
+    require_address(address)
     import dask
 
     with dask.config.set(_QUIET), _loop() as loop:

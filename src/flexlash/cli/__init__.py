@@ -11,10 +11,12 @@ from flexlash.cli.check_command import check
 from flexlash.cli.diff_command import diff
 from flexlash.cli.reference_commands import explain, schema
 from flexlash.cli.run_command import run
+from flexlash.cli.serve_command import serve
 from flexlash.cli.status_command import retry, status
 from flexlash.cli.streams import lost_output, patient_streams
 from flexlash.cli.template_command import template
 from flexlash.cli.terminal import colour, complain, internal_error, named
+from flexlash.cli.watch_command import watch
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.file_faults import reason
 
@@ -39,10 +41,11 @@ def cli() -> None:
       flexlash run variants.xlsx -o out.csv  the results table alone
       flexlash run folder -o reports         all submissions of a folder
       flexlash diff old.xlsx new.xlsx        what changed between two reports or submissions
+      flexlash serve --open                  a page to hand templates in
     """  # noqa: D301
 
 
-for _command in (template, check, run, diff, schema, explain, status, retry):
+for _command in (template, check, run, diff, serve, watch, schema, explain, status, retry):
     cli.add_command(_command)
 
 

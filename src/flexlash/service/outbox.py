@@ -65,7 +65,8 @@ class Outbox(StoreQuestions):
         known = {(row["kind"], row["role"]) for row in planned}
         door = self._database.one("SELECT door FROM submission WHERE id = ?", submission)["door"]
         roles = self.files(submission)
-        leaves = [("file", role) for role in _DELIVERED if role in roles] + [("original", "")]
+        leaves = [("file", role) for role in _DELIVERED if role in roles and _leaves(roles[role])]
+        leaves.append(("original", ""))
         wanted = (leaves if door == "folder" else []) + ([("message", "")] if self._webhook else [])
         for kind, role in known - {*wanted}:
             self._database.run(
@@ -123,6 +124,11 @@ class Outbox(StoreQuestions):
         self._database.run(
             "INSERT INTO event (at, kind, submission, text) VALUES (?, ?, ?, ?)", self._clock(), kind, submission, text
         )
+
+
+def _leaves(file: StoredFile) -> bool:
+    """Whether a file goes to OUT: Results do where the report holds the worst of them alone and names their file."""
+    return file.role != "results" or file.name.endswith(".parquet")
 
 
 def _delivery(row: sqlite3.Row) -> Delivery:

@@ -12,10 +12,10 @@ from typing import Any
 
 from flexlash.analysis.options import Options
 from flexlash.batch.answer import Answer
-from flexlash.batch.compared import ComparisonTask, compare
 from flexlash.batch.ended import refused_answer
 from flexlash.batch.executor import ClusterError, Executor, Work, WorkerLostError
 from flexlash.batch.side_by_side import computed_apart
+from flexlash.batch.two_reports import ComparisonTask, compare
 from flexlash.reading.read import Source
 from flexlash.reading.refusal import Refusal
 from flexlash.service.blobs import Blobs

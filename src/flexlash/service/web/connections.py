@@ -8,7 +8,7 @@ from typing import Any
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from flexlash.service.web.headers import HEADERS
+from flexlash.service.web.answer_headers import HEADERS
 
 __all__ = ["MOST_CONNECTIONS", "SECONDS_BETWEEN_LOOKS", "Connection"]
 

@@ -11,7 +11,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from flexlash.schema.findings import readable
-from flexlash.service.web.headers import HEADERS
+from flexlash.service.web.answer_headers import HEADERS
 from flexlash.service.web.refusals import Refused, full_or_busy
 from flexlash.service.web.site import Site
 from flexlash.service.web.visitors import Visitors

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from flexlash.batch.compared import ComparisonTask, compare
+from flexlash.batch.two_reports import ComparisonTask, compare
 from flexlash.cli import cli
 from flexlash.pipeline import run
 from flexlash.reading.read import Source

@@ -1,0 +1,78 @@
+"""`flexlash serve`: the page, and the drop folder where one is given."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from flexlash.cli.service_options import of_service, require_extra, setup_of, started_or_why
+from flexlash.cli.terminal import named
+
+if TYPE_CHECKING:
+    from flexlash.service.running import Service
+    from flexlash.service.web.serving import PageServer
+
+__all__ = ["serve"]
+
+
+@click.command()
+@click.argument("inbox", type=click.Path(path_type=Path), required=False, metavar="[INBOX]")
+@of_service
+@click.option("--host", default="127.0.0.1", show_default=True, metavar="ADDRESS", help="Where the page is reached.")
+@click.option("--port", type=click.IntRange(0, 65535), default=8765, show_default=True, help="Its port; 0: any free.")
+@click.option("--open", "opens", is_flag=True, help="Open the page in your browser, and for nobody else.")
+@click.option(
+    "--token-file", type=click.Path(path_type=Path), metavar="FILE",
+    help="Only who knows the token in this file may open the page.",
+)  # fmt: skip
+@click.option(
+    "--behind-proxy", default="", metavar="HEADER",
+    help="A proxy on this machine lets people in and names them in this header, such as X-Remote-User.",
+)  # fmt: skip
+@click.option(
+    "--host-name", "host_names", multiple=True, metavar="NAME", help="A name by which browsers call the page."
+)
+def serve(inbox: Path | None, *, as_json: bool, **chosen: Any) -> None:
+    """Serve the page on which templates are handed in; with INBOX and --out the drop folder as well.
+
+    \b
+    Examples:
+      flexlash serve --open               the page, for you alone
+      flexlash serve inbox --out reports  the page, and a folder to save into
+    """  # noqa: D301
+    require_extra(page=True)
+    who = {name: chosen.pop(name) for name in ("host", "port", "opens", "token_file", "behind_proxy", "host_names")}
+    from flexlash.service.web.access import Access, AccessError
+
+    try:
+        access = Access.of(**who)
+    except AccessError as fault:
+        raise click.UsageError(str(fault)) from fault
+    setup = setup_of(inbox, **chosen)
+    from flexlash.service.log import Log
+    from flexlash.service.running import running
+    from flexlash.service.web.app import application
+    from flexlash.service.web.serving import PageServer
+
+    log = Log(as_json=as_json)
+    with started_or_why(), running(setup, log) as service:
+        app = application(
+            service.store, service.dispatcher, access, service.options_digest, service.started_at, log=log
+        )  # fmt: skip
+        server = PageServer(app, access, log)
+        _say(server, service, opens=bool(access.once))
+        server.run()
+
+
+def _say(server: PageServer, service: Service, *, opens: bool) -> None:
+    """Say where everything is, and open the page where that is wanted."""
+    click.echo(f"Page:  {server.opening}")
+    if service.places is not None:
+        click.echo(f"INBOX: {named(service.places.inbox.absolute())}\nOUT:   {named(service.places.out.absolute())}")
+    click.echo(f"Store: {named(service.store.folder)}\nCtrl-C ends the service.")
+    if opens:
+        from flexlash.service.web.serving import open_browser
+
+        open_browser(server.opening, service.store.folder)
