@@ -13,7 +13,6 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-import uvicorn
 
 from flexlash.analysis.options import Options
 from flexlash.batch.local_executor import local_executor
@@ -24,6 +23,7 @@ from flexlash.service.store import Store
 from flexlash.service.tasks import service_options
 from flexlash.service.web.access import Access
 from flexlash.service.web.app import application
+from flexlash.service.web.serving import PageServer
 
 __all__ = ["Served", "chromium", "needs_chromium", "served"]
 
@@ -50,22 +50,17 @@ def served(folder: Path, *, workers: int = 1, working: bool = True) -> Iterator[
     log, options = Log(stream=said), service_options(Options())
     with Store(folder, serving=True) as store:
         dispatcher = Dispatcher(store, partial(local_executor, workers, tries=1), options, log)
-        app = application(
-            store, dispatcher, Access.of(), options_digest(options, {}, marked=True), time.time(), log=log
-        )
-        server = uvicorn.Server(uvicorn.Config(app, port=0, lifespan="off", log_level="error", ws="none"))
+        access = Access.of(port=0)
+        app = application(store, dispatcher, access, options_digest(options, {}, marked=True), time.time(), log=log)
+        server = PageServer(app, access, log)
         thread = threading.Thread(target=server.run, daemon=True)
         thread.start()
-        while not server.started:
-            assert thread.is_alive(), "the server has ended"
-            time.sleep(0.01)
-        port = server.servers[0].sockets[0].getsockname()[1]
         if working:
             dispatcher.start()
         try:
-            yield Served(address=f"http://127.0.0.1:{port}", store=store, dispatcher=dispatcher, said=said)
+            yield Served(address=server.address.rstrip("/"), store=store, dispatcher=dispatcher, said=said)
         finally:
-            server.should_exit = True
+            server.stop()
             thread.join(10)
             dispatcher.stop(5)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ipaddress
+import os
 import re
 import secrets
 import socket
@@ -116,7 +117,7 @@ def _token(path: Path) -> str:
         status, text = path.stat(), path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as fault:
         raise AccessError(f"--token-file {path} cannot be read: {fault}") from None
-    if hasattr(socket, "AF_UNIX") and stat.S_IMODE(status.st_mode) & 0o077:
+    if os.name == "posix" and stat.S_IMODE(status.st_mode) & 0o077:
         raise AccessError(f"--token-file {path} can be read by others: chmod 600 {path}")
     token = text.strip()
     if len(token) < _SHORTEST_TOKEN or not token.isascii() or not token.isprintable() or " " in token:

@@ -82,7 +82,8 @@ class Forms:
             raise Refused(500, "This file could not be looked through: that is a fault of flexlash.")
         page = json.loads(answer.page)
         if wants_json(request):
-            return JSONResponse({"name": one.name, "told": dict(answer.told), "page": page})
+            told = {**answer.told, "exit_code": int(answer.exit_code), "outputs": [], "words": answer.words}
+            return JSONResponse({**told, "page": page})
         return await run_in_threadpool(self._site.page, request, "checked", views.checked(one.name, page))
 
     async def retry(self, request: Request) -> Response:
