@@ -114,3 +114,16 @@ def test_the_template_is_that_of_the_command(client, path, filling):
     began = time.monotonic()
     assert client.get(path).content == answer.content
     assert time.monotonic() - began < 0.5
+
+
+def test_what_changed_is_told(client):
+    """The second upload of a name says what changed against the first; one without a predecessor says so."""
+    first = _ended(client, _hand_in(client, "part.csv", _table(SOUND)))
+    assert client.get(f"{first['href']}/difference", headers=JSON).json()["previous"] is None
+    assert client.get(f"{first['href']}/difference").status_code == 200
+    second = _ended(client, _hand_in(client, "part.csv", _table({**SOUND, "torque_Nm": 900})))
+    told = client.get(f"{second['href']}/difference", headers=JSON).json()
+    assert told["previous"] == first["id"]
+    assert told["difference"]["differs"]
+    assert any("900" in line for line in told["difference"]["lines"])
+    assert "900" in client.get(f"{second['href']}/difference").text

@@ -129,7 +129,7 @@ class _Lines(logging.Handler):
 
 
 def _into(log: Log) -> None:
-    for name in ("uvicorn.error", "asyncio"):
+    for name in ("uvicorn.error", "asyncio", "python_multipart"):
         logger = logging.getLogger(name)
         logger.handlers, logger.propagate = [_Lines(log)], False
 

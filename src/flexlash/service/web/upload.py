@@ -9,6 +9,7 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from typing import BinaryIO
 
+from python_multipart.exceptions import FormParserError
 from starlette.datastructures import FormData, UploadFile
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
@@ -63,7 +64,7 @@ async def received(request: Request, fields: int) -> AsyncIterator[Received]:
         raise Refused(415)
     try:
         form = await request.form(max_files=2, max_fields=fields, max_part_size=_LONGEST_FIELD)
-    except HTTPException as fault:
+    except (HTTPException, FormParserError) as fault:
         raise _unusable(fault) from None
     try:
         yield _only_file(form)
@@ -71,11 +72,11 @@ async def received(request: Request, fields: int) -> AsyncIterator[Received]:
         await request.close()
 
 
-def _unusable(fault: HTTPException) -> HTTPException:
+def _unusable(fault: HTTPException | FormParserError) -> HTTPException:
     """Return why a form cannot be read, in our words."""
-    if fault.status_code != 400:  # noqa: PLR2004
+    if isinstance(fault, HTTPException) and fault.status_code != 400:  # noqa: PLR2004
         return fault
-    if "Too many files" in fault.detail:
+    if "Too many files" in str(fault):
         return UnusableForm(400, "Choose one file at a time: several came in.")
     return UnusableForm(400, "The form did not arrive as the page sends it: choose the file again.")
 
