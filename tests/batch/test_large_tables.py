@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import openpyxl
@@ -37,6 +38,8 @@ from flexlash.pipeline import check, run
 from flexlash.reading.limited_process import ProcessFaultError
 from flexlash.reading.products import Companions
 from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.report.page.page_facts import Found, page_facts
+from flexlash.report.report_data import report_data
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.stamps import stamp_at
 
@@ -643,3 +646,40 @@ def test_over_dask_with_a_worker_and_then_the_scheduler_killed(tmp_path):
     large_table(_table(path, output, resume=True), HereExecutor(), chunk_rows=6)
     assert output.read_bytes() == expected
     assert _names(folder) == ["gears.csv", "out-findings.csv", "out.csv"]
+
+
+def _page(path, output, *, ran=True):
+    """Return the answer to a table of which a page is wanted, and what that shows."""
+    answer, _ = large_table(replace(_table(path, output, ran=ran), pages=True), HereExecutor(), chunk_rows=7)
+    return answer, json.loads(answer.page)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ending", [".csv", ".parquet"])
+def test_the_page_of_chunks_is_that_of_one_piece(ending, tmp_path):
+    """Cards with their cells, counts, chart, table and pages of variants are equal, though nobody held all rows."""
+    path = _written(tmp_path / f"table{ending}", _rows())
+    answer, told = _page(path, tmp_path / "out.csv")
+    outcome = run(path, **FEW)
+    whole = page_facts(outcome, Found.of(outcome, ran=True, fixes=()), ran=True, data=report_data(outcome))
+    for key in ("name", "sha256", "counts", "state", "cells_to_fix", "verdict_tiles", "computed", "table", "findings"):
+        assert told[key] == whole[key], key
+    assert (told["chart"], told["lost_in_all"]) == (whole["chart"], whole["lost_in_all"])
+    for mine, theirs in zip(told["variants"], whole["variants"], strict=True):
+        assert {**mine, "findings": []} == {**theirs, "findings": []}
+    assert [card["code"] for card in told["cards"]] == [card["code"] for card in whole["cards"]]
+    for mine, theirs in zip(told["cards"], whole["cards"], strict=True):
+        assert mine == theirs, mine["code"]
+    assert sum(rule.cells for rule in answer.rules) == sum(card["cells"] or card["count"] for card in whole["cards"])
+
+
+@pytest.mark.slow
+def test_a_large_table_that_is_checked_has_a_page(tmp_path):
+    """Without a spread there are its findings, and nothing that was not asked for."""
+    path = _written(tmp_path / "table.csv", _rows())
+    answer, told = _page(path, None, ran=False)
+    outcome = check(path)
+    whole = page_facts(outcome, Found.of(outcome, ran=False, fixes=()), ran=False)
+    assert (told["ran"], told["variants"], told["table"]) == (False, [], [])
+    assert [card["count"] for card in told["cards"]] == [card["count"] for card in whole["cards"]]
+    assert told["state"] == whole["state"] == answer.words

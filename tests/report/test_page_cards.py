@@ -16,7 +16,7 @@ from flexlash.feedback.returned_files import fixed
 from flexlash.pipeline import Options, check
 from flexlash.reading.read import Source
 from flexlash.report.page.grids import GRID_ROWS
-from flexlash.report.page.page_facts import page_bytes, page_facts
+from flexlash.report.page.page_facts import Found, page_bytes, page_facts
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 FAULTY = DATA / "needs-fixing.xlsx"
@@ -24,7 +24,7 @@ FAULTY = DATA / "needs-fixing.xlsx"
 
 def _checked(path, **options):
     outcome = check(path, **options)
-    return outcome, page_facts(outcome, ran=False)
+    return outcome, page_facts(outcome, Found.of(outcome, ran=False), ran=False)
 
 
 def _sheets_of(path):
@@ -143,7 +143,7 @@ def test_what_is_drawn_as_mended_stands_in_the_mended_file(tmp_path):
     made = fixed(Source(name=FAULTY.name, data=FAULTY.read_bytes()), Options())
     (tmp_path / "mended.xlsx").write_bytes(made.data)
     cells = _sheets_of(tmp_path / "mended.xlsx")
-    facts = page_facts(outcome, ran=False, fixes=made.fixes)
+    facts = page_facts(outcome, Found.of(outcome, ran=False, fixes=made.fixes), ran=False)
     mended = [
         (grid["sheet"], row["row"], letters, text)
         for _, grid in _drawn(facts)
@@ -192,13 +192,13 @@ def test_many_findings_stay_few_on_the_page(table, sound):
     """Of a rule the first cells are drawn and the first findings told; the rest is counted, and its ranges named."""
     rows = [sound | {"variant": f"V{number}", "torque_Nm": "much"} for number in range(1000)]
     outcome = check(table(rows))
-    facts = page_facts(outcome, ran=False)
+    facts = page_facts(outcome, Found.of(outcome, ran=False), ran=False)
     (card,) = facts["cards"]
     assert (card["count"], card["cells"], card["more"]) == (1000, 1000, 980)
     assert card["places"] == "Variants!D2:D1001"
     assert len(card["grid"]["rows"]) == GRID_ROWS
     assert facts["tiles"][1]["number"] == "1000"
-    assert len(page_bytes(outcome, ran=False)) < 20_000
+    assert len(page_bytes(outcome, Found.of(outcome, ran=False), ran=False)) < 20_000
 
 
 HOSTILE = {
@@ -220,7 +220,7 @@ def test_hostile_texts_are_short_and_on_one_line(name, tmp_path):
     line = f'"{text}",20Cr2Ni4,"{text}",160,80,1.6,40,"{text}"\nV,"{text}",800,160,80,1.6,40,x\n'
     path.write_bytes(f"{header}\n{line}".encode("utf-8", "surrogatepass"))
     outcome = check(path)
-    data = page_bytes(outcome, ran=False)
+    data = page_bytes(outcome, Found.of(outcome, ran=False), ran=False)
     for told in _texts(json.loads(data.decode())):
         assert told.isprintable(), told
         assert len(told) <= 2000

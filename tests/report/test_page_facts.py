@@ -13,7 +13,7 @@ from report_entries import opened
 from flexlash.analysis.whole_batch import WholeBatch
 from flexlash.pipeline import check, run
 from flexlash.report.page.excel_texts import number_text
-from flexlash.report.page.page_facts import PAGED, TABLED, page_bytes, page_facts
+from flexlash.report.page.page_facts import PAGED, TABLED, Found, page_bytes, page_facts
 from flexlash.report.report_data import ROW, ranked, report_data
 from flexlash.report.wording.verdict import light
 from flexlash.schema.result_columns import RESULTS
@@ -23,7 +23,7 @@ from flexlash.schema.units import ARCMIN
 @pytest.fixture(scope="module")
 def facts(study):
     """Return the study's facts."""
-    return page_facts(study[0], ran=True, data=report_data(study[0]))
+    return page_facts(study[0], Found.of(study[0], ran=True), ran=True, data=report_data(study[0]))
 
 
 @pytest.fixture(scope="module")
@@ -158,7 +158,7 @@ def test_a_variant_says_what_the_summary_says_of_it(facts):
 def test_a_variant_without_a_limit_is_not_judged(table, sound):
     """It has a page with its percentiles; no verdict, no distance, no advice."""
     outcome = run(table([sound | {"backlash_limit_arcmin": ""}]), samples=64)
-    told = page_facts(outcome, ran=True, data=report_data(outcome))
+    told = page_facts(outcome, Found.of(outcome, ran=True), ran=True, data=report_data(outcome))
     (row,), (page,) = told["table"], told["variants"]
     assert {row[key] for key in ("verdict", "light", "limit", "distance", "over_limit")} == {""}
     assert [one["topic"] for one in page["sentences"]] == ["Verdict", "Why"]
@@ -174,7 +174,7 @@ def test_what_does_not_scatter_is_told_as_level(workbook, sound):
     """A row without any tolerance has a page without causes, and no number is missing or endless."""
     rows = [{"tolerance_class": "none", "dimension": "torque", "lower_deviation": 0, "upper_deviation": 0}]
     outcome = run(workbook([sound | {"tolerance_class": "none"}], tolerances=rows))
-    told = page_facts(outcome, ran=True, data=report_data(outcome))
+    told = page_facts(outcome, Found.of(outcome, ran=True), ran=True, data=report_data(outcome))
     json.dumps(told, allow_nan=False)
     (page,) = told["variants"]
     assert "Nothing scatters" in page["sentences"][1]["text"]
@@ -183,13 +183,15 @@ def test_what_does_not_scatter_is_told_as_level(workbook, sound):
 
 def test_the_same_outcome_gives_the_same_bytes(study):
     """Facts are the outcome's alone."""
-    data = report_data(study[0])
-    assert page_bytes(study[0], ran=True, data=data) == page_bytes(study[0], ran=True, data=report_data(study[0]))
+    first, second = (
+        page_bytes(study[0], Found.of(study[0], ran=True), ran=True, data=report_data(study[0])) for _ in range(2)
+    )
+    assert first == second
 
 
 def test_a_check_has_findings_alone(study):
     """Before rows are computed nothing is said of them."""
-    told = page_facts(study[0], ran=False)
+    told = page_facts(study[0], Found.of(study[0], ran=False), ran=False)
     assert (told["sentences"], told["chart"], told["table"], told["variants"]) == ([], None, [], [])
     assert told["verdict_tiles"] == []
     assert told["findings"] == len(study[0].findings) > 0
@@ -198,7 +200,7 @@ def test_a_check_has_findings_alone(study):
 def test_variants_that_were_not_computed_say_why(table, sound):
     """A lost row stands apart with its row number and the cells that are why."""
     outcome = run(table([sound, sound | {"variant": "bad", "torque_Nm": -1}]), samples=64)
-    told = page_facts(outcome, ran=True, data=report_data(outcome))
+    told = page_facts(outcome, Found.of(outcome, ran=True), ran=True, data=report_data(outcome))
     assert told["lost"] == [{"variant": "bad", "row": 3, "why": "E207 D3"}]
     assert told["lost_in_all"] == 1
     assert told["computed"] == 1
@@ -210,7 +212,7 @@ def test_many_variants_stay_within_bounds(table, sound):
     name = "a very long name of a variant that goes on and on and on, so that it is cut at its end: number"
     rows = [sound | {"variant": f"{name} {number}", "torque_Nm": 700 + number / 2} for number in range(700)]
     outcome = run(table(rows), samples=64)
-    data = page_bytes(outcome, ran=True, data=report_data(outcome))
+    data = page_bytes(outcome, Found.of(outcome, ran=True), ran=True, data=report_data(outcome))
     told = json.loads(data)
     assert (len(told["chart"]["variants"]), len(told["table"]), len(told["variants"])) == (60, TABLED, PAGED)
     assert (told["chart"]["of"], told["computed"]) == (700, 700)
@@ -230,7 +232,7 @@ def test_the_worst_rows_of_a_large_table_stand_for_all(study):
     whole = WholeBatch(
         rows=90_000, computed=80_000, results_file="r.csv", verdicts={"fails": 70_000}, rules={"E202": 9}
     )
-    told = page_facts(replace(outcome, whole=whole), ran=True, data=report_data(outcome))
+    told = page_facts(replace(outcome, whole=whole), Found.of(outcome, ran=True), ran=True, data=report_data(outcome))
     assert told["counts"]["rows"] == 90_000
     assert told["verdict_tiles"][0]["number"] == "70,000"
     assert told["chart"]["of"] == 80_000
@@ -241,7 +243,7 @@ def test_a_refused_file_says_why(tmp_path):
     path = tmp_path / "x.xlsx"
     path.write_bytes(b"PK\x03\x04 nothing")
     outcome = check(path)
-    told = page_facts(outcome, ran=True)
+    told = page_facts(outcome, Found.of(outcome, ran=True), ran=True)
     assert told["refused"]["code"] == outcome.findings[0].code
     assert told["refused"]["fix"]
     assert told["cards"] == []

@@ -24,11 +24,13 @@ __all__ = [
     "ChunkSummary",
     "ChunkTask",
     "FindingsTask",
+    "PageTask",
     "ReportTask",
     "WorstRow",
     "blank_row",
     "compute_chunk",
     "list_findings",
+    "page_of_large",
     "report_worst",
 ]
 
@@ -165,6 +167,25 @@ class FindingsTask(Travelling):
     macros: bool
 
 
+@dataclass(frozen=True, kw_only=True)
+class PageTask(Travelling):
+    """What a page shows of a large table: its findings by rule, and its worst rows, as tables of their own.
+
+    `cells` has the rows of the first findings of each rule, `worst` those that a report draws, None where no spread
+    was computed. `state` says in words how far the table can be computed.
+    """
+
+    cells: Source
+    worst: Source | None
+    options: Options
+    tables: Mapping[str, Source]
+    whole: WholeBatch
+    groups: tuple[FindingGroup, ...]
+    findings: tuple[Finding, ...]
+    cells_to_fix: int
+    state: str
+
+
 def compute_chunk(task: bytes) -> bytes:
     """Return what came of a chunk, both as bytes; the same bytes for the same bytes, and nothing is written."""
     from flexlash.batch.chunk_computing import answered
@@ -177,6 +198,13 @@ def report_worst(task: bytes) -> bytes:
     from flexlash.batch.chunk_computing import report_of_worst
 
     return report_of_worst(ReportTask.of(task))
+
+
+def page_of_large(task: bytes) -> bytes:
+    """Return what a page shows of a large table, as JSON."""
+    from flexlash.batch.chunk_computing import page_made
+
+    return page_made(PageTask.of(task))
 
 
 def list_findings(task: bytes) -> bytes:

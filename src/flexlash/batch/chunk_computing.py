@@ -21,12 +21,16 @@ from flexlash.batch.chunk import (
     ChunkSummary,
     ChunkTask,
     FindingsTask,
+    PageTask,
     ReportTask,
     WorstRow,
 )
 from flexlash.feedback.annotation.marked_copy import findings_workbook
 from flexlash.pipeline import computed
 from flexlash.report.findings_table import findings_rows
+from flexlash.report.page.grids import Sheets
+from flexlash.report.page.page_facts import Found, page_bytes
+from flexlash.report.report_data import report_data
 from flexlash.report.results_pieces import piece
 from flexlash.report.results_table import results_table
 from flexlash.report.workbook import report_bytes
@@ -35,7 +39,7 @@ from flexlash.schema.result_columns import result_columns
 from flexlash.validation.blocking_errors import waiting_rows, without_waiting
 from flexlash.validation.validated import Table
 
-__all__ = ["answered", "findings_listed", "report_of_worst"]
+__all__ = ["answered", "findings_listed", "page_made", "report_of_worst"]
 
 _NAMED = 3
 """Worst variants that are told by name."""
@@ -156,6 +160,23 @@ def _worst(results: pl.DataFrame, table: Table) -> tuple[WorstRow, ...]:
 def report_of_worst(task: ReportTask) -> bytes:
     """Return the report of the worst rows, which says that it stands for the whole table."""
     return report_bytes(replace(computed(task.source, task.options, task.tables), whole=task.whole))
+
+
+def page_made(task: PageTask) -> bytes:
+    """Return what a page shows of a large table, of which the worst rows are computed once more."""
+    cells = examined(task.cells, task.options, task.tables, numbers=False)
+    headers = cells.validated.header_rows if cells.validated else {}
+    told = Found(
+        findings=task.findings,
+        sheets=Sheets(submission=cells.submission, header_rows=headers),
+        cells_to_fix=task.cells_to_fix,
+        fixable=0,
+        state=task.state,
+        groups=task.groups,
+    )
+    outcome = outcome_of(cells) if task.worst is None else computed(task.worst, task.options, task.tables)
+    data = report_data(outcome) if task.worst is not None else None
+    return page_bytes(replace(outcome, whole=task.whole), told, ran=data is not None, data=data)
 
 
 def findings_listed(task: FindingsTask) -> bytes:

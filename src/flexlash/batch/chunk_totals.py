@@ -22,7 +22,7 @@ from flexlash.analysis.run_summary import (
     words_of_waiting,
 )
 from flexlash.analysis.whole_batch import DRAWN, WholeBatch
-from flexlash.batch.answer import Answer, WorstVariant
+from flexlash.batch.answer import Answer, RuleTotal, WorstVariant
 from flexlash.batch.chunk import FIRST_CELLS, FIRST_FINDINGS, ChunkSummary, WorstRow
 from flexlash.schema.findings import Finding
 from flexlash.schema.limit_verdict import VERDICTS, Verdict
@@ -147,10 +147,9 @@ class Totals:
     def answer(self, told: dict[str, Any], *, ran: bool, fail_over_limit: bool, findings_file: str) -> Answer:
         """Return what came of the whole table; `told` is what is known of the submission itself."""
         counts = self.counts
+        groups = self.groups
         listed = f"{findings_file or 'the table beside a marked copy (--annotate)'} lists them all"
         details = [*lines_of_limits(counts, self._named()), *self._note_lines()] if ran else []
-        cells, others = to_fix(chain(self.before, self.after))
-        fixes = words_of_fixes(cells + self._to_fix, others)
         return Answer(
             exit_code=exit_code_of(counts, fail_over_limit=fail_over_limit),
             told={
@@ -161,12 +160,38 @@ class Totals:
                 "findings": [found.as_dictionary() for found in self.findings],
                 "findings_by_rule": dict(sorted(self.rules.items())),
             },
-            finding_lines=tuple(group_lines(self._all_groups(), listed)),
-            words=words_of_state(counts, fixes, self._waiting_words(), ran=ran),
+            finding_lines=tuple(group_lines(groups, listed)),
+            words=self.state_words(ran=ran),
             details=tuple(details),
             by_rule=self.rules,
             worst=tuple(map(WorstVariant.of, self._named())),
+            rules=tuple(
+                RuleTotal(
+                    level=group.level,
+                    code=group.code,
+                    sheet=group.sheet,
+                    cells=group.cells or group.count,
+                    first=group.first[0].cell,
+                )
+                for group in groups
+            ),
         )
+
+    @property
+    def cells_to_fix(self) -> int:
+        """At how many cells there are errors."""
+        return to_fix(chain(self.before, self.after))[0] + self._to_fix
+
+    def state_words(self, *, ran: bool) -> str:
+        """Return how much of the table was computed, or is ready to be, and what is to mend."""
+        others = to_fix(chain(self.before, self.after))[1]
+        fixes = words_of_fixes(self.cells_to_fix, others)
+        return words_of_state(self.counts, fixes, self._waiting_words(), ran=ran)
+
+    @property
+    def first_rows(self) -> list[int]:
+        """The rows of the first findings of each rule."""
+        return sorted({found.row for group in self._groups.values() for found in group.first})
 
     def _named(self) -> list[dict[str, Any]]:
         return [dict(one.told) for one in self.worst[:_NAMED] if one.told is not None]
@@ -174,7 +199,8 @@ class Totals:
     def _note_lines(self) -> Iterator[str]:
         return self._notes.lines(cross_check=self._cross_checked, method=self.method)
 
-    def _all_groups(self) -> list[FindingGroup]:
+    @property
+    def groups(self) -> list[FindingGroup]:
         """Return all findings by rule and sheet, worst first."""
         groups = dict(self._groups)
         for group in by_rule(chain(self.before, self.after)):

@@ -13,7 +13,7 @@ from typing import BinaryIO
 from flexlash.analysis.options import Options
 from flexlash.analysis.outcome import Written
 from flexlash.analysis.run_summary import counted
-from flexlash.batch.chunk import FindingsTask, ReportTask, list_findings, report_worst
+from flexlash.batch.chunk import FindingsTask, PageTask, ReportTask, list_findings, page_of_large, report_worst
 from flexlash.batch.chunk_totals import Totals
 from flexlash.batch.executor import Executor
 from flexlash.outputs.plan import Output, WrittenFile
@@ -98,6 +98,24 @@ class LargeOutputs:
             return replace(files, copy=copy.write(self._listed(files, copy), "checked"))
         except OSError as fault:
             return replace(files, fault=fault)
+
+    def page(self, files: Files) -> bytes:
+        """Return what a page shows of the table, as JSON, with the names of the files that were written."""
+        totals = self.totals
+        names = [file.path.name if file else "" for file in (files.results or files.report, files.findings)]
+        worst = sorted(one.row for one in totals.worst) if self.ran and totals.computed else []
+        task = PageTask(
+            cells=self.source(totals.first_rows),
+            worst=self.source(worst) if worst else None,
+            options=self.options,
+            tables=self.tables,
+            whole=totals.whole(*names),
+            groups=tuple(totals.groups),
+            findings=tuple(totals.findings),
+            cells_to_fix=totals.cells_to_fix,
+            state=totals.state_words(ran=self.ran),
+        )
+        return self.executor.submit(page_of_large, task.as_bytes()).result()
 
     def _beside(self, what: str, ending: str) -> Output | None:
         """Return a place beside the report, or beside the workbook of findings, under its name."""

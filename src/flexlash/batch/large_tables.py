@@ -66,7 +66,8 @@ class LargeTable:
 
     `ran` says that its spread is computed, not merely that it is checked. `tables` stand beside it, by the sheet that
     each replaces, `companions` are the files given with it. `report` is where its Results go, `copy` where its findings
-    go as a workbook, None for each that is not wanted. With `resume` what a stopped run has done is taken up.
+    go as a workbook, None for each that is not wanted. With `resume` what a stopped run has done is taken up, with
+    `pages` the answer has what a page shows.
     """
 
     path: Path
@@ -77,6 +78,7 @@ class LargeTable:
     report: Output | None = None
     copy: Output | None = None
     resume: bool = False
+    pages: bool = False
 
 
 def large_table(
@@ -213,6 +215,7 @@ class _Run:
                     parts=self.kept, folder=folder, source=self._source, executor=self.executor,
                 )  # fmt: skip
                 files = outputs.written()
+                page = outputs.page(files) if self.table.pages else b""
             except _RefusedError as refused:
                 return _refused(self.table, self.survey.sha256, refused.chunk), Written()
         answer = totals.answer(
@@ -221,7 +224,7 @@ class _Run:
             fail_over_limit=self.table.options.fail_over_limit,
             findings_file=files.findings.path.name if files.findings else "",
         )
-        return answer, files.told()
+        return replace(answer, page=page), files.told()
 
     def _what(self) -> dict[str, object]:
         """Return what the parts in a working folder are parts of."""

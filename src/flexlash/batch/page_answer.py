@@ -12,7 +12,7 @@ from flexlash.batch.compute import answer_of, copy_of, file_of, report_of
 from flexlash.batch.telling import Telling
 from flexlash.feedback.returned_files import Fixed, certain_fixes, fixed_from
 from flexlash.pipeline import spread_out
-from flexlash.report.page.page_facts import page_bytes
+from flexlash.report.page.page_facts import Found, page_bytes
 from flexlash.report.report_data import report_data
 
 __all__ = ["answer_with_page"]
@@ -25,7 +25,7 @@ def answer_with_page(task: Task) -> Answer:
     checked = outcome_of(found)
     if found.refusal is None:
         rows = len(found.nominal.computed) if ran else 0
-        telling.checked(page_bytes(checked, ran=False), checked.counts, rows)
+        telling.checked(page_bytes(checked, Found.of(checked, ran=False), ran=False), checked.counts, rows)
     outcome = checked
     if ran and found.nominal.computed:
         outcome = spread_out(found, replace(task.options, progress=telling.advance))
@@ -38,7 +38,7 @@ def answer_with_page(task: Task) -> Answer:
         answer,
         results=file_of(outcome, ".csv") if data else None,
         mended=FileBytes(data=mended.data, role=mended.role) if mended else None,
-        page=page_bytes(outcome, ran=ran, data=data, fixes=fixes),
+        page=page_bytes(outcome, Found.of(outcome, ran=ran, fixes=fixes), ran=ran, data=data),
         rules=RuleTotal.all_of(outcome.findings),
     )
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from flexlash import __version__
 from flexlash.analysis.outcome import Outcome
-from flexlash.analysis.run_summary import points_words, state_words, to_fix
+from flexlash.analysis.run_summary import FindingGroup, points_words, state_words, to_fix
 from flexlash.feedback.fixing.fix import Fix
 from flexlash.feedback.returned_files import certain_fixes
 from flexlash.report.layout.links import row_of, rule_counts
@@ -23,7 +24,7 @@ from flexlash.report.wording.sentences import sentences
 from flexlash.report.wording.summary_facts import summary_facts
 from flexlash.schema.findings import CATALOGUE, Finding, shown
 
-__all__ = ["PAGED", "TABLED", "page_bytes", "page_facts"]
+__all__ = ["PAGED", "TABLED", "Found", "page_bytes", "page_facts"]
 
 PAGED, TABLED = 100, 500
 """Most variants with a page of their own, and most in the table; worst first."""
@@ -43,26 +44,47 @@ _KINDS: Mapping[str, str] = {
 """What the topics of the Summary are about; any other is a note."""
 
 
-def page_bytes(
-    outcome: Outcome, *, ran: bool, data: ReportData | None = None, fixes: Sequence[Fix] | None = None
-) -> bytes:
+@dataclass(frozen=True, kw_only=True)
+class Found:
+    """What was found in a submission, as its cards draw on it.
+
+    `groups` are all findings by rule, of which `findings` are the first; None where these are all. `state` says in
+    words how far it can be computed, `sheets` are those from which cells are drawn.
+    """
+
+    findings: Sequence[Finding]
+    sheets: Sheets
+    cells_to_fix: int
+    fixable: int
+    state: str
+    groups: Sequence[FindingGroup] | None = None
+
+    @classmethod
+    def of(cls, outcome: Outcome, *, ran: bool, fixes: Sequence[Fix] | None = None) -> Found:
+        """Return what was found in an outcome; `fixes` are those that were made, by default those that may be."""
+        made = certain_fixes(outcome.findings) if fixes is None else fixes
+        headers = outcome.validated.header_rows if outcome.validated else {}
+        return cls(
+            findings=outcome.findings,
+            sheets=Sheets(submission=outcome.submission, header_rows=headers, fixes=made),
+            cells_to_fix=to_fix(outcome.findings)[0],
+            fixable=len({fix.place for fix in made}),
+            state=state_words(outcome, ran=ran),
+        )
+
+
+def page_bytes(outcome: Outcome, found: Found, *, ran: bool, data: ReportData | None = None) -> bytes:
     """Return `page_facts` as JSON; the same bytes for the same outcome."""
-    facts = page_facts(outcome, ran=ran, data=data, fixes=fixes)
+    facts = page_facts(outcome, found, ran=ran, data=data)
     return json.dumps(facts, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
 
 
-def page_facts(
-    outcome: Outcome, *, ran: bool, data: ReportData | None = None, fixes: Sequence[Fix] | None = None
-) -> PageFacts:
-    """Return what a page shows of an outcome; `ran` says that its spread was computed.
+def page_facts(outcome: Outcome, found: Found, *, ran: bool, data: ReportData | None = None) -> PageFacts:
+    """Return what a page shows of an outcome and what was found in it; `ran` says that its spread was computed.
 
-    `data` is what the report draws, needed for variants; `fixes` are those that were made, by default those that may.
+    `data` is what the report draws, needed for variants.
     """
-    made = certain_fixes(outcome.findings) if fixes is None else fixes
-    fixable = len({fix.place for fix in made})
-    cells = to_fix(outcome.findings)[0]
-    headers = outcome.validated.header_rows if outcome.validated else {}
-    sheets = Sheets(submission=outcome.submission, header_rows=headers, fixes=made)
+    refused = _refused(outcome)
     facts = PageFacts(
         name=shown(outcome.submission.name, _NAME),
         sha256=outcome.submission.sha256,
@@ -73,14 +95,16 @@ def page_facts(
         points=points_words(outcome) if ran else "",
         target_percent=TARGET,
         counts=outcome.counts,
-        cells_to_fix=cells,
-        fixable=fixable,
-        state=state_words(outcome, ran=ran),
-        tiles=list(finding_tiles(outcome, ran=ran, to_fix=cells, fixable=fixable)),
+        cells_to_fix=found.cells_to_fix,
+        fixable=found.fixable,
+        state=found.state,
+        tiles=list(finding_tiles(outcome, ran=ran, to_fix=found.cells_to_fix, fixable=found.fixable)),
         verdict_tiles=list(verdict_tiles(outcome)) if ran else [],
-        refused=_refused(outcome),
+        refused=refused,
         findings=sum(rule_counts(outcome).values()),
-        cards=[] if outcome.submission.kind == "refused" else list(cards_of(outcome.findings, sheets)),
+        cards=[]
+        if outcome.submission.kind == "refused"
+        else list(cards_of(found.findings, found.sheets, found.groups)),
         sentences=[],
         chart=None,
         table=[],
@@ -120,8 +144,8 @@ def _add_variants(facts: PageFacts, outcome: Outcome, data: ReportData) -> None:
     ]
     facts["chart"] = chart_of(rows, names, len(drawn), summary.extent.total)
     facts["table"] = list(table_rows(rows, names, len(drawn)))
-    facts["lost"], facts["lost_in_all"] = lost_variants(outcome)
+    facts["lost"], facts["lost_in_all"] = lost_variants(outcome), facts["counts"]["rows"] - facts["computed"]
     by_row: dict[int, list[Finding]] = defaultdict(list)
-    for found in outcome.findings:
-        by_row[row_of(outcome, found)].append(found)
+    for one in outcome.findings:
+        by_row[row_of(outcome, one)].append(one)
     facts["variants"] = list(variant_pages(summary, drawn, names[: len(drawn)], by_row))

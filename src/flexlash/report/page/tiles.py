@@ -25,13 +25,17 @@ _LOOKS: dict[Verdict, tuple[str, str, Literal["good", "bad", "warn"]]] = {
 
 
 def finding_tiles(outcome: Outcome, *, ran: bool, to_fix: int, fixable: int) -> Iterator[Tile]:
-    """Yield how many rows are ready, cells to fix, cells that are fixed without asking, warnings."""
+    """Yield how many rows are ready, cells to fix, cells that are fixed without asking, warnings.
+
+    Of a large table nothing is fixed.
+    """
     counts = outcome.counts
     rows, computed, warnings = counts["rows"], counts["computed"], counts["warnings"]
     ready = f"{_noun(rows, 'row')} ready{', computed' if ran else ''}"
     yield Tile(number=f"{grouped(computed)} of {grouped(rows)}", words=ready, kind="good" if computed else "bad")
     yield Tile(number=grouped(to_fix), words=f"{_noun(to_fix, 'cell')} to fix", kind="bad" if to_fix else "plain")
-    yield Tile(number=grouped(fixable), words="can be fixed for you", kind="plain")
+    if outcome.whole is None:
+        yield Tile(number=grouped(fixable), words="can be fixed for you", kind="plain")
     yield _warnings(warnings, "warn")
 
 

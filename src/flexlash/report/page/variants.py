@@ -104,15 +104,14 @@ def _percentile(row: Row, key: str) -> str:
     return angle_words(row[f"{key}_arcmin"], row[f"{key}_standard_error_arcmin"])
 
 
-def lost_variants(outcome: Outcome) -> tuple[list[Lost], int]:
-    """Return the first variants that were submitted and not computed, and how many there are in all."""
+def lost_variants(outcome: Outcome) -> list[Lost]:
+    """Return the first variants that were submitted and not computed."""
     table = outcome.validated.table if outcome.validated else None
     if table is None:
-        return [], 0
+        return []
     rows = outcome.results.select("variant", "status", "findings").with_columns(table.frame["row"].alias(ROW))
     lost = rows.filter(pl.col("status") == "error")
-    first = [
+    return [
         Lost(variant=shown(name, _NAME), row=row, why=shown(why or "", _WHY))
         for name, _, why, row in lost.head(_LOST).iter_rows()
     ]
-    return first, lost.height
