@@ -38,19 +38,20 @@ def test_a_partly_computed_submission_is_told_what_where_required_mend_copy_and_
     text = said(reasons_text(PARTLY, "study A.xlsx", submission=ID))
     for needed in (
         "study A.xlsx: 3 of 4 rows computed", "study A-report.xlsx", "Variants!D8", "greater than 0 is required",
-        "Fill the cell", "study A-checked.xlsx", "into the folder again", ID, "ab" * 32,
+        "Fill the cell", "study A-checked.xlsx", "hand the file in again", ID, "ab" * 32,
     ):  # fmt: skip
         assert needed in text
     assert "I501" not in text
     assert "passes through" not in text
 
 
-def test_a_rejected_submission_is_told_why_and_where_its_original_lies():
-    """Also where no worker ever answered there is a reason, and the original is named, with no report."""
+def test_a_rejected_submission_is_told_why():
+    """Also where no worker ever answered there is a reason, what to do, and the ID, with no report."""
     lost = Answer(exit_code=ExitCode.NOTHING)
     text = said(reasons_text(lost, "a.xlsx", submission=ID, reason="It stopped the worker 3 times."))
     assert "It stopped the worker 3 times." in text
-    assert f"rejected/{ID}" in text
+    assert ID in text
+    assert "Hand the file in again" in text
     assert "a-report.xlsx" not in text
 
 

@@ -193,7 +193,7 @@ class Delivering:
             self._log.say("original is gone", submission.id, name=submission.name, why="somebody moved it out of work")
         self._same.pop(folder, None)
         self._store.delivered(delivery)
-        self._log.say(submission.state, submission.id, original=place, words=submission.reason or submission.words)
+        self._log.say("delivered", submission.id, original=place)
 
     def _is_replaced(self, submission: StoredSubmission) -> bool:
         """Whether the original is no longer what was computed, since its writer went on: it is handed in anew.

@@ -15,7 +15,7 @@ from flexlash.service.store_questions import StoreQuestions
 
 __all__ = ["Outbox"]
 
-_DELIVERED = ("report", "results", "findings", "checked", "reasons")
+_DELIVERED = ("report", "checked", "reasons")
 """Roles of files that are delivered to OUT, in this order."""
 
 _DUE = (

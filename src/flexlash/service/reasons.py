@@ -23,7 +23,10 @@ _LONGEST = 4096
 _ALL_LISTED = " (check --annotate)"
 """What the terminal says of the marked copy, which here lies beside the text."""
 
-_AGAIN = "put the file into the folder again, under the same name or another"
+_AGAIN = "hand the file in again, under the same name or another"
+_NUMBER = (
+    "If a number stands behind the name of this text, the same stands behind those of the report and the marked copy."
+)
 
 
 def reasons_text(answer: Answer, name: str, *, submission: str = "", reason: str = "") -> bytes:
@@ -49,7 +52,7 @@ def answered_again_text(submission: StoredSubmission, names: Sequence[str], befo
         *([f"    {one}" for one in names] or ["    none: nothing of it was computed"]),
         f"It was given to submission {submission.same_as}.",
         "",
-        f"If you have changed the file, save it, and {_AGAIN}.",
+        f"If you have changed it, save it, and {_AGAIN}.",
         *(["", "What was said of it:", ""] if before else []),
     ]
     return _as_bytes(lines) + before.removeprefix(_MARK)
@@ -61,7 +64,7 @@ def _lines(answer: Answer, name: str, submission: str, reason: str) -> Iterator[
     yield f"{name}: {answer.words or 'nothing was computed'}."
     yield ""
     if computed and counts.get("computed") == counts.get("rows"):
-        yield f"The report is {stem}{REPORT_NAME}.xlsx. This is to be looked at:"
+        yield f"All rows are in {stem}{REPORT_NAME}.xlsx. This is to be looked at:"
     elif computed:
         yield f"The rows that could be computed are in {stem}{REPORT_NAME}.xlsx. Of the others this is to be mended:"
     else:
@@ -71,11 +74,12 @@ def _lines(answer: Answer, name: str, submission: str, reason: str) -> Iterator[
     yield ""
     yield "What to do now"
     yield from (f"  {number}. {step}" for number, step in enumerate(_steps(answer, stem), 1))
+    if computed or answer.copy is not None:
+        yield ""
+        yield _NUMBER
     yield ""
-    if not computed:
-        yield f"Your file is kept, unchanged, in the folder rejected{f'/{submission}' if submission else ''}."
     if submission:
-        yield f"Submission {submission}"
+        yield f"Submission {submission}, under which your file is kept as it was"
     if sha256 := str(answer.told.get("sha256") or ""):
         yield f"SHA-256 of the file: {sha256}"
     yield f"flexlash {__version__}"
@@ -97,6 +101,7 @@ def _why(answer: Answer, reason: str) -> Iterator[str]:
 
 
 def _steps(answer: Answer, stem: str) -> Iterator[str]:
+    has_errors = any(level == "error" for level, _ in answer.finding_lines)
     if answer.copy is not None and not answer.refused:
         copy = f"{stem}{CHECKED_NAME}.xlsx"
         if answer.copy.not_carried is None:
@@ -104,10 +109,16 @@ def _steps(answer: Answer, stem: str) -> Iterator[str]:
         else:
             without = f", without its {', '.join(answer.copy.not_carried)}" if answer.copy.not_carried else ""
             yield f"Open {copy} beside this text: a copy of your file{without} in which each of these cells is marked."
-        yield "Mend the cells in your own file and save it."
-    elif answer.finding_lines and not answer.skipped:
+        where = "" if has_errors else ", where they are not as they should be,"
+        yield f"Mend the cells in your own file{where} and save it."
+    elif has_errors:
         yield "Mend this as it says."
-    yield f"{_AGAIN[0].upper()}{_AGAIN[1:]}."
+    if has_errors:
+        yield f"Then {_AGAIN}."
+    elif answer.file is not None:
+        yield f"If you have changed it, {_AGAIN}."
+    else:
+        yield f"{_AGAIN[0].upper()}{_AGAIN[1:]}."
 
 
 def _as_bytes(lines: Iterable[str]) -> bytes:
