@@ -28,12 +28,16 @@ def store_faults(path: Path) -> Iterator[None]:
     try:
         yield
     except sqlite3.OperationalError as fault:
-        raise StoreError(f"the store {shown(path, 4096)} could not be used: {fault}") from fault
+        raise StoreError(f"the store {shown(path, 4096)} could not be used: {_said(fault)}") from fault
     except sqlite3.DatabaseError as fault:
         raise StoreError(
-            f"{shown(path, 4096)} is damaged or no store of flexlash ({fault}); "
+            f"{shown(path, 4096)} is damaged or no store of flexlash ({_said(fault)}); "
             "put a backup in its place, or name another folder with --store"
         ) from fault
+
+
+def _said(fault: sqlite3.Error) -> str:
+    return shown(" ".join(str(fault).split()), 200)
 
 
 class Database:

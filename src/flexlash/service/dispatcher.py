@@ -23,6 +23,7 @@ from flexlash.batch.side_by_side import computed_apart
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.findings import readable, shown
+from flexlash.service.blobs import DamagedFileError
 from flexlash.service.endings import PAGE, KeptFile, ending_of, kept
 from flexlash.service.log import Log
 from flexlash.service.open_executor import OpenExecutor, Opening
@@ -176,7 +177,10 @@ class Dispatcher(Questions):
             self._end_lost(submission, f"was alone at work {submission.server_ends} times when the server ended")
             return
         try:
-            data = submitted(self._store.blobs.path(submission.sha256), submission.name, limits)
+            data = submitted(self._store.blobs.checked(submission.sha256), submission.name, limits)
+        except DamagedFileError:
+            self._end_lost(submission, "was damaged on the disk of the service after it came in: hand it in again")
+            return
         except Refusal as refusal:
             self._end(submission, refused_answer(Path(submission.name), refusal, submission.sha256))
             return

@@ -56,9 +56,9 @@ def attachment(data: bytes, name: str) -> Response:
 
 
 def download(blobs: Blobs, file: StoredFile) -> Response:
-    """Return a kept file as one to take away; raise Refused where its bytes are not there."""
-    path = blobs.path(file.sha256)
+    """Return a kept file as one to take away; raise Refused where its bytes are not there, or others."""
     try:
+        path = blobs.checked(file.sha256)
         status = path.stat()
     except OSError:
         raise Refused(
