@@ -161,13 +161,16 @@ def test_a_report_that_was_taken_away_is_delivered_again(service):
     assert service.delivered["a-report.xlsx"] == b"the report"
 
 
-def test_what_was_said_stands_in_the_text_of_the_same_submission_again(service):
-    """Whoever hands in a rejected file unchanged reads why once more."""
-    hand_in(service, files={"reasons": b"\xef\xbb\xbfbecause\r\n"}, state="rejected")
-    service.put("a.csv")
-    service.pass_time(10)
-    assert service.delivered["a-reasons (2).txt"].endswith(b"because\r\n")
-    assert service.originals("rejected") == {("a.csv", b"a,b\n1,2\n"): 2}
+def test_who_hands_in_a_rejected_file_unchanged_is_told_where_the_reasons_are(service):
+    """The reasons stay, and a text beside them names them; a third time adds nothing."""
+    hand_in(service, files={"reasons": b"because"}, state="rejected")
+    for _ in range(2):
+        service.put("a.csv")
+        service.pass_time(10)
+    assert service.delivered.keys() == {"a-reasons.txt", "a-reasons (2).txt"}
+    assert service.delivered["a-reasons.txt"] == b"because"
+    assert b"a-reasons.txt" in service.delivered["a-reasons (2).txt"]
+    assert service.originals("rejected") == {("a.csv", b"a,b\n1,2\n"): 3}
 
 
 def test_one_delivery_that_fails_hinders_no_other(service, monkeypatch):

@@ -176,6 +176,28 @@ def test_r8_hostile_names_are_inert_everywhere(service):
     assert all(len(os.fsencode(name)) <= 255 for name in service.delivered)
 
 
+def test_of_a_file_that_nobody_reads_the_store_keeps_the_beginning(tmp_path):
+    """Gigabytes in INBOX neither fill the store nor hold up others; the original goes whole to rejected/."""
+    with Service(tmp_path, most_bytes=1000) as service:
+        sizes = {"at limit.csv": 1000, "one more.csv": 1001, "large.csv": 5_000_000}
+        files = {name: os.urandom(size - 1) + b"\n" for name, size in sizes.items()}
+        for name, data in files.items():
+            service.put(name, data)
+        service.pass_time(70)
+        kept = {one.name: one.size for one in service.submissions()}
+        assert kept == {"at limit.csv": 1000, "one more.csv": 1001, "large.csv": 1001}
+        (path,) = (service.out / "work").rglob("large.csv")
+        service.answer({"reasons": b"too large"}, state="rejected")
+        with path.open("r+b") as file:
+            file.seek(10)
+            file.write(b"still written")
+        service.pass_time(2)
+        assert service.originals("rejected").keys() == {(name, files[name]) for name in files if name != "large.csv"}
+        assert len(service.submissions()) == 3
+        service.pass_time(70)
+        assert len(service.submissions()) == 4
+
+
 def test_the_id_is_not_made_of_the_name(service):
     """The same name and content twice has two IDs."""
     for _ in range(2):

@@ -72,11 +72,8 @@ def test_bytes_are_those_that_every_notepad_shows():
 
 
 def test_the_same_submission_again_is_told_so_in_the_same_words():
-    """The second and the third time give the same bytes, which name the first, its files and what was said of it."""
-    text = answered_again_text(REPEATED, ["a-report.xlsx"], reasons_text(PARTLY, "a.xlsx", submission=ID))
-    assert text == answered_again_text(
-        replace(REPEATED, id="e" * 32, number=3), ["a-report.xlsx"], reasons_text(PARTLY, "a.xlsx", submission=ID)
-    )
-    assert text.count(b"\xef\xbb\xbf") == 1
-    for needed in ("handed in before", "a-report.xlsx", ID, "Fill the cell"):
+    """The second and the third time give the same bytes, which name the first and its files."""
+    text = answered_again_text(REPEATED, ["a-report.xlsx"])
+    assert text == answered_again_text(replace(REPEATED, id="e" * 32, number=3), ["a-report.xlsx"])
+    for needed in ("handed in before", "a-report.xlsx", ID):
         assert needed in said(text)

@@ -25,8 +25,10 @@ _NOBODY = 65534
 class Service:
     """A drop folder in `root`: INBOX `in`, OUT `out`, and a store of its own by `name`."""
 
-    def __init__(self, root: Path, name: str = "store", out: str = "out", *, bypassing: bool = False) -> None:
-        """Begin; `bypassing` takes INBOX and OUT although another service may hold them."""
+    def __init__(
+        self, root: Path, name: str = "store", out: str = "out", *, bypassing: bool = False, **given: int
+    ) -> None:
+        """Begin; `bypassing` takes INBOX and OUT although another service may hold them, `given` is for the folder."""
         self.now = 1_000.0
         self.inbox, self.out, self._open = root / "in", root / out, ExitStack()
         self.lines = io.StringIO()
@@ -41,7 +43,7 @@ class Service:
         # The store looks at another clock: of seconds since 1970, which may be set back.
         self.store = self._open.enter_context(Store(root / name, serving=True, clock=lambda: self.now + 1e9))
         self.folder = DropFolder(
-            self.store, self.places, "options", Log(stream=self.lines), self._wake, clock=lambda: self.now
+            self.store, self.places, "options", Log(stream=self.lines), self._wake, clock=lambda: self.now, **given
         )
 
     def _wake(self) -> None:

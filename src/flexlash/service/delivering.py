@@ -18,6 +18,7 @@ from typing import BinaryIO
 from flexlash.outputs.writing import Filling, put_new, sync_folder, temporary
 from flexlash.schema.file_faults import reason
 from flexlash.service.log import Log
+from flexlash.service.original import KeptPart
 from flexlash.service.out_names import longest_name, number_of, numbered, out_name
 from flexlash.service.patience import Patience
 from flexlash.service.places import Places
@@ -41,11 +42,19 @@ class Delivering:
     """The deliveries of a store into OUT. `claimed` is told of each folder that holds a submission without a row."""
 
     def __init__(
-        self, store: Store, places: Places, log: Log, claimed: Callable[[Path], object], clock: Callable[[], float]
+        self,
+        store: Store,
+        places: Places,
+        log: Log,
+        *,
+        kept: KeptPart,
+        claimed: Callable[[Path], object],
+        clock: Callable[[], float],
     ) -> None:
         self._store = store
         self._places = places
         self._log = log
+        self._kept = kept
         self._claimed = claimed
         self._own = places.work / store.name
         self._patience = Patience(log, clock)
@@ -163,9 +172,8 @@ class Delivering:
         """Say, where the sender looks, that a submission was answered with the result of an earlier one."""
         if not submission.same_as:
             return
-        files, targets = self._store.files(submission.id), self._store.targets(submission.id)
-        before = self._store.blobs.read(files["reasons"].sha256) if "reasons" in files else b""
-        text = answered_again_text(submission, [target for target in targets.values() if target], before)
+        targets = self._store.targets(submission.id)
+        text = answered_again_text(submission, [target for target in targets.values() if target])
         name = out_name(f"{PurePath(submission.name).stem}-reasons.txt", self._longest)
         told = StoredFile(role="reasons", sha256=hashlib.sha256(text).hexdigest(), size=len(text), name=name)
         first = max((number_of(target) for target in targets.values()), default=1)
@@ -214,7 +222,7 @@ class Delivering:
         status = path.lstat()
         if not stat.S_ISREG(status.st_mode) or self._same.get(path.parent) == identity(status):
             return True
-        if status.st_size != submission.size or _digest(path) != submission.sha256:
+        if not self._kept.is_of(path, submission):
             return False
         self._same[path.parent] = identity(status)
         return True

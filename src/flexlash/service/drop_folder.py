@@ -8,15 +8,18 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
+from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.service.delivering import Delivering
 from flexlash.service.inbox import Inbox
 from flexlash.service.log import Log
+from flexlash.service.original import KeptPart
 from flexlash.service.places import Places
 from flexlash.service.repeated import Repeated
 from flexlash.service.store import Store
 
 __all__ = ["DropFolder"]
 
+_MOST = ReadingLimits().file_mebibytes * 2**20
 _POLL = 2.0
 """Seconds between two looks."""
 
@@ -32,14 +35,20 @@ class DropFolder:
         log: Log,
         wake: Callable[[], object] = lambda: None,
         *,
+        most_bytes: int = _MOST,
         clock: Callable[[], float] = time.monotonic,
         seconds: float = _POLL,
     ) -> None:
-        """Use places that are held; `clock` only goes forward [s], `seconds` lie between two looks."""
+        """Use places that are held.
+
+        Of a file of more than `most_bytes`, which nobody reads, the store keeps the beginning. `clock` only goes
+        forward [s], `seconds` lie between two looks.
+        """
+        kept = KeptPart(most=most_bytes)
         self._store = store
         self._wake = wake
-        self._inbox = Inbox(store, places, options_digest, log, clock)
-        self._delivering = Delivering(store, places, log, self._inbox.expect, clock)
+        self._inbox = Inbox(store, places, options_digest, log, kept=kept, clock=clock)
+        self._delivering = Delivering(store, places, log, kept=kept, claimed=self._inbox.expect, clock=clock)
         self._has_begun = False
         self._repeated = Repeated("drop folder", self.step, seconds, log)
 

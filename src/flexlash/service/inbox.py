@@ -18,6 +18,7 @@ from flexlash.outputs.writing import sync_file, sync_folder
 from flexlash.schema.findings import shown
 from flexlash.service.blobs import ChangedFileError
 from flexlash.service.log import Log
+from flexlash.service.original import KeptPart
 from flexlash.service.patience import Patience
 from flexlash.service.places import Places
 from flexlash.service.records import HandedIn, new_id
@@ -60,12 +61,15 @@ class _Ready:
 class Inbox:
     """What people put into INBOX, on its way into the store."""
 
-    def __init__(self, store: Store, places: Places, options: str, log: Log, clock: Callable[[], float]) -> None:
+    def __init__(
+        self, store: Store, places: Places, options: str, log: Log, *, kept: KeptPart, clock: Callable[[], float]
+    ) -> None:
         """Use what `places` names; `options` is the digest of those with which all of it is computed."""
         self._store = store
         self._places = places
         self._options = options
         self._log = log
+        self._kept = kept
         self._clock = clock
         self._own = places.work / store.name
         self._settling = Settling()
@@ -240,7 +244,7 @@ class Inbox:
             id=folder.name, name=shown(claimed.name, 255), options=self._options, door="folder", sender=_owner(claimed)
         )
         try:
-            stored = self._store.accept(handed, claimed)
+            stored = self._store.accept(handed, self._kept.content(claimed))
         except ChangedFileError:
             return 0
         except OSError as fault:

@@ -38,11 +38,10 @@ def reasons_text(answer: Answer, name: str, *, submission: str = "", reason: str
     return _as_bytes(_lines(answer, shown(name, 255), submission, reason))
 
 
-def answered_again_text(submission: StoredSubmission, names: Sequence[str], before: bytes = b"") -> bytes:
-    """Return the text for who hands in again what was answered before: where the answer is, and what it said.
+def answered_again_text(submission: StoredSubmission, names: Sequence[str]) -> bytes:
+    """Return the text for who hands in again what was answered before: where the answer is.
 
-    `names` are those of the files of the answer, `before` is the text that stands among them, if any. The same
-    submission gets the same text however often it is handed in.
+    `names` are those of the files of the answer. The same submission gets the same text however often it is handed in.
     """
     name = shown(submission.name, 255)
     lines = [
@@ -53,9 +52,8 @@ def answered_again_text(submission: StoredSubmission, names: Sequence[str], befo
         f"It was given to submission {submission.same_as}.",
         "",
         f"If you have changed it, save it, and {_AGAIN}.",
-        *(["", "What was said of it:", ""] if before else []),
     ]
-    return _as_bytes(lines) + before.removeprefix(_MARK)
+    return _as_bytes(lines)
 
 
 def _lines(answer: Answer, name: str, submission: str, reason: str) -> Iterator[str]:

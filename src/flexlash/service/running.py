@@ -95,7 +95,8 @@ def running(setup: Setup, log: Log) -> Iterator[Service]:
         if setup.inbox is not None and setup.out is not None:
             places = stack.enter_context(Places.of(setup.inbox, setup.out, setup.store))
         store = stack.enter_context(Store(setup.store, serving=True, webhook=bool(setup.webhook)))
-        digest = options_digest(service_options(setup.options), {}, marked=True)
+        options = service_options(setup.options)
+        digest = options_digest(options, {}, marked=True)
         outward: list[DropFolder | Webhook] = []
 
         def ended() -> None:
@@ -103,7 +104,10 @@ def running(setup: Setup, log: Log) -> Iterator[Service]:
                 part.wake()
 
         dispatcher = Dispatcher(store, setup.executor, setup.options, log, ended=ended)
-        folder = None if places is None else DropFolder(store, places, digest, log, dispatcher.wake)
+        folder = None
+        if places is not None:
+            most = options.limits.file_mebibytes * 2**20
+            folder = DropFolder(store, places, digest, log, dispatcher.wake, most_bytes=most)
         outward += [folder] if folder else []
         if setup.webhook:
             outward.append(Webhook(store, setup.webhook, webhook_key(store.folder, setup.webhook_key_file), log))

@@ -66,6 +66,9 @@ def submitted(path: Path, name: str, limits: ReadingLimits) -> bytes:
     """
     if name.startswith(_LOCK):
         raise Refusal("I525")
+    if path.stat().st_size == limits.file_mebibytes * 2**20 + 1:
+        # Of a file that was larger no more is kept: how large it was is not known here.
+        raise limits.exceeded("file_mebibytes")
     return read_bytes(path, limits)
 
 
