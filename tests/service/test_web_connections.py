@@ -204,10 +204,12 @@ def test_a_second_request_that_is_none_does_no_harm(tmp_path):
 def test_only_so_many_connections_are_held(tmp_path, monkeypatch):
     """Connections beyond the limit are closed at once, so that others can still be answered later."""
     monkeypatch.setattr(connections, "MOST_CONNECTIONS", 3)
+    monkeypatch.setattr(connections, "SECONDS_BETWEEN_LOOKS", 60)
     with served(tmp_path) as (_, server):
         held = [_connected(server) for _ in range(3)]
         _wait(lambda: len(server.server_state.connections) == 3)
         with _connected(server) as fourth:
+            fourth.sendall(_head("Connection: close", method="GET", path="/").encode())
             assert _answer(fourth) == ""
         for one in held:
             one.close()

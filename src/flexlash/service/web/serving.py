@@ -26,7 +26,7 @@ from flexlash.service.web.visitors import OPENING
 __all__ = ["AddressError", "PageServer", "open_browser"]
 
 _MOST_HEADER_BYTES = 32 * 1024
-_KEEP_ALIVE, _GRACE = 5, 10
+_KEEP_ALIVE, _GRACE = 5, 4
 """Seconds that an idle connection is kept, and that answers may take once the server ends."""
 
 _SIGNALS = [one for one in (signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGBREAK", None)) if one is not None]
@@ -65,7 +65,7 @@ class PageServer(uvicorn.Server):
         )
 
     def run(self, sockets: list[socket.socket] | None = None) -> int | None:  # type: ignore[override]
-        """Answer until `stop` or a signal, and return the signal; what is being answered gets ten seconds more."""
+        """Answer until `stop` or a signal, and return the signal; what is being answered gets four seconds more."""
         super().run([self._socket, *(sockets or [])])
         return self._captured_signals[0] if self._captured_signals else None
 
