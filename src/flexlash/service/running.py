@@ -37,8 +37,8 @@ class Setup:
     """What a service is started with.
 
     `store` is the folder of the store, `workers` how many processes compute, or what a Dask `scheduler` has; `inbox`
-    and `out` are the drop folder, both or neither. What ended longer ago than `keep_seconds` is forgotten. Each ending is told to the address `webhook`, signed
-    with the key in a file, or with one that the store has.
+    and `out` are the drop folder, both or neither. What ended longer ago than `keep_seconds` is forgotten. Each ending
+    is told to the address `webhook`, signed with the key in a file, or with one that the store has.
     """
 
     store: Path
