@@ -234,7 +234,7 @@ def test_a_dropped_file_is_taken_without_script(tab):
     tools = page.context.new_cdp_session(page)
     for kind in ("dragEnter", "dragOver", "drop"):
         tools.send("Input.dispatchDragEvent", {
-            "type": kind, "x": box["x"] + box["width"] / 2, "y": box["y"] + 30,
+            "type": kind, "x": box["x"] + box["width"] / 2, "y": box["y"] + 50,
             "data": {"items": [], "files": [str(NEEDS_FIXING)], "dragOperationsMask": 1},
         })  # fmt: skip
     page.get_by_role("button", name="Check and compute").click()

@@ -72,9 +72,9 @@ class Scale:
         self.axis: Axis = axis_over(values or (0.0, 1.0))
 
     def per_cent(self, value: float) -> float:
-        """Return where a value lies, in per cent of the width; what is beyond an end lies at it."""
+        """Return where a value of the scale lies, in per cent of the width."""
         share = (value - self.axis.low) / ((self.axis.high - self.axis.low) or 1.0)
-        return _EDGE + (100 - 2 * _EDGE) * min(1.0, max(0.0, share))
+        return _EDGE + (100 - 2 * _EDGE) * share
 
     @property
     def ticks(self) -> list[tuple[float, str]]:
