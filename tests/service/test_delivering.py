@@ -2,12 +2,16 @@
 
 import errno
 import os
+import threading
+import time
 from pathlib import Path
 
 import pytest
 from drop_folders import Service
 
 from flexlash.service import delivering
+from flexlash.service.drop_folder import DropFolder
+from flexlash.service.log import Log
 from flexlash.service.out_names import out_name
 from flexlash.service.store import Store
 
@@ -171,6 +175,23 @@ def test_who_hands_in_a_rejected_file_unchanged_is_told_where_the_reasons_are(se
     assert service.delivered["a-reasons.txt"] == b"because"
     assert b"a-reasons.txt" in service.delivered["a-reasons (2).txt"]
     assert service.originals("rejected") == {("a.csv", b"a,b\n1,2\n"): 3}
+
+
+def test_what_has_ended_is_delivered_at_once_when_told(service):
+    """A thread looks every so often; woken it delivers without delay, and it ends when it is stopped."""
+    service.put("a.csv")
+    service.pass_time(8)
+    folder = DropFolder(service.store, service.places, "options", Log(stream=service.lines), seconds=3600)
+    folder.start()
+    service.answer({"report": b"the report"})
+    folder.wake()
+    for _ in range(500):
+        if not service.store.undelivered():
+            break
+        time.sleep(0.01)
+    folder.stop(10)
+    assert service.delivered == {"a-report.xlsx": b"the report"}
+    assert "flexlash drop folder" not in {thread.name for thread in threading.enumerate()}
 
 
 def test_one_delivery_that_fails_hinders_no_other(service, monkeypatch):

@@ -272,6 +272,26 @@ def test_a_file_that_vanishes_before_the_claim_leaves_nothing(service, monkeypat
     assert not [line for line in service.said if line.startswith("fault")]
 
 
+def test_r11_what_is_written_in_the_moment_of_the_claim_settles_first(service, monkeypatch):
+    """A file that changes between the last look and the rename is ours, but accepted once its writer has ended."""
+    rename = Path.rename
+
+    def grown(path: Path, target: Path) -> Path:
+        if path.name == "a.csv" and path.parent == service.inbox:
+            with path.open("ab") as file:
+                file.write(b"3,4\n")
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "rename", grown)
+    service.put("a.csv")
+    service.pass_time(6)
+    assert names(service.inbox) == set()
+    assert service.submissions() == []
+    assert not service.folder.is_idle
+    service.pass_time(8)
+    assert [one.sha256 for one in service.submissions()] == [digest(b"a,b\n1,2\n3,4\n")]
+
+
 def test_inbox_may_go_and_come_back(service):
     """A drive that is lost for a while, even one that comes back as another folder, is told and then used again."""
     service.inbox.rename(service.inbox.with_name("away"))

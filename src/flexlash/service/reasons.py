@@ -78,7 +78,7 @@ def _lines(answer: Answer, name: str, submission: str, reason: str) -> Iterator[
     yield ""
     if submission:
         yield f"Submission {submission}, under which your file is kept as it was"
-    if sha256 := str(answer.told.get("sha256") or ""):
+    if not answer.refused and (sha256 := answer.told.get("sha256")):
         yield f"SHA-256 of the file: {sha256}"
     yield f"flexlash {__version__}"
 
