@@ -244,6 +244,16 @@ def test_open_lets_in_once(tmp_path):
         assert second.post("/login", data={"access": access.once}).status_code == 401
 
 
+def test_nobody_keeps_the_owner_out(tmp_path):
+    """However many wrong tokens others of this machine send, the owner's address works."""
+    access = Access.of(opens=True)
+    with page(tmp_path, access=access) as one:
+        for number in range(20):
+            assert one.visitor().get(f"/open/{number}").status_code == 401
+            one.visitor().post("/login", data={"access": "wrong"})
+        assert one.visitor().get(f"/open/{access.once}").status_code == 303
+
+
 def test_open_is_not_there_otherwise(tmp_path):
     """Without --open no address lets anybody in."""
     with page(tmp_path) as one:

@@ -13,6 +13,8 @@ from flexlash.service.questions import TooManyQuestionsError
 from flexlash.service.records import Ending, StoredFile
 from flexlash.service.web.site import Limits
 
+FORM = b'--b\r\nContent-Disposition: form-data; name="file"; filename="a"\r\n\r\nabc\r\n--b--\r\n'
+
 XSS = [
     "<script>alert(1)</script>",
     '"><img src=x onerror=alert(1)>',
@@ -79,6 +81,10 @@ def test_tokens_of_others_are_not_taken(tmp_path, token):
         ({"files": {"file": ("a.xlsx", b"a")}, "data": {"action": "delete"}}, "one of the two buttons"),
         ({"content": b"junk", "headers": {"content-type": "multipart/form-data; boundary=x"}}, "choose the file again"),
         ({"content": b"junk", "headers": {"content-type": "multipart/form-data"}}, "choose the file again"),
+        (
+            {"content": FORM, "headers": {"content-type": "multipart/form-data; boundary=b; charset=undefined"}},
+            "choose the file again",
+        ),
     ],
 )
 def test_what_is_wrong_is_said_on_the_form(tmp_path, sent, words):
@@ -232,6 +238,17 @@ def test_a_name_adds_no_header(tmp_path):
             "attachment; filename=\"a__Set-Cookie__x_1___.xlsx\"; filename*=UTF-8''a__Set-Cookie__x_1__%C3%A9.xlsx"
         )
         assert "\nSet-Cookie" not in one.said.getvalue()
+
+
+@pytest.mark.parametrize("kind", ["multipart/form-data; boundary=x", "multipart/form-data"])
+def test_small_forms_that_are_none_are_refused(tmp_path, kind):
+    """The forms of the token, and of what is done to a submission, are refused in words where they cannot be read."""
+    with page(tmp_path) as one:
+        where = one.visitor().hand_in().headers["location"]
+        for path in ("/login", f"{where}/retry"):
+            answer = one.visitor().post(path, content=b"junk", headers={**OWN, "content-type": kind})
+            assert answer.status_code == 400, path
+            assert "cannot be read" in answer.text
 
 
 def test_retry_and_forget(tmp_path):

@@ -22,7 +22,7 @@ from flexlash.service.web.pages import Pages
 from flexlash.service.web.refusals import Refused
 from flexlash.service.web.signing import Signer, stored_key
 from flexlash.service.web.site import Limits, Site, Works, page_templates
-from flexlash.service.web.upload import field_of
+from flexlash.service.web.upload import field_of, form_of
 from flexlash.service.web.visitors import OPENING, Visitors
 
 __all__ = ["application"]
@@ -62,7 +62,7 @@ def _routes(site: Site, visitors: Visitors) -> list[Route]:
     small = site.limits.form
 
     async def login(request: Request) -> Response:
-        form = await request.form(max_files=0, max_fields=site.limits.fields, max_part_size=4096)
+        form = await form_of(request, site.limits.fields)
         return visitors.entered(request, field_of(form, "access"), field_of(form, "wanted"))
 
     return [

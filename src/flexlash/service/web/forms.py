@@ -17,7 +17,7 @@ from flexlash.service.web.negotiation import wants_json
 from flexlash.service.web.refusals import Refused
 from flexlash.service.web.site import Site
 from flexlash.service.web.told import submission_told
-from flexlash.service.web.upload import Received, UnusableForm, field_of, received
+from flexlash.service.web.upload import Received, UnusableForm, field_of, form_of, received
 
 __all__ = ["Forms"]
 
@@ -98,7 +98,7 @@ class Forms:
 
     async def _changed(self, request: Request, change: Callable[[str], bool], not_yet: str, then: str) -> Response:
         """Change a submission, if the form is ours, and lead to an address, its own where none is given."""
-        form = await request.form(max_files=0, max_fields=self._site.limits.fields, max_part_size=4096)
+        form = await form_of(request, self._site.limits.fields)
         self._require_token(request, field_of(form, "token"))
         id_ = request.path_params["id"]
         await run_in_threadpool(self._site.known, id_)

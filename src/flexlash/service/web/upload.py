@@ -17,7 +17,7 @@ from starlette.requests import Request
 from flexlash.schema.findings import shown
 from flexlash.service.web.refusals import Refused
 
-__all__ = ["Received", "UnusableForm", "field_of", "printed_name", "received"]
+__all__ = ["Received", "UnusableForm", "field_of", "form_of", "printed_name", "received"]
 
 _LONGEST_NAME = 200
 _LONGEST_FIELD = 4_096
@@ -63,22 +63,21 @@ async def received(request: Request, fields: int) -> AsyncIterator[Received]:
     if not request.headers.get("content-type", "").lower().startswith("multipart/form-data"):
         raise Refused(415)
     try:
-        form = await request.form(max_files=2, max_fields=fields, max_part_size=_LONGEST_FIELD)
-    except (HTTPException, FormParserError) as fault:
-        raise _unusable(fault) from None
-    try:
-        yield _only_file(form)
+        yield _only_file(await form_of(request, fields, files=2))
     finally:
         await request.close()
 
 
-def _unusable(fault: HTTPException | FormParserError) -> HTTPException:
-    """Return why a form cannot be read, in our words."""
-    if isinstance(fault, HTTPException) and fault.status_code != 400:  # noqa: PLR2004
-        return fault
-    if "Too many files" in str(fault):
-        return UnusableForm(400, "Choose one file at a time: several came in.")
-    return UnusableForm(400, "The form did not arrive as the page sends it: choose the file again.")
+async def form_of(request: Request, fields: int, files: int = 0) -> FormData:
+    """Return a form of at most so many fields and files; raise UnusableForm where it cannot be read."""
+    try:
+        return await request.form(max_files=files, max_fields=fields, max_part_size=_LONGEST_FIELD)
+    except (HTTPException, FormParserError, UnicodeError) as fault:
+        if isinstance(fault, HTTPException) and fault.status_code != 400:  # noqa: PLR2004
+            raise
+        if "Too many files" in str(fault):
+            raise UnusableForm(400, "Choose one file at a time: several came in.") from None
+        raise UnusableForm(400, "The form did not arrive as the page sends it: choose the file again.") from None
 
 
 def _only_file(form: FormData) -> Received:

@@ -106,13 +106,12 @@ class Visitors:
             raise Refused(401, headers={"WWW-Authenticate": "Bearer"}, asks_for_token=True)
         return {"session": value}
 
-    def _require_right(self, request: Request, token: str, *, right: str | None = None) -> None:
+    def _require_right(self, request: Request, token: str) -> None:
         """Refuse a wrong token, and any after too many wrong ones."""
         address = client_address(request)
         if self._attempts.are_too_many(address):
             raise Refused(429)
-        right = self._access.token if right is None else right
-        if not right or not hmac.compare_digest(token.encode(), right.encode()):
+        if not _is_same(token, self._access.token):
             self._attempts.wrong(address)
             raise Refused(401, "That is not the token.", headers={"WWW-Authenticate": "Bearer"}, asks_for_token=True)
 
@@ -125,10 +124,11 @@ class Visitors:
         """Return the way in, with a cookie, for the token that works once."""
         if request.method != "GET":
             raise Refused(405, headers={"Allow": "GET"})
-        token = request.path_params["token"]
         if self._access.once and not self._once:
             raise Refused(403, "This address has been used once already, and works once alone.")
-        self._require_right(request, token, right=self._once)
+        # Nobody guesses 256 bits: counting wrong ones would only let another user of this machine keep its owner out.
+        if not _is_same(request.path_params["token"], self._once):
+            raise Refused(401, "That is not the address that flexlash printed.", asks_for_token=True)
         self._once = ""
         return self._welcomed(request, "/")
 
@@ -153,6 +153,11 @@ class Visitors:
         """Return the name of the cookie; browsers keep those of several ports of a host together."""
         port = (request.scope.get("server") or ["", 0])[1]
         return "__Host-flexlash" if self._is_secure(request) else f"flexlash-{port}"
+
+
+def _is_same(token: str, right: str) -> bool:
+    """Whether a token is the right one, found out in a time that tells nothing; where there is none, none is right."""
+    return bool(right) and hmac.compare_digest(token.encode(), right.encode())
 
 
 def client_address(request: Request) -> str:
