@@ -106,6 +106,19 @@ def test_the_mended_file_is_that_of_the_command(name, tmp_path):
 
 
 @pytest.mark.slow
+def test_what_a_fix_uncovers_is_mended_as_well(book):
+    """Below a misspelt header stands a number with its unit: the page offers a file in which both are mended."""
+    keys = ("variant", "material", "torque_Nm", "cylinder_length_mm", "mean_radius_mm")
+    row = ["C-1", "20Cr2Ni4", 800, 160, 80, "1,6 mm", 40]
+    path = book({"Variants": [[*keys, "Wall thicknes [mm]", "disk_inner_radius_mm"], row]})
+    answer, _ = _answered(_task(path, "check"))
+    made = fixed(opened(path, Options()), Options())
+    assert {fix.cell for fix in made.fixes} == {"F1", "F2"}
+    assert answer.mended.data == made.data
+    assert json.loads(answer.page)["fixable"] == 2
+
+
+@pytest.mark.slow
 def test_a_check_has_a_page_and_no_results():
     """Where nothing is computed there are findings, a marked copy and what can be mended."""
     answer, heard = _answered(_task(FAULTY, "check"))

@@ -674,6 +674,19 @@ def test_the_page_of_chunks_is_that_of_one_piece(ending, tmp_path):
 
 
 @pytest.mark.slow
+def test_the_page_of_a_large_table_counts_findings_that_it_does_not_tell(tmp_path, monkeypatch):
+    """However few findings travel, each card has the number and the places of all of its rule."""
+    path = _written(tmp_path / "table.csv", _rows())
+    _, every = _page(path, None, ran=False)
+    for module in ("chunk_computing", "chunk_totals"):
+        monkeypatch.setattr(f"flexlash.batch.{module}.FIRST_FINDINGS", 2)
+    _, few = _page(path, None, ran=False)
+    for key in ("code", "count", "cells", "places"):
+        assert [card[key] for card in few["cards"]] == [card[key] for card in every["cards"]], key
+    assert (few["findings"], few["cells_to_fix"]) == (every["findings"], every["cells_to_fix"])
+
+
+@pytest.mark.slow
 def test_a_large_table_that_is_checked_has_a_page(tmp_path):
     """Without a spread there are its findings, and nothing that was not asked for."""
     path = _written(tmp_path / "table.csv", _rows())
