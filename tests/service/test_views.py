@@ -7,58 +7,22 @@ import re
 import subprocess
 import sys
 from dataclasses import replace
-from typing import Literal, get_args, get_origin, get_type_hints, is_typeddict
 
 import pytest
 from grids import for_each
 from html_pages import HtmlPage, faults_of
+from rendered import COUNTS, FILES, NOW, made, render, submission
 
 from flexlash.report.page.shape import PageFacts
 from flexlash.schema.columns import ENTRY_SHEETS
-from flexlash.schema.finding_catalogue import CATALOGUE
-from flexlash.service.records import StoredFile, StoredSubmission
+from flexlash.service.records import Ending, HandedIn, StoredFile
+from flexlash.service.store import Store
 from flexlash.service.web import lists, views
-from flexlash.service.web.site import page_templates
 from flexlash.service.web.submission_page import checked_view, submission_view
 from flexlash.service.web.variant_page import variant_view
-from flexlash.service.web.words import Moment, state_line
+from flexlash.service.web.words import Moment
 
-NOW = 1_800_000_000.0
 HOSTILE = """</title><script>alert(1)</script>"'><x-evil onclick=a>{{ 7*7 }}{% x %}<!-- &amp; </svg></textarea>"""
-COUNTS = {"rows": 27, "computed": 24, "errors": 3, "warnings": 2, "meets": 1, "marginal": 1, "fails": 2}
-
-
-def made(kind, text):
-    """Return a value of a type of the facts: every text in it is the one given, every list has two of its kind."""
-    if is_typeddict(kind):
-        return {key: made(value, text) for key, value in get_type_hints(kind).items()}
-    if get_origin(kind) is list:
-        return [made(*get_args(kind), text)] * 2
-    if get_origin(kind) is dict:
-        return dict(COUNTS)
-    if get_origin(kind) is Literal:
-        return get_args(kind)[0]
-    if get_args(kind):
-        return made(get_args(kind)[0], text)
-    return {str: text, int: 1, float: 1.5, bool: True}[kind]
-
-
-def submission(**known):
-    """Return a submission as the store has it."""
-    usual = {"id": "a" * 32, "number": 7, "name": "cup.xlsx", "sha256": "9c1f" * 16, "size": 34_567, "options": "o",
-             "door": "page", "sender": "", "received_at": NOW - 130, "state": "waiting"}  # fmt: skip
-    return StoredSubmission(**usual | known)
-
-
-def render(name, path="/", **context):
-    """Return a page as the service renders it."""
-    template = page_templates().env.get_template(f"{name}.html")
-    return template.render(version="0.5.0", path=path, token=path, **context)
-
-
-FILES = {role: StoredFile(role=role, sha256="a" * 64, size=9, name=f"x{ending}") for role, ending in {
-    "report": ".xlsx", "results": ".csv", "findings": ".csv", "checked": ".xlsx", "mended": ".xlsx", "reasons": ".txt",
-    "page": ".json"}.items()}  # fmt: skip
 
 
 def pages(text):
@@ -218,52 +182,6 @@ def test_cells_are_drawn_like_the_sheet():
     assert re.findall(r'<td class="mark ?">(.*?)</td>', table) == ["1,6 mm"]
 
 
-def test_states_are_sentences():
-    """Each state of a list is a sentence with a colour and a link that says what is there."""
-    told = {
-        state_line(one, NOW): None
-        for one in (
-            submission(state="done", words="12 of 12 rows computed", counts={"rows": 12, "computed": 12, "fails": 2}),
-            submission(state="done", words="9 of 12 rows computed; 3 cells to fix", counts={"rows": 12, "computed": 9}),
-            submission(state="rejected", words="password-protected file"),
-            submission(state="working"),
-        )
-    }
-    assert [(line.words, line.kind, line.link) for line in told] == [
-        ("12 of 12 rows computed; 2 fail", "good", "report"),
-        ("9 of 12 rows computed; 3 cells to fix", "warn", "findings"),
-        ("password-protected file", "bad", "reason"),
-        ("being read and checked", "plain", "watch"),
-    ]
-
-
-def test_history_leads_to_older_ones_only_where_there_are_some():
-    """A full page of the history with one more behind it leads on, by the last number that it shows."""
-    found = [submission(number=number) for number in range(60, 0, -1)]
-    more = lists.history_view(found[:51], NOW, text="a&b", totals={})
-    assert (len(more.lines), more.older) == (50, 11)
-    assert lists.history_view(found[:50], NOW, totals={}).older is None
-    assert "/history?text=a%26b&amp;state=&amp;before=11" in render("history", "/history", view=more)
-
-
-def test_every_finding_has_a_page():
-    """Each code of the catalogue is explained under its address, in any case; other codes are not."""
-    for code, rule in CATALOGUE.items():
-        context = views.explained(code.lower())
-        assert context, code
-        assert rule.title[1:] in HtmlPage(render("explained", **context)).text
-    assert views.explained("E999") is None
-
-
-def test_the_help_has_every_column():
-    """How to fill the template names every column of every sheet, and what its cells must be."""
-    text = HtmlPage(render("help", "/help", **views.how_to_fill())).text
-    for sheet in ENTRY_SHEETS.values():
-        for column in sheet:
-            for words in (column.label, column.requirement, column.help):
-                assert " ".join(words.split()) in text, column.key
-
-
 def test_a_variant_that_there_is_not_has_no_page():
     """The place of a variant is one of those that have facts."""
     facts = json.loads(json.dumps(made(PageFacts, "words")))
@@ -272,12 +190,38 @@ def test_a_variant_that_there_is_not_has_no_page():
     assert variant_view(submission(), facts, -1) is None
 
 
-def test_moments_are_near_and_exact():
-    """A moment is told as one says it, and exactly beside it."""
-    said = [Moment.of(NOW - past, NOW).near for past in (5, 130, 2 * 3600 + 5)]
-    assert said == ["just now", "2 min ago", "2 h ago"]
-    assert re.fullmatch(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d", Moment.of(NOW, NOW).exact)
-    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d[+-]\d\d:\d\d", Moment.of(NOW, NOW).machine)
+def test_what_keeps_files_from_the_drop_folder_is_told(tmp_path):
+    """A submission of the drop folder whose files cannot be put there says why, until they are there."""
+    with Store(tmp_path, serving=True) as store:
+        one = store.accept(HandedIn(name="cup.xlsx", options="o", door="folder"), b"bytes")
+        store.take()
+        sha256, size = store.blobs.put(b"report")
+        report = StoredFile(role="report", sha256=sha256, size=size, name="cup-report.xlsx")
+        store.end(one.id, Ending(state="done", exit_code=0, words="1 of 1 rows computed", files=[report]))
+        assert not views.submission(store, store.submission(one.id))["view"].undelivered
+        store.postpone(store.deliveries()[0], 60, "the folder cannot be written")
+        html = render("submission", **views.submission(store, store.submission(one.id)))
+        told = (
+            "Not put into the folder for results. The folder cannot be written; it is tried again. All files are here"
+        )
+        assert told in HtmlPage(html).text
+        store.delivered(store.undelivered()[0])
+        assert not views.submission(store, store.submission(one.id))["view"].undelivered
+
+
+def test_the_same_file_again_is_told_also_where_the_first_was_forgotten(tmp_path):
+    """An answer that was there is called so, with a link to the first as long as that is kept."""
+    with Store(tmp_path, serving=True) as store:
+        first = store.accept(HandedIn(name="cup.xlsx", options="o", door="page"), b"bytes")
+        store.take()
+        store.end(first.id, Ending(state="rejected", exit_code=4, words="not a submission"))
+        again = store.accept(HandedIn(name="cup.xlsx", options="o", door="page"), b"bytes")
+        link = f'href="/submissions/{first.id}"'
+        kept = render("submission", **views.submission(store, again))
+        store.forget(first.id)
+        gone = render("submission", **views.submission(store, again))
+    assert ["Handed in before." in html for html in (kept, gone)] == [True, True]
+    assert [link in html for html in (kept, gone)] == [True, False]
 
 
 def test_server_side_of_the_pages_loads_nothing_heavy():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import PurePosixPath
 from typing import Any, Literal
 
 from markupsafe import Markup
@@ -13,11 +12,11 @@ from flexlash.report.page.shape import Card, PageFacts, Tile
 from flexlash.schema.number_words import grouped
 from flexlash.service.records import StoredFile, StoredSubmission
 from flexlash.service.web.chart import UNIT, Spread, spread_chart
+from flexlash.service.web.offers import Download, offered
 from flexlash.service.web.words import DOORS, Moment, StateLine, counted, remaining, size_words, state_line
 
 __all__ = [
     "CheckedView",
-    "Download",
     "Progress",
     "SubmissionView",
     "checked_view",
@@ -28,16 +27,6 @@ _CARDS, _DRAWN = 6, 20
 """Cards that are open and variants that are drawn; the others wait behind a line."""
 
 Stage = Literal["waiting", "working", "done", "rejected"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Download:
-    """A file to download: its address, what its button says, how large it is, whether it is what one wants first."""
-
-    role: str
-    words: str
-    size: str
-    is_first: bool
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,7 +71,9 @@ class SubmissionView:
     refresh: int
     progress: Progress | None
     trouble: str
+    undelivered: str
     reason: str
+    is_repeated: bool
     repeated: Line | None
     previous: Line | None
     facts: PageFacts | None
@@ -117,12 +108,13 @@ def submission_view(
     submission: StoredSubmission, now: float, *, facts: PageFacts | None = None,
     files: Mapping[str, StoredFile] | None = None, before: int = 0, waiting: int = 0,
     first: StoredSubmission | None = None, previous: StoredSubmission | None = None,
-    events: Iterable[Mapping[str, Any]] = (),
+    events: Iterable[Mapping[str, Any]] = (), undelivered: str = "",
 ) -> SubmissionView:  # fmt: skip
     """Return the page of a submission.
 
     `before` are those that are begun before it while it waits, `waiting` those that wait in all; `first` is the one
-    whose result it was answered with, `previous` the last one of its name that differs and has a report.
+    whose result it was answered with, `previous` the last one of its name that differs and has a report; `undelivered`
+    says what keeps its files from the folder to which they belong.
     """
     cards = facts["cards"] if facts else []
     partly = bool(facts and facts["counts"].get("errors"))
@@ -141,7 +133,9 @@ def submission_view(
         refresh=0 if submission.has_ended else _refresh(submission, now),
         progress=_progress(submission, now, waiting) if submission.state == "working" else None,
         trouble=_trouble(submission, now),
+        undelivered=undelivered,
         reason=submission.reason,
+        is_repeated=bool(submission.same_as),
         repeated=_line(first, now),
         previous=_line(previous, now),
         facts=facts,
@@ -152,7 +146,7 @@ def submission_view(
         findings_first=partly,
         charts=_charts(facts),
         drawn_more=max(0, len(facts["chart"]["variants"]) - _DRAWN) if facts and facts["chart"] else 0,
-        downloads=_downloads(submission, facts, files or {}, partly=partly),
+        downloads=offered(submission, facts, files or {}, partly=partly),
         events=[Event(when=Moment.of(row["at"], now), words=_event(row)) for row in events],
     )
 
@@ -229,49 +223,21 @@ def _charts(facts: PageFacts | None) -> Sequence[Markup]:
     return [*charts, spread_chart("spread-others", others, UNIT, beside=first)] if others else charts
 
 
-_SAID = {"report", "checked"}
-"""Files beside which one with the reasons, which the page says, is of no use."""
-
-
-def _downloads(
-    submission: StoredSubmission, facts: PageFacts | None, files: Mapping[str, StoredFile], *, partly: bool
-) -> Sequence[Download]:
-    """Return the files to download, in the order in which they are wanted."""
-    if not submission.has_ended:
-        return []
-    computed = facts["counts"].get("computed", 0) if facts else 0
-    fixes = facts["fixable"] if facts else 0
-    words = {
-        "checked": "Marked copy",
-        "mended": f"File with {counted(fixes, 'certain fix')}".replace("fixs", "fixes"),
-        "report": f"Report of the {counted(computed, 'row')}" if partly and computed > 1 else "Report",
-        "results": "Results",
-        "findings": "All findings",
-        "reasons": "Reasons",
-    }
-    order = (
-        list(words)
-        if partly or submission.state == "rejected"
-        else ["report", "results", "findings", "checked", "mended", "reasons"]
-    )
-    there = [role for role in order if role in files and (role != "reasons" or not _SAID & set(files))]
-    return [
-        Download(
-            role=role,
-            words=f"{words[role]} ({PurePosixPath(files[role].name).suffix or 'file'})",
-            size=size_words(files[role].size),
-            is_first=role == there[0],
-        )
-        for role in there
-    ]
-
-
-_EVENTS = {"received": "handed in", "begun": "computing began", "done": "computed", "put back": "put back in the queue",
-           "handed back": "put back in the queue", "retried": "asked to be computed anew"}  # fmt: skip
+_EVENTS = {
+    "received": "handed in as",
+    "begun": "computing began",
+    "done": "computed",
+    "put back": "put back in the queue",
+    "handed back": "put back in the queue",
+    "retried": "asked to be computed anew",
+    "delivered": "put into the folder for results",
+}
 
 
 def _event(row: Mapping[str, Any]) -> str:
     """Return an event in words."""
+    if row["kind"] == "answered again":
+        return "answered with the result of the same file, which was there"
     return ": ".join(filter(None, (_EVENTS.get(row["kind"], row["kind"]), row["text"])))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
 from flexlash.report.page.shape import PageFacts
@@ -48,7 +48,8 @@ def submission(store: Store, one: StoredSubmission) -> dict[str, Any]:
         waiting=store.totals()["waiting"],
         first=store.submission(one.same_as) if one.same_as else None,
         previous=store.previous(one) if "report" in files else None,
-        events=store.events(one.id),
+        events=(events := store.events(one.id)),
+        undelivered=_undelivered(store, one, events),
     )
     return {"view": view}
 
@@ -98,6 +99,16 @@ def seconds_left(store: Store, one: StoredSubmission) -> float | None:  # noqa: 
     """Return the seconds until a submission at work will be done, None where that cannot be told."""
     speed = remaining(one, time.time())[0] if one.state == "working" else 0.0
     return (one.rows - one.rows_done) / speed if speed else None
+
+
+def _undelivered(store: Store, one: StoredSubmission, events: Sequence[Mapping[str, Any]]) -> str:
+    """Return what keeps a submission's files from the folder to which they belong, in a sentence."""
+    if one.door != "folder":
+        return ""
+    dropped = [event["text"] for event in events if event["kind"] == "not delivered"]
+    waiting = [each for each in store.undelivered() if each.submission == one.id and each.kind != "message"]
+    troubles = dropped or [f"{each.trouble}; it is tried again" for each in waiting if each.trouble]
+    return f"{troubles[0][:1].upper()}{troubles[0][1:].rstrip('.')}." if troubles else ""
 
 
 def _facts(store: Store, files: Mapping[str, StoredFile]) -> PageFacts | None:
