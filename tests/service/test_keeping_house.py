@@ -15,6 +15,7 @@ from stored import computed, handed, left
 
 from flexlash.service import backup
 from flexlash.service.backup import back_up
+from flexlash.service.blobs import Blobs
 from flexlash.service.keeper import Keeper
 from flexlash.service.log import Log
 from flexlash.service.outbox import Outbox
@@ -200,7 +201,7 @@ def test_a_backup_that_is_cut_short_leaves_the_last_one(store, tmp_path, monkeyp
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(backup, "_put_in_place", full)
+    monkeypatch.setattr(Blobs, "put_file", full)
     with pytest.raises(OSError, match="No space"):
         back_up(store, tmp_path / "copy")
     monkeypatch.undo()

@@ -53,6 +53,18 @@ def test_r3_a_commit_that_the_disk_refuses_is_undone_and_the_next_holds(store):
         assert [name for (name,) in other.execute("SELECT name FROM submission")] == ["first.csv", "third.csv"]
 
 
+def test_r3_a_commit_that_leaves_its_transaction_open_is_rolled_back(store):
+    """Of a COMMIT that SQLite refuses, here because a file belongs to no submission, nothing is left for the next."""
+    database = store._database
+    with pytest.raises(sqlite3.IntegrityError), database.transaction():  # noqa: PT012
+        database.run("PRAGMA defer_foreign_keys = ON")
+        database.run("INSERT INTO forgotten VALUES ('x', 0)")
+        database.run("INSERT INTO file VALUES ('nobody', 'report', '', 0, '')")
+    assert not database._connection.in_transaction
+    store.accept(handed(), b"1")
+    assert not store.was_forgotten("x")
+
+
 def test_r3_a_commit_that_fails_in_one_thread_is_not_part_of_the_next_of_another(store):
     """What was undone in one thread is not committed by another thread's transaction."""
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import sqlite3
 import stat
-import subprocess
-import sys
+import threading
 from pathlib import Path
 
 import pytest
+from filelock import FileLock
 
 from flexlash.service import store_place
 from flexlash.service.outbox import Outbox
@@ -17,7 +17,6 @@ from flexlash.service.records import HandedIn
 from flexlash.service.store import Store, StoreInUseError
 from flexlash.service.store_place import StoreError, default_store, prepared, remote_kind
 
-SOURCE = Path(__file__).resolve().parents[2] / "src"
 HANDED = HandedIn(name="a.csv", options="o", door="page")
 
 
@@ -49,9 +48,8 @@ def test_a_second_server_is_refused_and_the_store_named(folder):
 
 def test_a_lock_is_free_whichever_thread_closes_the_store(folder):
     """A store that was opened in one thread and closed in another can be served again."""
-    import threading
-
-    thread = threading.Thread(target=Store(folder, serving=True).close)
+    store = Store(folder, serving=True)
+    thread = threading.Thread(target=store.close)
     thread.start()
     thread.join()
     with Store(folder, serving=True):
@@ -59,22 +57,15 @@ def test_a_lock_is_free_whichever_thread_closes_the_store(folder):
 
 
 def test_looking_whether_a_store_is_served_keeps_no_server_from_starting(folder):
-    """A server starts although others ask again and again whether one works on the store."""
-    code = (
-        "import sys\nfrom pathlib import Path\nfrom flexlash.service.outbox import Outbox\n"
-        "with Outbox.opened(Path(sys.argv[1])) as held:\n    print(held.is_served(), flush=True)\n"
-        "    for _ in range(20_000): held.is_served()\n"
-    )
-    asking = subprocess.Popen(
-        [sys.executable, "-c", code, folder], env=os.environ | {"PYTHONPATH": str(SOURCE)}, stdout=subprocess.PIPE
-    )
-    try:
-        assert asking.stdout.readline().strip() == b"False"
-        for _ in range(5):
-            Store(folder, serving=True).close()
-    finally:
-        asking.kill()
-        asking.communicate()
+    """A server that starts in the moment in which somebody else looks at its lock waits for that moment to pass."""
+    lock = FileLock(folder / "server.lock", thread_local=False)
+    lock.acquire()
+    looking = threading.Timer(0.2, lock.release)
+    looking.start()
+    with Store(folder, serving=True) as store, Outbox.opened(folder) as held:
+        looking.join()
+        assert held.is_served()
+        assert held.name == store.name
 
 
 @pytest.mark.skipif(os.name != "posix", reason="permissions of this system are others")
@@ -158,8 +149,9 @@ def test_looking_makes_no_store(tmp_path):
     """To ask for a store that is not there, or to retry in it, makes none."""
     with pytest.raises(StoreError, match="there is no store in"), Outbox.opened(tmp_path / "none"):
         pass
-    with pytest.raises(StoreError):
-        Store(tmp_path / "none", serving=False)
+    for folder in (tmp_path / "none", tmp_path):
+        with pytest.raises(StoreError):
+            Store(folder, serving=False)
     assert list(tmp_path.iterdir()) == []
 
 
