@@ -226,7 +226,10 @@ def test_downloads_are_attachments(tmp_path, name, kind):
         assert answer.headers["content-disposition"].startswith(f'attachment; filename="{name}"')
         file = one.store.files(where.rpartition("/")[2])["report"]
         assert answer.headers["etag"] == f'"{file.sha256}"'
-        one.store.blobs.path(file.sha256).unlink()
+        path = one.store.blobs.path(file.sha256)
+        path.write_bytes(content[:-1] + b"x")
+        assert one.visitor().get(f"{where}/files/report").status_code == 503
+        path.unlink()
         assert one.visitor().get(f"{where}/files/report").status_code == 503
         for role in ("checked", "../report", "REPORT", "%00"):
             assert one.visitor().get(f"{where}/files/{role}").status_code == 404

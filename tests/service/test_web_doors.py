@@ -207,6 +207,16 @@ def test_a_program_sends_the_token(tmp_path, token_file):
         assert one.visitor(authorization=f"Basic {TOKEN}").get("/").status_code == 401
 
 
+def test_a_program_needs_no_form(tmp_path):
+    """Where no token is asked, a program that says one, which no foreign page can have said, needs no form either."""
+    with page(tmp_path) as one:
+        assert one.visitor(authorization="Bearer any").hand_in(token="", headers=JSON).status_code == 201
+        for other in ("Basic YTpi", "Bearer", "Bearer ", ""):
+            assert one.visitor(authorization=other).hand_in(token="", headers=JSON).status_code == 400, other
+        foreign = {**JSON, "sec-fetch-site": "cross-site"}
+        assert one.visitor(authorization="Bearer any").hand_in(token="", headers=foreign).status_code == 403
+
+
 def test_wrong_tokens_are_not_tried_for_ever(tmp_path, token_file):
     """After five wrong tokens in a minute an address is not listened to, though the next were right; others are."""
     with page(tmp_path, access=Access.of(host=ANYWHERE, token_file=token_file)) as one:

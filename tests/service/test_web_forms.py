@@ -2,6 +2,7 @@
 
 import errno
 import sqlite3
+import time
 from concurrent.futures import Future
 
 import pytest
@@ -313,10 +314,12 @@ def test_a_check_that_cannot_be_made_is_told(tmp_path, said, status, words):
     works = Checking()
     works.said = said
     with page(tmp_path, works=works, limits=Limits(answer_seconds=0.05)) as one:
+        began = time.monotonic()
         answer = one.visitor().hand_in(action="check", content=b"abc", name="a/b.xlsx")
         assert answer.status_code == status
         assert words in answer.text
         assert "secret" not in answer.text
+        assert time.monotonic() - began < 20
         assert works.seen == ("b.xlsx", b"abc")
         assert not one.store.history()
         assert not list((one.store.folder / "blobs").glob("??/*"))

@@ -50,7 +50,8 @@ class Visitors:
         sender = self._sender(request)
         self._require_own_form(request)
         if not self._access.asks or path == "/login" or path.startswith(("/static/", OPENING)):
-            return {"sender": sender, "session": ""}
+            # No browser says such a token of its own accord, nor has a foreign page it said: this is a program.
+            return {"sender": sender, "session": "", "bearer": "yes" if _bearer(request) else ""}
         return {"sender": sender, **self._session(request)}
 
     def _require_host(self, request: Request) -> None:
@@ -97,9 +98,8 @@ class Visitors:
 
     def _session(self, request: Request) -> Mapping[str, str]:
         """Return the session of a cookie or of a token in a header."""
-        kind, _, token = request.headers.get("authorization", "").partition(" ")
-        if kind.lower() == "bearer":
-            self._require_right(request, token.strip())
+        if token := _bearer(request):
+            self._require_right(request, token)
             return {"session": "", "bearer": "yes"}
         value = self._signer.value(self._purpose, request.cookies.get(self._cookie(request), ""), _SESSION)
         if value is None:
@@ -153,6 +153,12 @@ class Visitors:
         """Return the name of the cookie; browsers keep those of several ports of a host together."""
         port = (request.scope.get("server") or ["", 0])[1]
         return "__Host-flexlash" if self._is_secure(request) else f"flexlash-{port}"
+
+
+def _bearer(request: Request) -> str:
+    """Return the token that a program says in a header, empty where none is said."""
+    kind, _, token = request.headers.get("authorization", "").partition(" ")
+    return token.strip() if kind.lower() == "bearer" else ""
 
 
 def _is_same(token: str, right: str) -> bool:
