@@ -27,7 +27,19 @@ from queue import Empty, PriorityQueue
 from types import ModuleType
 from typing import Any, Self, TypeVar
 
-__all__ = ["FEW_THREADS", "StoppedError", "Told", "Worker", "WorkerLostError", "Workers", "mapped", "tell", "timed"]
+__all__ = [
+    "FEW_THREADS",
+    "StoppedError",
+    "Told",
+    "Worker",
+    "WorkerLostError",
+    "Workers",
+    "hear",
+    "mapped",
+    "tell",
+    "timed",
+    "with_children",
+]
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -102,7 +114,7 @@ def _uninterrupted() -> Iterator[None]:
 
 
 @contextmanager
-def _with_children() -> Iterator[None]:
+def with_children() -> Iterator[None]:
     """Let a daemonic process, such as a worker of Dask, start others: these end with it of their own accord."""
     configuration = current_process()._config  # type: ignore[attr-defined]  # noqa: SLF001
     daemon = configuration.pop("daemon", None)
@@ -122,7 +134,7 @@ class _Process(SpawnProcess):
         main = sys.modules["__main__"]
         sys.modules["__main__"] = ModuleType("__main__")
         try:
-            with _environment(self.variables), _uninterrupted(), _with_children():
+            with _environment(self.variables), _uninterrupted(), with_children():
                 super().start()
         finally:
             sys.modules["__main__"] = main
@@ -150,6 +162,7 @@ class Worker:
         finally:
             requests.close()
             answers.close()
+        self._saying = threading.Lock()
 
     def asked(self, function: Callable[..., Result], *arguments: object, told: Told | None = None) -> Result:
         """Return a function of these arguments, worked out there; `told` is called with what it tells meanwhile.
@@ -165,6 +178,11 @@ class Worker:
         if kind == "raised":
             raise value
         return value  # type: ignore[no-any-return]
+
+    def say(self, message: bytes) -> None:
+        """Hand a message to what the worker is doing, which must hear it (`hear`); raise OSError where it has ended."""
+        with self._saying:
+            self._requests.send_bytes(message)
 
     def wait(self) -> None:
         """Wait until the initializer has returned; raise StoppedError when the worker is stopped before."""
@@ -223,6 +241,7 @@ class Worker:
 class _Own:
     """What leads to the one that asks, in a worker."""
 
+    requests: Connection | None = None
     answers: Connection | None = None
 
 
@@ -245,13 +264,23 @@ def tell(message: bytes) -> None:
         _Own.answers.send(("told", message))
 
 
+def hear() -> bytes:
+    """Wait for a message to what this worker is doing (`Worker.say`); the next thing that is asked would be one, too.
+
+    Raises EOFError in a process that nobody asks, or once nobody asks any more.
+    """
+    if _Own.requests is None:
+        raise EOFError
+    return _Own.requests.recv_bytes()
+
+
 def _serve(requests: Connection, answers: Connection, initializer: Callable[[], None] | None) -> None:
     """Do what is asked, one thing after another, until nobody asks."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    _Own.answers = answers
+    _Own.requests, _Own.answers = requests, answers
     if initializer:
         initializer()
     with suppress(EOFError, OSError):

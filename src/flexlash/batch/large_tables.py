@@ -66,11 +66,12 @@ class LargeTable:
 
     `ran` says that its spread is computed, not merely that it is checked. `tables` stand beside it, by the sheet that
     each replaces, `companions` are the files given with it. `report` is where its Results go, `copy` where its findings
-    go as a workbook, None for each that is not wanted. With `resume` what a stopped run has done is taken up, with
-    `pages` the answer has what a page shows.
+    go as a workbook, None for each that is not wanted. With `resume` what a stopped run has done is taken up. `name` is
+    that of the table as it may be printed, where its path has another; with `pages` the answer has what a page shows.
     """
 
     path: Path
+    name: str = ""
     ran: bool
     options: Options
     tables: Mapping[str, Source] = field(default_factory=dict)
@@ -79,6 +80,11 @@ class LargeTable:
     copy: Output | None = None
     resume: bool = False
     pages: bool = False
+
+    @property
+    def called(self) -> str:
+        """The name by which the table is told of."""
+        return self.name or readable(self.path.name)
 
 
 def large_table(
@@ -100,7 +106,8 @@ def large_table(
         table.report.require()
     limits = table.options.limits
     try:
-        found = _asked(table, survey, limits_of_survey(limits, table.path.stat().st_size), table.path, limits)
+        within = limits_of_survey(limits, table.path.stat().st_size)
+        found = _asked(table, survey, within, table.path, limits, table.called)
     except _RefusedError as refused:
         with table.path.open("rb") as file:
             digest = hashlib.file_digest(file, "sha256").hexdigest()
@@ -114,7 +121,7 @@ def _asked(table: LargeTable, task: Callable[..., _Result], limits: ReadingLimit
     try:
         return ask(task, limits, *arguments)
     except Refusal as refusal:
-        found = finding(refusal.code, **{"file": readable(table.path.name), **refusal.facts})
+        found = finding(refusal.code, **{"file": table.called, **refusal.facts})
         raise _RefusedError(ChunkSummary(refusal=found, skipped=found.level == "info")) from refusal
 
 
@@ -125,7 +132,7 @@ def _refused(table: LargeTable, sha256: str, chunk: ChunkSummary) -> Answer:
     from flexlash.batch.compute import answer_of
     from flexlash.reading.raw import Submission
 
-    submission = Submission(name=readable(table.path.name), sha256=sha256, kind="refused")
+    submission = Submission(name=table.called, sha256=sha256, kind="refused")
     findings = () if chunk.refusal is None else (chunk.refusal,)
     outcome = Outcome(submission=submission, results=empty_results(), findings=findings, skipped=chunk.skipped)
     return answer_of(outcome, ran=table.ran)

@@ -176,8 +176,8 @@ def is_large(path: Path, limits: ReadingLimits) -> bool:  # noqa: ARG001
     return False
 
 
-def survey(path: Path, limits: ReadingLimits) -> Survey:
-    """Return the survey of a text table or a Parquet file of any size.
+def survey(path: Path, limits: ReadingLimits, name: str = "") -> Survey:
+    """Return the survey of a text table or a Parquet file of any size; `name` is its own where its path has another.
 
     To be asked of the limited process, within `limits_of_survey`. Raises OSError when the file cannot be opened,
     Refusal when it is no table, or holds what no table of variants can.
@@ -188,7 +188,7 @@ def survey(path: Path, limits: ReadingLimits) -> Survey:
         if not head:
             raise Refusal("E101", found="the file is empty")
         kind = kind_of(head)
-        name = readable(path.name)
+        name = name or readable(path.name)
         if kind == "csv":
             found = _of_text(file, status.st_size, name, limits)
         elif kind == "parquet":

@@ -10,23 +10,25 @@ import time
 from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Future
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
 from flexlash.analysis.options import Options
-from flexlash.batch.answer import Answer, Told
+from flexlash.batch.answer import Answer
 from flexlash.batch.ended import fault_of, refused_answer
 from flexlash.batch.executor import ClusterError, Executor, WorkerLostError
-from flexlash.batch.side_by_side import computed_apart
+from flexlash.batch.large_apart import LargeAnswer
+from flexlash.batch.side_by_side import computed_apart, large_tables
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.findings import readable, shown
 from flexlash.service.blobs import DamagedFileError
-from flexlash.service.endings import PAGE, KeptFile, ending_of, kept
+from flexlash.service.endings import ending_of
+from flexlash.service.large_submissions import LargeSubmissions
 from flexlash.service.log import Log
 from flexlash.service.open_executor import OpenExecutor, Opening
+from flexlash.service.progress import Begun
 from flexlash.service.questions import Questions
 from flexlash.service.records import StoredSubmission
 from flexlash.service.repeated import ENVIRONMENT_FAULTS, Repeated, back_off
@@ -41,23 +43,11 @@ _SECONDS = 1.0
 _AHEAD = 2
 """Submissions for each worker that are handed over, so that none waits for this thread."""
 
-_NOTED = 0.5
-"""Seconds that pass before the rows of a submission are written down again."""
-
 _MOST_LOST = 3
 """Workers, or servers, that a submission may cost."""
 
 _LONGEST_STOP = 28.0
 """Seconds that stopping may take; whoever stops a service kills it after 30."""
-
-
-@dataclass(kw_only=True)
-class _Begun:
-    """A submission at work, and when its rows were last written down."""
-
-    submission: StoredSubmission
-    future: Future[bytes] | None = None
-    noted: float = 0.0
 
 
 class Dispatcher(Questions):
@@ -78,9 +68,11 @@ class Dispatcher(Questions):
         super().__init__(service_options(options), store.blobs)
         self._store = store
         self._executor = OpenExecutor(open_executor, log)
+        self._large = LargeSubmissions(store.folder / "work", self._options)
+        self._passed_over: set[str] = set()
         self._log = log
         self._on_end = ended
-        self._begun: dict[str, _Begun] = {}
+        self._begun: dict[str, Begun] = {}
         self._events: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._owed: dict[str, Callable[[], None]] = {}
         self._faults: Counter[str] = Counter()
@@ -125,6 +117,7 @@ class Dispatcher(Questions):
         except ENVIRONMENT_FAULTS as fault:
             # The next server finds them at work, and begins with them.
             self._log.say("fault", what="handing back", why=readable(fault))
+        self._large.stop()
         self._cancel()
         self._executor.close(max(1.0, end - time.monotonic()))
 
@@ -133,8 +126,7 @@ class Dispatcher(Questions):
     def _step(self) -> None:
         """Hear what has become of what is at work, and begin as much as there are workers for."""
         if not self._is_recovered:
-            self._store.recover()
-            self._is_recovered = True
+            self._recover()
         self._settle()
         while True:
             try:
@@ -146,9 +138,15 @@ class Dispatcher(Questions):
         executor = self._executor.get()
         if executor is not None:
             self._hand_over(executor)
-            while self._may_begin(executor) and (taken := self._store.take()):
+            while self._may_begin(executor) and (taken := self._store.take(self._passed_over)):
                 self._begin(taken, executor)
                 self._settle()
+
+    def _recover(self) -> None:
+        """Have what was at work when a server ended come first; keep what was done of large tables that still wait."""
+        self._store.recover()
+        self._large.keep_only(lambda id_: (known := self._store.submission(id_)) is not None and not known.has_ended)
+        self._is_recovered = True
 
     def _may_begin(self, executor: Executor) -> bool:
         """Whether another submission is begun: beside one that runs alone there is none."""
@@ -159,7 +157,7 @@ class Dispatcher(Questions):
             return True
         if self._is_draining or any(one.submission.alone for one in self._begun.values()):
             return False
-        return len(self._begun) < _AHEAD * executor.workers
+        return sum(not one.is_large for one in self._begun.values()) < _AHEAD * executor.workers
 
     def _begin(self, submission: StoredSubmission, executor: Executor) -> None:
         """Hand a submission over to a worker, or end it where it is refused without."""
@@ -167,12 +165,13 @@ class Dispatcher(Questions):
             self._is_draining = True
             self._hand_back(submission)
             return
-        begun = self._begun[submission.id] = _Begun(submission=submission)
+        begun = self._begun[submission.id] = Begun(submission=submission)
         self._guarded(submission, partial(self._handed_over, begun, executor))
 
-    def _handed_over(self, begun: _Begun, executor: Executor) -> None:
+    def _handed_over(self, begun: Begun, executor: Executor) -> None:
         """Hand a submission over to a worker, or end it where none is to see it."""
         submission, limits = begun.submission, self._options.limits
+        path = self._store.blobs.path(submission.sha256)
         if submission.server_ends >= _MOST_LOST:
             self._end_lost(submission, f"was alone at work {submission.server_ends} times when the server ended")
             return
@@ -184,8 +183,17 @@ class Dispatcher(Questions):
         except Refusal as refusal:
             self._end(submission, refused_answer(Path(submission.name), refusal, submission.sha256))
             return
-        task = run_task(submission.name, data, self._options)
-        begun.future = executor.submit(computed_apart, task.as_bytes(), partial(self._say, self._told, begun))
+        told = partial(self._say, self._told, begun)
+        if large_tables(self._options, [path]):
+            if self._large.is_busy:
+                self._passed_over.add(submission.id)
+                self._hand_back(submission)
+                return
+            begun.is_large = True
+            begun.future = self._large.begin(submission, path, executor, told)
+        else:
+            task = run_task(submission.name, data, self._options)
+            begun.future = executor.submit(computed_apart, task.as_bytes(), told)
         begun.future.add_done_callback(lambda _: self._say(self._answered, begun))
 
     def _say(self, event: Callable[..., None], *facts: object) -> None:
@@ -195,25 +203,15 @@ class Dispatcher(Questions):
 
     # What is heard of a submission at work
 
-    def _told(self, begun: _Begun, message: bytes) -> None:
-        """Write down how far a submission is, and what checking it has found; a fault here costs the news alone."""
-        id_ = begun.submission.id
-        if self._begun.get(id_) is not begun:
-            return
-        told = Told.of(message)
-        try:
-            if told.page:
-                with self._store.blobs.keeping():
-                    page = kept(self._store.blobs, begun.submission, KeptFile(role="page", ending=PAGE, data=told.page))
-                    self._store.note_checked(id_, told.counts, page)
-            if told.rows and (told.page or time.monotonic() - begun.noted >= _NOTED):
-                begun.noted = time.monotonic()
-                self._store.note_rows(id_, told.rows_done, told.rows)
-        except ENVIRONMENT_FAULTS as fault:
-            self._log.say("fault", id_, what="progress", why=readable(fault))
+    def _told(self, begun: Begun, message: bytes) -> None:
+        """Write down how far a submission is, if it is still that which is told of."""
+        if self._begun.get(begun.submission.id) is begun:
+            begun.note(message, self._store, self._log)
 
-    def _answered(self, begun: _Begun) -> None:
+    def _answered(self, begun: Begun) -> None:
         """End a submission, or hand it back; what nobody waits for any more is dropped."""
+        if begun.is_large:
+            self._passed_over.clear()
         if begun.future is not None and self._begun.get(begun.submission.id) is begun:
             self._guarded(begun.submission, partial(self._heard, begun.submission, begun.future))
 
@@ -263,8 +261,11 @@ class Dispatcher(Questions):
     def _end(self, submission: StoredSubmission, answer: Answer, reason: str = "") -> None:
         """Keep the result of a submission and write down how it ended."""
         with self._store.blobs.keeping():
-            ending = ending_of(submission, answer, self._store.blobs, self._options.limits, reason=reason)
+            blobs = self._store.blobs
+            files = self._large.kept(submission, answer, blobs) if isinstance(answer, LargeAnswer) else {}
+            ending = ending_of(submission, answer, blobs, self._options.limits, reason=reason, further=files)
             self._store.end(submission.id, ending)
+        self._large.forget(submission.id)
         self._begun.pop(submission.id, None)
         self._faults.pop(submission.id, None)
         self._log.say(ending.state, submission.id, exit_code=ending.exit_code, words=ending.words)

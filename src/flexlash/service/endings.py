@@ -20,7 +20,7 @@ from flexlash.service.blobs import Blobs
 from flexlash.service.reasons import reasons_text
 from flexlash.service.records import Ending, FileRole, RuleCount, StoredFile, StoredSubmission
 
-__all__ = ["PAGE", "KeptFile", "ending_of", "kept", "outcome_json"]
+__all__ = ["PAGE", "KeptFile", "ending_of", "kept", "named", "outcome_json"]
 
 _DONE = {ExitCode.FINE, ExitCode.SOME_ROWS, ExitCode.OVER_LIMIT}
 _BY_CHANCE = ("seconds", "processor_seconds", "memory_mebibytes")
@@ -52,12 +52,13 @@ def ending_of(
     """Return how a submission ended, its files kept; call it within `blobs.keeping()` until the row names them.
 
     `reason` says why it was rejected where the answer does not; it may end otherwise another time. `further` are files
-    of its result that are kept already. Raises OSError where a file cannot be kept.
+    of its result that are kept already, by what they are. Raises OSError where a file cannot be kept.
     """
+    further = further or {}
     is_done = answer.exit_code in _DONE and answer.fault is None
     why = "" if is_done else reason or _reason(answer)
-    files = [kept(blobs, submission, file) for file in _files(submission, answer, "" if is_done else reason)]
-    files += (further or {}).values()
+    made = [file for file in _files(submission, answer, "" if is_done else reason) if file.role not in further]
+    files = [*further.values(), *(kept(blobs, submission, file) for file in made)]
     told = outcome_json(submission, answer, [file.name for file in files if file.role != "page"])
     files.append(kept(blobs, submission, KeptFile(role="outcome", ending="-outcome.json", data=told)))
     return Ending(
@@ -78,8 +79,12 @@ def ending_of(
 def kept(blobs: Blobs, submission: StoredSubmission, file: KeptFile) -> StoredFile:
     """Keep a file of a submission's result and return it; raise OSError where that cannot be."""
     sha256, size = blobs.put(file.data)
-    name = f"{PurePath(submission.name).stem}{file.ending}"
-    return StoredFile(role=file.role, sha256=sha256, size=size, name=name)
+    return StoredFile(role=file.role, sha256=sha256, size=size, name=named(submission, file.ending))
+
+
+def named(submission: StoredSubmission, ending: str) -> str:
+    """Return how a file of a submission's result is called."""
+    return f"{PurePath(submission.name).stem}{ending}"
 
 
 def outcome_json(submission: StoredSubmission, answer: Answer, names: list[str]) -> bytes:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import secrets
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Self
@@ -141,14 +141,17 @@ class Store(Outbox):
                 self._event("put back", row["id"], "the server had ended")
         return [self._known(row["id"]) for row in working]
 
-    def take(self) -> StoredSubmission | None:
-        """Return the oldest submission that may be begun, which is at work from now on; None where there is none."""
+    def take(self, besides: Collection[str] = ()) -> StoredSubmission | None:
+        """Return the oldest submission that may be begun, which is at work from now on; None where there is none.
+
+        `besides` are the IDs of those that are passed over.
+        """
         with self._database.transaction():
             row = self._database.first(
                 "SELECT id FROM submission WHERE state = 'waiting' AND not_before <= ?"
-                " ORDER BY alone DESC, number LIMIT 1",
-                self._clock(),
-            )
+                " AND id NOT IN (SELECT value FROM json_each(?)) ORDER BY alone DESC, number LIMIT 1",
+                self._clock(), json.dumps(list(besides)),
+            )  # fmt: skip
             if row is None:
                 return None
             self._database.run(

@@ -1,0 +1,124 @@
+"""A process that drives a computation borrows the workers of the one that started it, so that all share the same few.
+
+It tells which pieces of work it wants done, and hears their answers, through its own two pipes.
+"""
+
+from __future__ import annotations
+
+import pickle
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError, Future
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from functools import partial
+from itertools import count
+
+from flexlash.batch.executor import Executor, Told, Work, WorkerLostError
+from flexlash.workers import Worker, hear, tell, with_children
+
+__all__ = ["borrowed_workers", "driven"]
+
+_TRIES = 3
+"""Times that a piece of work may lose its worker, whatever the workers themselves allow."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Wanted:
+    """A piece of work that is to be done."""
+
+    number: int
+    work: Work
+    data: bytes
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Answered:
+    """What came of a piece of work, or what it raised."""
+
+    number: int
+    answer: bytes = b""
+    fault: BaseException | None = None
+
+
+def driven(driver: Worker, function: Callable[..., bytes], executor: Executor, told: Told, *arguments: object) -> bytes:
+    """Return a function of these arguments, worked out by a driver that may borrow an executor (`borrowed_workers`).
+
+    `told` is called with what it tells beside that. Raises what the function raises, and StoppedError when the driver
+    is stopped; what it has asked for is given up then.
+    """
+    asked: dict[int, Future[bytes]] = {}
+
+    def hand_over(wanted: _Wanted, losses: int = 0) -> None:
+        future = asked[wanted.number] = executor.submit(wanted.work, wanted.data)
+        future.add_done_callback(partial(answered, wanted, losses))
+
+    def answered(wanted: _Wanted, losses: int, future: Future[bytes]) -> None:
+        if asked.pop(wanted.number, None) is None:
+            return
+        fault = CancelledError() if future.cancelled() else future.exception()
+        if isinstance(fault, WorkerLostError) and not fault.setting and fault.losses:
+            losses += fault.losses
+            if losses < _TRIES:
+                hand_over(wanted, losses)
+                return
+        # A driver that was stopped hears nothing.
+        with suppress(OSError):
+            known = _Answered(number=wanted.number, fault=fault) if fault else _Answered(
+                number=wanted.number, answer=future.result()
+            )  # fmt: skip
+            driver.say(pickle.dumps(known))
+
+    def heard(message: bytes) -> None:
+        said = pickle.loads(message)  # noqa: S301
+        if isinstance(said, _Wanted):
+            hand_over(said)
+        else:
+            told(message)
+
+    try:
+        return driver.asked(function, *arguments, told=heard)
+    finally:
+        for number in list(asked):
+            if future := asked.pop(number, None):
+                future.cancel()
+
+
+class _Borrowed:
+    """The workers of another process, of which this driver may have so many busy."""
+
+    def __init__(self, workers: int) -> None:
+        self.workers = workers
+        self._numbers = count()
+        self._asked: dict[int, Future[bytes]] = {}
+
+    def submit(self, work: Work, data: bytes, told: Told | None = None) -> Future[bytes]:  # noqa: ARG002
+        """Return what will be the answer; nothing is told meanwhile."""
+        number = next(self._numbers)
+        future = self._asked[number] = Future()
+        future.set_running_or_notify_cancel()
+        tell(pickle.dumps(_Wanted(number=number, work=work, data=data)))
+        return future
+
+    def listen(self) -> None:
+        """Hand answers to whoever waits for them, until nobody asks for this process any more."""
+        with suppress(EOFError, OSError):
+            while True:
+                known: _Answered = pickle.loads(hear())  # noqa: S301
+                future = self._asked.pop(known.number)
+                if known.fault is not None:
+                    future.set_exception(known.fault)
+                else:
+                    future.set_result(known.answer)
+
+
+@contextmanager
+def borrowed_workers(workers: int) -> Iterator[Executor]:
+    """Give, in a driver, an executor of so many of the workers of the process that started it.
+
+    A driver is good for one thing, and may have processes of its own meanwhile.
+    """
+    borrowed = _Borrowed(workers)
+    threading.Thread(target=borrowed.listen, name="flexlash answers", daemon=True).start()
+    with with_children():
+        yield borrowed
