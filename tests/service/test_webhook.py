@@ -18,6 +18,7 @@ from dispatching import Clock, opened
 
 from flexlash.service.log import Log
 from flexlash.service.records import Ending, HandedIn, StoredFile
+from flexlash.service.running import Setup, running
 from flexlash.service.webhook import Webhook, webhook_address, webhook_key
 
 KEY = b"a key that both know"
@@ -234,3 +235,13 @@ def test_the_key_is_made_once_or_taken_from_a_file(tmp_path):
     given.write_bytes(b"0123456789abcde\n")
     with pytest.raises(ValueError, match="15 bytes; at least 16 are required"):
         webhook_key(tmp_path, given)
+
+
+def test_a_store_with_a_key_of_its_own_is_opened_again(tmp_path, listener):
+    """A service that tells a webhook is started again and again, with the key that it has made, which is whole."""
+    setup = Setup(store=tmp_path / "store", workers=1, webhook=listener.url)
+    keys = set()
+    for _ in range(2):
+        with running(setup, Log(stream=io.StringIO())):
+            keys.add((tmp_path / "store" / "webhook.key").read_bytes())
+    assert len(keys) == 1

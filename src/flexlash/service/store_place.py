@@ -14,6 +14,7 @@ __all__ = [
     "DATABASE",
     "KEEPING_LOCK",
     "SERVER_LOCK",
+    "WEBHOOK_KEY",
     "StoreError",
     "default_store",
     "foreign",
@@ -25,7 +26,10 @@ DATABASE = "flexlash.sqlite"
 SERVER_LOCK, KEEPING_LOCK = "server.lock", "keeping.lock"
 """Locks that a server holds as long as it lives, and a backup while blobs must not be swept."""
 
-_OURS = re.compile(r"flexlash\.sqlite.*|(server|keeping)\.lock|blobs|\..*|lost\+found")
+WEBHOOK_KEY = "webhook.key"
+"""The file with the key by which messages are signed, where none was given."""
+
+_OURS = re.compile(r"flexlash\.sqlite.*|(server|keeping)\.lock|webhook\.key|blobs|\..*|lost\+found")
 """What may lie in the folder of a store, or of one whose making was interrupted."""
 
 _REMOTE = re.compile(

@@ -10,19 +10,20 @@ from __future__ import annotations
 import hashlib
 import hmac
 import json
-import os
 import secrets
-from contextlib import closing, suppress
+from contextlib import closing
 from http.client import HTTPConnection, HTTPException, HTTPSConnection
 from pathlib import Path
 from urllib.parse import SplitResult, urlsplit
 
 from flexlash import __version__
+from flexlash.outputs.writing import put_new, temporary
 from flexlash.schema.findings import readable, shown
 from flexlash.service.log import Log
 from flexlash.service.records import Delivery
 from flexlash.service.repeated import Repeated, back_off
 from flexlash.service.store import Store
+from flexlash.service.store_place import WEBHOOK_KEY
 
 __all__ = ["Webhook", "webhook_address", "webhook_key"]
 
@@ -36,7 +37,6 @@ _MOST_TRIES = 1_000
 """Tries after which a message is given up: three days of them."""
 
 _SHORTEST_KEY = 16
-_KEY_FILE = "webhook.key"
 
 
 def webhook_address(url: str) -> SplitResult:
@@ -59,12 +59,12 @@ def webhook_key(store: Path, given: Path | None = None) -> bytes:
     That lies in the store's folder as `webhook.key`. Raises OSError where a file cannot be read or made, ValueError,
     in a sentence, where the key is short enough to be guessed.
     """
-    path = given or store / _KEY_FILE
-    if given is None:
-        with suppress(FileExistsError):
-            handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-            with os.fdopen(handle, "w", encoding="ascii") as file:
-                file.write(f"{secrets.token_urlsafe(32)}\n")
+    path = given or store / WEBHOOK_KEY
+    if given is None and not path.exists():
+        made_key = f"{secrets.token_urlsafe(32)}\n".encode()
+        with temporary(store, lambda file: file.write(made_key)) as made:
+            made.chmod(0o600)
+            put_new(made, path)
     key = path.read_bytes().strip()
     if len(key) < _SHORTEST_KEY:
         raise ValueError(f"{path} holds a key of {len(key)} bytes; at least {_SHORTEST_KEY} are required")
