@@ -17,7 +17,7 @@ WHERE = {"rect": ("x", "width"), "line": ("x1", "x2"), "text": ("x",)}
 
 def spread(variant="cup", *, low=3.0, median=3.5, high=4.0, limit=3.8, verdict="fails"):
     """Return a variant as the chart takes it."""
-    return Spread(variant=variant, low=low, median=median, high=high, nominal=median, limit=limit, verdict=verdict)
+    return Spread(variant=variant, low=low, median=median, high=high, limit=limit, verdict=verdict)
 
 
 def _wide(above, width):

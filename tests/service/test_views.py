@@ -98,8 +98,11 @@ def test_only_what_still_changes_is_asked_for_again():
     """A page is refreshed while its submission waits or is at work, soon at first, never once it has ended."""
     again = {state: "http-equiv" in PLAIN[state] for state in ("waiting", "working", "done", "rejected")}
     assert again == {"waiting": True, "working": True, "done": False, "rejected": False}
-    ages = (1, 30, 300, 3000)
-    assert [submission_view(submission(received_at=NOW - age), NOW).refresh for age in ages] == [1, 2, 5, 10]
+    ages, facts = (1, 30, 300, 3000), made(PageFacts, "words")
+    at_work = [submission(state="working", began_at=NOW - age) for age in ages]
+    assert [submission_view(one, NOW).refresh for one in at_work] == [1, 2, 5, 10]
+    assert [submission_view(one, NOW, facts=facts).refresh for one in at_work] == [1, 5, 5, 10]
+    assert [submission_view(submission(received_at=NOW - age), NOW).refresh for age in ages] == [1, 3, 3, 3]
 
 
 def test_progress_says_rows_speed_and_time_left():

@@ -50,7 +50,6 @@ class Spread:
     low: float
     median: float
     high: float
-    nominal: float | None = None
     limit: float | None = None
     verdict: str = ""
 

@@ -26,6 +26,9 @@ __all__ = [
 _CARDS, _DRAWN = 6, 20
 """Cards that are open and variants that are drawn; the others wait behind a line."""
 
+_SOON, _SELDOM = 15, 10
+"""Seconds within which most submissions end, and between two looks at what takes long."""
+
 Stage = Literal["waiting", "working", "done", "rejected"]
 
 
@@ -67,7 +70,6 @@ class SubmissionView:
     door: str
     sha256: str
     size: str
-    options: str
     refresh: int
     progress: Progress | None
     trouble: str
@@ -129,8 +131,7 @@ def submission_view(
         door=DOORS[submission.door],
         sha256=submission.sha256,
         size=size_words(submission.size),
-        options=submission.options,
-        refresh=0 if submission.has_ended else _refresh(submission, now),
+        refresh=0 if submission.has_ended else _refresh(submission, now, reads=bool(cards)),
         progress=_progress(submission, now, waiting) if submission.state == "working" else None,
         trouble=_trouble(submission, now),
         undelivered=undelivered,
@@ -157,10 +158,13 @@ def _line(submission: StoredSubmission | None, now: float) -> Line | None:
     return Line(id=submission.id, name=submission.name, when=Moment.of(submission.received_at, now))
 
 
-def _refresh(submission: StoredSubmission, now: float) -> int:
-    """Return in how many seconds to look again: soon after handing in, seldom at what takes long."""
-    past = max(now - submission.received_at, submission.not_before - now)
-    return next((seconds for until, seconds in ((15, 1), (60, 2), (600, 5)) if past < until), 10)
+def _refresh(submission: StoredSubmission, now: float, *, reads: bool) -> int:
+    """Return in how many seconds to look again: soon at what may end soon, seldom where findings are read meanwhile."""
+    if submission.state == "waiting":
+        return _SELDOM if submission.trouble else 1 if now - submission.received_at < _SOON else 3
+    past = now - (submission.began_at or now)
+    often = next((seconds for until, seconds in ((_SOON, 1), (60, 2), (600, 5)) if past < until), _SELDOM)
+    return max(often, 5) if reads and past >= _SOON else often
 
 
 def _progress(submission: StoredSubmission, now: float, waiting: int) -> Progress:
@@ -214,8 +218,8 @@ def _charts(facts: PageFacts | None) -> Sequence[Markup]:
     if chart is None or not chart["variants"]:
         return []
     spreads = [
-        Spread(variant=one["variant"], low=one["low"], median=one["median"], high=one["high"], nominal=one["nominal"],
-               limit=one["limit"], verdict=one["verdict"])
+        Spread(variant=one["variant"], low=one["low"], median=one["median"], high=one["high"], limit=one["limit"],
+               verdict=one["verdict"])
         for one in chart["variants"]
     ]  # fmt: skip
     first, others = spreads[:_DRAWN], spreads[_DRAWN:]
