@@ -15,8 +15,13 @@ from flexlash.validation.consolidation import consolidated, in_order
 __all__ = ["outcome_of"]
 
 
-def outcome_of(examined: Examined, spread: Spread | None = None, verified: Verified | None = None) -> Outcome:
-    """Return the outcome of a submission after the stages that it went through; of a refused file, its one finding."""
+def outcome_of(
+    examined: Examined, spread: Spread | None = None, verified: Verified | None = None, *, with_results: bool = True
+) -> Outcome:
+    """Return the outcome of a submission after the stages that it went through; of a refused file, its one finding.
+
+    Building Results takes most of the time; `with_results` says whether they are wanted.
+    """
     submission, validated, nominal = examined.submission, examined.validated, examined.nominal
     if examined.refusal is not None or validated is None:
         why = () if examined.refusal is None else (examined.refusal,)
@@ -30,10 +35,13 @@ def outcome_of(examined: Examined, spread: Spread | None = None, verified: Verif
     )
     columns = result_columns(cross_check=spread is not None and spread.cross_checked, elasticity=verified is not None)
     ordered, table = in_order(findings, submission.sheets), validated.table
-    stops = stopped_by(table, nominal.blocked, findings) if table and len(computed) < table.frame.height else {}
+    results = empty_results()
+    if table and with_results:
+        stops = stopped_by(table, nominal.blocked, findings) if len(computed) < table.frame.height else {}
+        results = results_of(table, computed, ordered, stops, columns)
     return Outcome(
         submission=submission,
-        results=results_of(table, computed, ordered, stops, columns) if table else empty_results(),
+        results=results,
         findings=ordered,
         settings=examined.settings,
         options=examined.options,

@@ -22,12 +22,13 @@ def answer_with_page(task: Task) -> Answer:
     """Return what came of a submission that is checked or computed; told are its findings at once, then its rows."""
     ran, telling = task.command == "run", Telling()
     found = examined(task.source, task.options, task.tables)
-    checked = outcome_of(found)
+    computes = ran and bool(found.nominal.computed)
+    checked = outcome_of(found, with_results=not computes)
     if found.refusal is None:
         rows = len(found.nominal.computed) if ran else 0
         telling.checked(page_bytes(checked, Found.of(checked, ran=False), ran=False), checked.counts, rows)
     outcome = checked
-    if ran and found.nominal.computed:
+    if computes:
         outcome = spread_out(found, replace(task.options, progress=telling.advance))
     telling.writing()
     data = report_data(outcome) if ran and outcome.computed else None

@@ -50,9 +50,10 @@ def fixed(source: Source | ReadReport | Refusal, options: Options, tables: Mappi
 def fixed_from(
     outcome: Outcome, options: Options, tables: Mapping[str, Source] | None = None, *, numbers: bool = True
 ) -> Fixed:
-    """Return the same of a submission by what came of checking it; `numbers` says whether the mended one is computed.
+    """Return the same of a submission by what came of checking it.
 
-    Bytes and fixes do not depend on that: validation alone knows what is certain.
+    `numbers` says whether the outcome of the mended one has nominal numbers and Results. Bytes and fixes do not depend
+    on that: validation alone knows what is certain.
     """
     original = outcome.submission
     data, fixes = original.data, dict[str, Fix]()
@@ -64,7 +65,8 @@ def fixed_from(
         fixes |= {fix.place: fix for fix in made}
         if not made:
             break
-        outcome = outcome_of(examined(Source(name=original.name, data=data), options, tables, numbers=numbers))
+        found = examined(Source(name=original.name, data=data), options, tables, numbers=numbers)
+        outcome = outcome_of(found, with_results=numbers)
     return Fixed(data=data, role=fixed_role(original.data), outcome=outcome, fixes=tuple(fixes.values()))
 
 
