@@ -21,6 +21,7 @@ from flexlash.service.dispatcher import Dispatcher
 from flexlash.service.drop_folder import DropFolder
 from flexlash.service.keeper import Keeper
 from flexlash.service.log import Log
+from flexlash.service.memory import give_back_large_blocks
 from flexlash.service.places import Places
 from flexlash.service.store import Store
 from flexlash.service.tasks import service_options
@@ -90,6 +91,7 @@ def running(setup: Setup, log: Log) -> Iterator[Service]:
 
     Raises StoreError, PlacesError, ValueError or OSError for what it cannot be started with.
     """
+    give_back_large_blocks()
     with ExitStack() as stack:
         places = None
         if setup.inbox is not None and setup.out is not None:
