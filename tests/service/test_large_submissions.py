@@ -119,8 +119,12 @@ def test_what_is_done_of_a_killed_one_is_taken_up(store, processes, expected):
 
 
 def test_a_large_one_that_is_none_is_refused(store, processes):
-    """What is no table after all is rejected with its reason."""
+    """What is no table after all is rejected with its reason; the store that has seen a large one opens again."""
     with dispatching(store, lambda: nullcontext(processes), FEW):
         (found,) = ended(store, hand_in(store, b"nothing of the kind\n" * 2000))
     assert (found.state, found.exit_code) == ("rejected", 4)
     assert found.reason.startswith("Variants!A1: rows 1 to 15 hold no header row")
+    assert (store.folder / "work").is_dir()
+    store.close()
+    with opened(store.folder) as again:
+        assert again.submission(found.id).state == "rejected"

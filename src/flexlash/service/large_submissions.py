@@ -32,12 +32,12 @@ class LargeSubmissions:
         self._folder = folder
         self._options = options
         self._driver: Worker | None = None
-        self._thread: threading.Thread | None = None
+        self._future: Future[bytes] | None = None
 
     @property
     def is_busy(self) -> bool:
         """Whether a large table is being computed."""
-        return self._thread is not None and self._thread.is_alive()
+        return self._future is not None and not self._future.done()
 
     def begin(self, submission: StoredSubmission, path: Path, executor: Executor, told: Told) -> Future[bytes]:
         """Return what will come of a large table, as `LargeAnswer`; `told` is called with its rows meanwhile.
@@ -50,11 +50,10 @@ class LargeSubmissions:
         task = LargeTask(
             path=path, name=submission.name, folder=folder, options=self._options, workers=max(1, executor.workers // 2)
         )
-        future: Future[bytes] = Future()
-        self._thread = threading.Thread(
+        future = self._future = Future()
+        threading.Thread(
             target=self._drive, args=(task, executor, told, future), name="flexlash large table", daemon=True
-        )
-        self._thread.start()
+        ).start()
         return future
 
     def kept(self, submission: StoredSubmission, answer: LargeAnswer, blobs: Blobs) -> dict[str, StoredFile]:

@@ -29,7 +29,7 @@ SERVER_LOCK, KEEPING_LOCK = "server.lock", "keeping.lock"
 WEBHOOK_KEY = "webhook.key"
 """The file with the key by which messages are signed, where none was given."""
 
-_OURS = re.compile(r"flexlash\.sqlite.*|(server|keeping)\.lock|webhook\.key|blobs|\..*|lost\+found")
+_OURS = re.compile(r"flexlash\.sqlite.*|(server|keeping)\.lock|webhook\.key|blobs|work|\..*|lost\+found")
 """What may lie in the folder of a store, or of one whose making was interrupted."""
 
 _REMOTE = re.compile(
