@@ -151,7 +151,7 @@ def test_a_variant_says_what_the_summary_says_of_it(facts):
     assert own["Why"] in said["Why"]
     assert own["What to stiffen"] == said["What to stiffen"]
     assert "97.5 % of its units stay below 6.262′, 2.462′ over its limit of 3.8′" in own["Verdict"]
-    assert "Verdict red: fewer than 97.5 % of units within the limit." in own["Verdict"]
+    assert "It fails (red): fewer than 97.5 % of units within the limit." in own["Verdict"]
     assert own["Verdict"].split(" With every")[1] in said["How sure"]
 
 

@@ -103,9 +103,10 @@ class Sheets:
         places = self._places.get(sheet.name, {})
         owners = [places[key] for key in _OWNERS.get(self._schemas.get(sheet.name, ""), ()) if key in places]
         guilty = [address.column for _, address in here]
-        keys = [key for found, _ in here for key in _compared(found)]
-        wanted = dict.fromkeys([*owners, *guilty, *(places[key] for key in keys if key in places)])
-        drawn = sorted([*wanted][:_COLUMNS])
+        compared = [places[key] for found, _ in here for key in _compared(found) if key in places]
+        filled = {column for _, address in here for column in sheet.rows.get(address.row, {})}
+        telling = [column for column in compared if column in filled and column not in guilty] or compared
+        drawn = sorted([*dict.fromkeys([*owners, *guilty, *telling])][:_COLUMNS])
         gaps = [[column, 0] if following - column > 1 else [column] for column, following in pairwise(drawn)]
         return [*(place for some in gaps for place in some), *drawn[-1:]]
 
@@ -134,9 +135,10 @@ def _places(header: Mapping[int, RawValue], schema: str) -> dict[str, int]:
 
 
 def _compared(found: Finding) -> list[str]:
-    """Return the columns that the rule of a finding compares."""
+    """Return the columns that the rule of a finding compares with its own; the type where there is no other."""
     relation = RELATIONS.get(f"{found.column}|{found.code}")
-    return relation.keys if relation else []
+    keys = [key for key in relation.keys if key != found.column] if relation else []
+    return [key for key in keys if key != "flexspline_type"] or keys
 
 
 def _text(value: RawValue | None) -> str:

@@ -15,6 +15,7 @@ from flexlash.schema.number_words import angle_words, share_words
 __all__ = ["extremes", "failing", "judged", "sureness"]
 
 _PERCENTILES = {"p97_5": "97.5 %", "p99_865": "99.865 %"}
+_VERDICTS = {"red": "It fails", "amber": "It is marginal", "green": "It meets its limit"}
 _IN_BRACKETS = "In brackets the 95 % interval of the calculation, for the tolerances as entered."
 
 
@@ -87,7 +88,8 @@ def judged(row: Row) -> Iterator[str]:
     near, far = (distance_words(row, key) for key in _PERCENTILES)
     limit, verdict = f"{row['backlash_limit_arcmin']:g}′", light(row)
     yield f"{first} of its units stay below {low}, {near} its limit of {limit}; {second} below {high}, {far} it."
-    yield f"Verdict {verdict}: {RULES[firm(verdict)]}."
+    doubt = ", which is not settled" if verdict.endswith(UNSETTLED) else ""
+    yield f"{_VERDICTS[firm(verdict)]} ({firm(verdict)}{doubt}): {RULES[firm(verdict)]}."
     words = share_words(row)
     yield f"Units over the limit: {words}."
     if "(" in words:
