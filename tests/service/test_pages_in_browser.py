@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from filled import SOUND
+from rendered import pages
 from served import chromium, needs_chromium, served
 
 DATA = Path(__file__).parents[2] / "data"
@@ -263,6 +264,19 @@ def test_no_page_is_wider_than_its_window(tab, width):
     assert not wide
     assert page.goto(f"{report}/variants/0")
     assert page.locator(".picture").first.bounding_box()["width"] <= width
+
+
+def test_no_long_word_makes_a_page_wider(tab, service):
+    """With a word of 300 letters in each of its fields no page scrolls sideways on a telephone."""
+    page, wide = tab(width=360, height=740), {}
+    made_up = {name: html.replace('http-equiv="refresh"', "") for name, html in pages("x" * 300).items()}
+    page.route("**/made-up/*", lambda route: route.fulfill(
+        body=made_up[route.request.url.rpartition("/")[2].replace("-", " ")], content_type="text/html"))  # fmt: skip
+    for name in made_up:
+        page.goto(f"{service.address}/made-up/{name.replace(' ', '-')}")
+        if (more := overflow(page)) > 0:
+            wide[name] = more
+    assert not wide
 
 
 def test_what_is_forgotten_is_gone_and_said_so(tab, tmp_path):

@@ -6,56 +6,20 @@ import json
 import re
 import subprocess
 import sys
-from dataclasses import replace
 
 import pytest
 from grids import for_each
 from html_pages import HtmlPage, faults_of
-from rendered import COUNTS, FILES, NOW, made, render, submission
+from rendered import COUNTS, FILES, NOW, made, pages, render, submission
 
 from flexlash.report.page.shape import PageFacts
-from flexlash.schema.columns import ENTRY_SHEETS
 from flexlash.service.records import Ending, HandedIn, StoredFile
 from flexlash.service.store import Store
-from flexlash.service.web import lists, views
+from flexlash.service.web import views
 from flexlash.service.web.submission_page import checked_view, submission_view
 from flexlash.service.web.variant_page import variant_view
-from flexlash.service.web.words import Moment
 
 HOSTILE = """</title><script>alert(1)</script>"'><x-evil onclick=a>{{ 7*7 }}{% x %}<!-- &amp; </svg></textarea>"""
-
-
-def pages(text):
-    """Return every page, with a text in each of its fields, by a name."""
-    facts = made(PageFacts, text)
-    done = submission(name=text, sender=text, state="done", words=text, reason=text, counts=COUNTS, ended_at=NOW)
-    event = {"number": 1, "at": NOW, "kind": text, "submission": "", "text": text}
-    rule = {"level": "error", "code": "E202", "sheet": text, "column": text, "cells": 3, "submissions": 2}
-    at_work = {"began_at": NOW - 9, "rows": 100, "rows_done": 41, "counts": COUNTS}
-    shown = {"working": at_work, "waiting": {"trouble": text}, "done": {}, "rejected": {"words": text, "reason": text}}
-    made_pages = {
-        "hand in": render("hand_in", view=lists.hand_in_view([done] * 3, NOW, waiting=2), fault=text),
-        "history": render("history", "/history", view=lists.history_view(
-            [done] * 51, NOW, text=text, state="done", before=9, totals={"done": 3})),
-        "rules": render("rules", "/rules", view=lists.rules_view([rule])),
-        "explained": render("explained", explanation=lists.explained("E202")),
-        "help": render("help", "/help", sheets=ENTRY_SHEETS, codes=lists.codes_by_level()),
-        "login": render("login", title=text, sentence=text, status=401, wanted=text, again=True),
-        "refused": render("refused", title=text, sentence=text, status=410),
-        "checked": render("checked", view=checked_view(text, facts)),
-        "difference": render("difference", submission=done, previous=done, when=Moment.of(NOW, NOW),
-                             told={"lines": [text] * 3, "refused": None}),
-        "no comparison": render("difference", submission=done, previous=done, when=Moment.of(NOW, NOW),
-                                told={"lines": [text], "refused": {"code": text, "message": text, "fix": text}}),
-        "no difference": render("difference", submission=done, previous=None, when=None, told=None),
-        "variant": render("variant", view=variant_view(done, facts, 1)),
-        "empty": render("submission", view=submission_view(submission(), NOW)),
-    }  # fmt: skip
-    for state, known in shown.items():
-        one = replace(done, state=state, **known)
-        view = submission_view(one, NOW, facts=facts, files=FILES, first=done, previous=done, events=[event], waiting=3)
-        made_pages[state] = render("submission", view=view)
-    return made_pages
 
 
 PLAIN, EVIL = pages("some words"), pages(HOSTILE)
