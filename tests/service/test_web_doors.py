@@ -85,6 +85,9 @@ def test_own_hosts_are_answered(tmp_path):
     with page(tmp_path, access=Access.of(host_names=["Flexlash.example"])) as one:
         for host in ("127.0.0.1", "127.0.0.1:8765", "localhost:9", "LOCALHOST", "flexlash.example:443"):
             assert one.visitor().get("/", headers={"host": host}).status_code == 200, host
+        for address in ("http://[::1]:8765", "http://192.168.1.5:8765"):
+            assert one.visitor(address=address).get("/").status_code == 200, address
+            assert one.visitor(address=address).hand_in(headers={"origin": address}).status_code == 303
 
 
 @pytest.mark.parametrize(

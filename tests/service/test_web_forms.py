@@ -4,8 +4,10 @@ import errno
 import sqlite3
 import time
 from concurrent.futures import Future
+from tempfile import SpooledTemporaryFile
 
 import pytest
+from starlette import formparsers
 from web_pages import JSON, OWN, Idle, page
 
 from flexlash.batch.answer import Answer
@@ -178,6 +180,21 @@ def test_a_fault_of_the_machine_is_told(tmp_path, monkeypatch, fault, status, wo
         assert not one.store.history()
         monkeypatch.undo()
         assert visitor.hand_in().status_code == 303
+
+
+def test_a_full_disk_is_told_while_a_file_comes_in(tmp_path, monkeypatch):
+    """A disk that is full already where an upload is put down is said to be full; nothing is kept."""
+
+    class Full(SpooledTemporaryFile):
+        def rollover(self):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(formparsers, "SpooledTemporaryFile", Full)
+    with page(tmp_path) as one:
+        answer = one.visitor().hand_in(content=b"x" * (2 * 2**20))
+        assert answer.status_code == 507
+        assert "disk of flexlash is full" in answer.text
+        assert not one.store.history()
 
 
 @pytest.mark.parametrize(
