@@ -226,6 +226,31 @@ def test_many_variants_stay_within_bounds(table, sound):
     assert len(data) < 2 * 2**20
 
 
+HOSTILE = ("<script>alert(1)</script>", "=1+1", "a\u202egnp.exe", "a\x07b", "two\nlines", "x" * 3000, "x" * 3001)
+
+
+@pytest.mark.slow
+def test_hostile_names_are_short_and_on_one_line(table, sound):
+    """Computed variants of any name are told on one line, cut, without control characters, each by another name."""
+    rows = [sound | {"variant": name, "notes": name, "own column": name} for name in HOSTILE]
+    outcome = run(table(rows), samples=64)
+    told = json.loads(page_bytes(outcome, Found.of(outcome, ran=True), ran=True, data=report_data(outcome)))
+    assert told["computed"] == len(HOSTILE)
+    assert len({row["variant"] for row in told["table"]}) == len(HOSTILE)
+    texts = list(_texts(told))
+    assert all(text.isprintable() for text in texts)
+    assert max(map(len, texts)) <= 2000
+    assert "<script>alert(1)</script>" in texts
+
+
+def _texts(content):
+    """Yield every text in an object of JSON."""
+    if isinstance(content, str):
+        yield content
+    for inner in content.values() if isinstance(content, dict) else content if isinstance(content, list) else ():
+        yield from _texts(inner)
+
+
 def test_the_worst_rows_of_a_large_table_stand_for_all(study):
     """Counts are those of the whole table, of which the page shows the worst rows."""
     outcome = study[0]
