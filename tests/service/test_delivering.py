@@ -115,6 +115,35 @@ def test_a_drive_without_links_is_delivered_to(service, monkeypatch):
     assert service.delivered == {"a-report.xlsx": b"mine", "a-report (2).xlsx": b"the report"}
 
 
+@pytest.mark.parametrize("listed", ["file", "original"])
+@pytest.mark.parametrize("has_ended_again", [False, True])
+def test_what_is_retried_while_it_is_delivered_leaves_with_its_last_result(
+    service, monkeypatch, listed, has_ended_again
+):
+    """Retried between the look at what is due and its delivery, a submission is delivered once it has ended again."""
+    deliveries = service.store.deliveries
+
+    def then_retried():
+        found = deliveries()
+        if any(one.kind == listed for one in found):
+            monkeypatch.undo()
+            service.store.retry(found[0].submission)
+            if has_ended_again:
+                service.answer({"report": b"the last report"}, state="rejected")
+        return found
+
+    monkeypatch.setattr(service.store, "deliveries", then_retried)
+    submission = hand_in(service, files={"report": b"the first report"})
+    if not has_ended_again:
+        assert service.store.submission(submission.id).state == "waiting"
+        assert {path.name for path in service.out.iterdir() if path.is_dir()} == {"work", "done", "rejected"}
+    service.answer({"report": b"the last report"}, state="rejected")
+    service.pass_time(10)
+    assert b"the last report" in service.delivered.values()
+    assert (b"the first report" in service.delivered.values()) == (listed == "original")
+    assert (service.out / "rejected" / submission.id / "a.csv").is_file()
+
+
 @pytest.mark.parametrize("killed_before", ["choose_target", "delivered"])
 def test_a_delivery_that_was_cut_short_is_made_once(tmp_path, monkeypatch, killed_before):
     """After a kill before or behind the file, the next start neither doubles nor loses anything."""

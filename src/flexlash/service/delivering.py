@@ -101,7 +101,7 @@ class Delivering:
 
     def _deliver(self, delivery: Delivery) -> None:
         submission = self._store.submission(delivery.submission)
-        if submission is None or self._is_replaced(submission):
+        if submission is None or not self._is_due(delivery, submission) or self._is_replaced(submission):
             return
         if (file := delivery.file) is None:
             self._tell_repetition(submission)
@@ -112,6 +112,11 @@ class Delivering:
         self._put(delivery.target, file, self._copied(file))
         self._store.delivered(delivery)
         self._log.say("delivered", submission.id, file=delivery.target)
+
+    def _is_due(self, delivery: Delivery, submission: StoredSubmission) -> bool:
+        """Whether a submission was not retried since it was looked at: then its last result leaves, once it has one."""
+        file = delivery.file
+        return submission.has_ended and (file is None or self._store.files(submission.id).get(file.role) == file)
 
     # Names
 
