@@ -41,6 +41,19 @@ def test_history_leads_to_older_ones_only_where_there_are_some():
     assert "/history?text=a%26b&amp;state=&amp;before=11" in render("history", "/history", view=more)
 
 
+def test_what_fails_most_names_columns_as_the_template_does():
+    """A column is told by its header, one of the engineer's own by its name, and each rule leads to its explanation."""
+    row = {"level": "error", "code": "E202", "sheet": "Variants", "cells": 41, "submissions": 9}
+    rows = [
+        {**row, "column": "wall_thickness_mm"},
+        {**row, "column": "Remark 7"},
+        {**row, "code": "E999", "column": ""},
+    ]
+    html = render("rules", "/rules", view=lists.rules_view(rows))
+    assert re.findall(r'<td class="name">(.*?)</td>', html) == ["Wall thickness Δ [mm]", "Remark 7"]
+    assert html.count('href="/findings/E202"') == 2
+
+
 def test_every_finding_has_a_page():
     """Each code of the catalogue is explained under its address, in any case; other codes are not."""
     for code, rule in CATALOGUE.items():

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from flexlash.schema.columns import ENTRY_SHEETS, columns_of
 from flexlash.schema.finding_catalogue import CATALOGUE
 from flexlash.schema.finding_explanations import Explanation, explanation_of
 from flexlash.service.records import STATES, StoredSubmission
@@ -127,7 +128,7 @@ def rules_view(rows: Iterable[Mapping[str, Any]]) -> RulesView:
             level=CATALOGUE[row["code"]].level,
             title=CATALOGUE[row["code"]].title,
             sheet=row["sheet"],
-            column=row["column"],
+            column=_label(row["sheet"], row["column"]),
             cells=row["cells"],
             submissions=row["submissions"],
         )
@@ -135,6 +136,12 @@ def rules_view(rows: Iterable[Mapping[str, Any]]) -> RulesView:
         if row["code"] in CATALOGUE
     ]
     return RulesView(lines=lines)
+
+
+def _label(sheet: str, key: str) -> str:
+    """Return what a column is called in the template; one that is not of it keeps its own name."""
+    known = columns_of(sheet).get(key) if sheet in ENTRY_SHEETS else None
+    return known.label if known else key
 
 
 def explained(code: str) -> Explanation | None:
