@@ -183,6 +183,14 @@ def test_the_token_leads_nowhere_else(tmp_path, token_file, wanted):
         assert answer.headers["location"] == "/"
 
 
+def test_a_token_that_is_no_text_is_wrong(tmp_path, token_file):
+    """Half a character, as an encoding of old lets it be written, is a wrong token and no fault."""
+    body = b'--b\r\nContent-Disposition: form-data; name="access"\r\n\r\n\\ud800\r\n--b--\r\n'
+    kind = {**OWN, "content-type": "multipart/form-data; boundary=b; charset=unicode_escape"}
+    with page(tmp_path, access=Access.of(token_file=token_file)) as one:
+        assert one.visitor().post("/login", content=body, headers=kind).status_code == 401
+
+
 def test_forged_cookies_open_nothing(tmp_path, token_file):
     """A cookie that was changed, is of another store or of a token that no longer holds, or is a form's is none."""
     with page(tmp_path, access=Access.of(token_file=token_file)) as one:

@@ -15,6 +15,7 @@ from starlette.templating import Jinja2Templates
 from flexlash import __version__
 from flexlash.batch.answer import Answer
 from flexlash.batch.executor import Work
+from flexlash.schema.findings import readable
 from flexlash.service.log import Log
 from flexlash.service.records import StoredFile, StoredSubmission, new_id
 from flexlash.service.store import Store
@@ -96,7 +97,7 @@ class Site:
         headers: Mapping[str, str] | None = None,
     ) -> Response:
         """Return a page; every template also has `version`, `path` and `token`, which forms send back."""
-        shared = {"version": __version__, "path": request.scope["path"], "token": self.form_token(request)}
+        shared = {"version": __version__, "path": readable(request.scope["path"]), "token": self.form_token(request)}
         return self.templates.TemplateResponse(
             request, f"{name}.html", {**shared, **context}, status_code=status, headers=headers
         )
@@ -121,7 +122,7 @@ class Site:
             return JSONResponse({"error": told}, refused.status_code, refused.headers)
         name = "login" if refused.asks_for_token else "refused"
         again = request.headers.get("sec-fetch-site") == "cross-site"
-        context = told | ({"wanted": request.scope["path"], "again": again} if refused.asks_for_token else {})
+        context = told | ({"wanted": readable(request.scope["path"]), "again": again} if refused.asks_for_token else {})
         return self.page(request, name, context, status=refused.status_code, headers=refused.headers)
 
     def known(self, id_: str) -> StoredSubmission:

@@ -9,7 +9,6 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from typing import BinaryIO
 
-from python_multipart.exceptions import FormParserError
 from starlette.datastructures import FormData, UploadFile
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
@@ -72,7 +71,7 @@ async def form_of(request: Request, fields: int, files: int = 0) -> FormData:
     """Return a form of at most so many fields and files; raise UnusableForm where it cannot be read."""
     try:
         return await request.form(max_files=files, max_fields=fields, max_part_size=_LONGEST_FIELD)
-    except (HTTPException, FormParserError, UnicodeError) as fault:
+    except (HTTPException, ValueError) as fault:
         if isinstance(fault, HTTPException) and fault.status_code != 400:  # noqa: PLR2004
             raise
         if "Too many files" in str(fault):

@@ -163,7 +163,7 @@ def _bearer(request: Request) -> str:
 
 def _is_same(token: str, right: str) -> bool:
     """Whether a token is the right one, found out in a time that tells nothing; where there is none, none is right."""
-    return bool(right) and hmac.compare_digest(token.encode(), right.encode())
+    return bool(right) and hmac.compare_digest(token.encode(errors="replace"), right.encode())
 
 
 def client_address(request: Request) -> str:
