@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from html_pages import HtmlPage
 from rendered import NOW, render, submission
 
@@ -54,6 +55,7 @@ def test_what_fails_most_names_columns_as_the_template_does():
     assert html.count('href="/findings/E202"') == 2
 
 
+@pytest.mark.slow
 def test_every_finding_has_a_page():
     """Each code of the catalogue is explained under its address, in any case; other codes are not."""
     for code, rule in CATALOGUE.items():
