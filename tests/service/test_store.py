@@ -293,3 +293,18 @@ def test_sizes_are_those_of_what_waits_and_of_what_is_kept(store):
     assert (store.waiting_count(), store.waiting_bytes(), store.kept_bytes()) == (2, 10, 5)
     computed(store, report=b"123")
     assert (store.waiting_count(), store.waiting_bytes(), store.kept_bytes()) == (1, 5, 8)
+
+
+def test_what_waits_for_a_time_is_not_held_up_by_a_clock_that_is_set_back(store, clock):
+    """A submission and a delivery that met a fault are tried again after minutes, though the clock went back a year."""
+    store.accept(handed(), b"1")
+    computed(store)
+    waiting = store.accept(handed("b.csv"), b"2").id
+    store.take()
+    store.hand_back(waiting, after=300.0, trouble="disk full")
+    (delivery,) = store.deliveries()
+    store.postpone(delivery, 300.0, "disk full")
+    assert (store.take(), store.deliveries()) == (None, [])
+    clock.now -= 365 * 86_400
+    assert [one.number for one in store.deliveries()] == [delivery.number]
+    assert store.take().id == waiting

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from flexlash.service.database import Database
 from flexlash.service.records import Delivery, StoredFile
+from flexlash.service.repeated import LONGEST_REST
 from flexlash.service.store_questions import StoreQuestions
 
 __all__ = ["Outbox"]
@@ -25,9 +26,12 @@ _DUE = (
     " SELECT d.*, f.sha256, f.size, f.name FROM turns JOIN delivery AS d ON d.number = turns.number AND turns.turn = 1"
     " JOIN submission AS s ON s.id = d.submission"
     " LEFT JOIN file AS f ON f.submission = d.submission AND f.role = d.role"
-    " WHERE s.state IN ('done', 'rejected') AND d.not_before <= ? ORDER BY d.number"
+    " WHERE s.state IN ('done', 'rejected') AND (d.not_before <= ?1 OR d.not_before > ?1 + ?2) ORDER BY d.number"
 )
-"""What is next to leave the store of each submission: its files, then the original, then the message."""
+"""What is next to leave the store of each submission: its files, then the original, then the message.
+
+Now is ?1. A time further ahead than any is ever set, ?2 seconds, stems from before the clock was set back.
+"""
 
 
 class Outbox(StoreQuestions):
@@ -46,11 +50,11 @@ class Outbox(StoreQuestions):
 
     def deliveries(self) -> Sequence[Delivery]:
         """Return what is to leave the store now, of each submission that has ended the next alone, oldest first."""
-        return [_delivery(row) for row in self._database.all(_DUE, self._clock())]
+        return [_delivery(row) for row in self._database.all(_DUE, self._clock(), LONGEST_REST)]
 
     def undelivered(self) -> Sequence[Delivery]:
         """Return what is to leave the store now or later, of each submission that has ended the next alone."""
-        return [_delivery(row) for row in self._database.all(_DUE, math.inf)]
+        return [_delivery(row) for row in self._database.all(_DUE, math.inf, LONGEST_REST)]
 
     def _plan(self, submission: str) -> None:
         """Plan what is to leave the store of a submission that has ended.

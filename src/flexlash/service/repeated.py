@@ -9,12 +9,14 @@ from collections.abc import Callable
 from flexlash.schema.findings import readable
 from flexlash.service.log import Log
 
-__all__ = ["ENVIRONMENT_FAULTS", "Repeated", "back_off"]
+__all__ = ["ENVIRONMENT_FAULTS", "LONGEST_REST", "Repeated", "back_off"]
 
 ENVIRONMENT_FAULTS = (OSError, sqlite3.OperationalError)
 """What this machine raises when its disk is full or gone: no submission is to blame."""
 
-_SHORTEST, _LONGEST = 5.0, 300.0
+_SHORTEST = 5.0
+LONGEST_REST = 300.0
+"""Seconds after which whatever met a fault is tried again at the latest."""
 
 
 def back_off(faults: int) -> float:
@@ -23,7 +25,7 @@ def back_off(faults: int) -> float:
     >>> back_off(1), back_off(2), back_off(99)
     (5.0, 10.0, 300.0)
     """
-    return min(_LONGEST, _SHORTEST * 2.0 ** min(faults - 1, 10))
+    return min(LONGEST_REST, _SHORTEST * 2.0 ** min(faults - 1, 10))
 
 
 class Repeated:

@@ -21,6 +21,7 @@ from flexlash.schema.findings import shown
 from flexlash.service.database import Database
 from flexlash.service.outbox import Outbox
 from flexlash.service.records import Ending, HandedIn, StoredFile, StoredSubmission
+from flexlash.service.repeated import LONGEST_REST
 from flexlash.service.store_place import DATABASE, KEEPING_LOCK, SERVER_LOCK, StoreError, prepared
 
 __all__ = ["Store", "StoreInUseError"]
@@ -148,9 +149,9 @@ class Store(Outbox):
         """
         with self._database.transaction():
             row = self._database.first(
-                "SELECT id FROM submission WHERE state = 'waiting' AND not_before <= ?"
-                " AND id NOT IN (SELECT value FROM json_each(?)) ORDER BY alone DESC, number LIMIT 1",
-                self._clock(), json.dumps(list(besides)),
+                "SELECT id FROM submission WHERE state = 'waiting' AND (not_before <= ?1 OR not_before > ?1 + ?2)"
+                " AND id NOT IN (SELECT value FROM json_each(?3)) ORDER BY alone DESC, number LIMIT 1",
+                self._clock(), LONGEST_REST, json.dumps(list(besides)),
             )  # fmt: skip
             if row is None:
                 return None
