@@ -118,6 +118,20 @@ def test_what_is_done_of_a_killed_one_is_taken_up(store, processes, expected):
     assert _files(store, large) == expected
 
 
+def test_a_store_opens_again_with_a_large_table_underway(tmp_path):
+    """What a large table has left in the store's folder keeps no server from starting, and goes with its submission."""
+    with opened(tmp_path) as store:
+        waiting = hand_in(store)
+    for name in (waiting, "0" * 32):
+        (tmp_path / "work" / name / "parts").mkdir(parents=True)
+    with opened(tmp_path) as store, dispatching(store, stop=0.0):
+        while (tmp_path / "work" / ("0" * 32)).exists():
+            time.sleep(0.01)
+        ended(store, waiting)
+        while (tmp_path / "work" / waiting).exists():
+            time.sleep(0.01)
+
+
 def test_a_large_one_that_is_none_is_refused(store, processes):
     """What is no table after all is rejected with its reason; the store that has seen a large one opens again."""
     with dispatching(store, lambda: nullcontext(processes), FEW):

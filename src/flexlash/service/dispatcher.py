@@ -33,6 +33,7 @@ from flexlash.service.questions import Questions
 from flexlash.service.records import StoredSubmission
 from flexlash.service.repeated import ENVIRONMENT_FAULTS, Repeated, back_off
 from flexlash.service.store import Store
+from flexlash.service.store_place import WORK
 from flexlash.service.tasks import answer_of, run_task, service_options, submitted
 
 __all__ = ["Dispatcher"]
@@ -68,7 +69,7 @@ class Dispatcher(Questions):
         super().__init__(service_options(options), store.blobs)
         self._store = store
         self._executor = OpenExecutor(open_executor, log)
-        self._large = LargeSubmissions(store.folder / "work", self._options)
+        self._large = LargeSubmissions(store.folder / WORK, self._options)
         self._passed_over: set[str] = set()
         self._log = log
         self._on_end = ended

@@ -15,6 +15,7 @@ __all__ = [
     "KEEPING_LOCK",
     "SERVER_LOCK",
     "WEBHOOK_KEY",
+    "WORK",
     "StoreError",
     "default_store",
     "foreign",
@@ -28,6 +29,9 @@ SERVER_LOCK, KEEPING_LOCK = "server.lock", "keeping.lock"
 
 WEBHOOK_KEY = "webhook.key"
 """The file with the key by which messages are signed, where none was given."""
+
+WORK = "work"
+"""The folder for what is done of large tables, until their results are kept."""
 
 _OURS = re.compile(r"flexlash\.sqlite.*|(server|keeping)\.lock|webhook\.key|blobs|work|\..*|lost\+found")
 """What may lie in the folder of a store, or of one whose making was interrupted."""
