@@ -118,7 +118,7 @@ class Steps:
     def take(self, name, step, *arguments, half=None, fault=OSError, **named):
         """Take a step, or what has been chosen instead."""
         self.done += 1
-        self.names.append(name)
+        self.names.append(f"{name} {_site()}")
         if self._how in _FAULTS:
             result = step(*arguments, **named) if self._how == "late" else None
             self._fail(name, fault)
@@ -162,6 +162,16 @@ class Steps:
         os.open = opened
         os.fdopen = lambda handle, *arguments, **named: _File(self, real_fdopen(handle, *arguments, **named))
         sqlite3.connect = connected
+
+
+def _site():
+    """Return where in the service a step is taken, by the functions that lead there from its start."""
+    frame, names = sys._getframe(2), []
+    while frame:
+        if frame.f_globals.get("__name__", "").startswith("flexlash."):
+            names.append(frame.f_code.co_name)
+        frame = frame.f_back
+    return "<".join(names)
 
 
 class _File:
@@ -304,7 +314,10 @@ def _held(root):
 
 
 def _after_kill(root, scene, whole):
-    """Return what is wrong at once after a kill: an original that is lost or doubled, an output that is not whole."""
+    """Return what is wrong at once after a kill.
+
+    An original may be lost or doubled, an output not whole, or an original put away before its outputs are there.
+    """
     wrong = []
     places = [*(root / "in").iterdir(), *(root / "out" / "work").glob("*/*/*"), *(root / "out" / "done").glob("*/*"),
               *(root / "out" / "rejected").glob("*/*")]  # fmt: skip
@@ -313,7 +326,9 @@ def _after_kill(root, scene, whole):
         wrong.append(f"originals lost, doubled or altered: {[str(path) for path in places]}")
     outputs = [one for one in _tree(root / "out") if "/" not in one[0] and not one[0].startswith(".flexlash-")]
     wrong += [f"{one[0]} is not whole" for one in outputs if one not in whole]
-    return wrong
+    away = [path.stem for path in places if path.parts[-3] in {"done", "rejected"}]
+    missing = {one for one in whole if any(one[0].startswith(f"{stem}-") for stem in away)} - {*outputs}
+    return [*wrong, *(f"{one[0]} is not there, though the original was put away" for one in missing)]
 
 
 def _in_child(work):
@@ -392,6 +407,8 @@ class Judge:
             said = json.loads(told)
             if "internal error" in said["said"] or not (said["done"] or "could not start" in said["said"]):
                 wrong.append(said["said"][-2000:])
+            elif said["done"] and {*_in_child_held(self._root)[0]} != {*self._held}:
+                wrong.append("what was said to be done is not held")
         code, told = _run(self._root, self._scene, restarts)
         if code or not json.loads(told)["done"]:
             return [*wrong, f"not finished: {code} {told[-3000:]}"]
