@@ -256,6 +256,13 @@ def test_health_says_what_is_wrong(tmp_path, monkeypatch):
         monkeypatch.undo()
         monkeypatch.setattr(one.store, "folder", tmp_path / "gone")
         assert one.visitor().get("/health").json()["wrong"] == ["the store cannot be used"]
+    now = [1e9]
+    with page(tmp_path / "none", clock=lambda: now[0]) as one:
+        monkeypatch.setattr(Idle, "workers", 0)
+        one.visitor().hand_in()
+        assert one.visitor().get("/health").status_code == 200
+        now[0] += 61
+        assert one.visitor().get("/health").json()["wrong"] == ["what waits finds no workers"]
     with page(tmp_path / "full", limits=Limits(free_bytes=2**60)) as one:
         assert one.visitor().get("/health").json()["wrong"] == ["the disk is nearly full"]
 

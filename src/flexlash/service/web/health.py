@@ -13,6 +13,9 @@ from flexlash.service.web.site import Site
 
 __all__ = ["Health"]
 
+_PATIENCE = 60.0
+"""Seconds that a submission may wait while workers are being started, or a scheduler is."""
+
 
 class Health:
     """The handlers of /health and /metrics."""
@@ -36,7 +39,9 @@ class Health:
         try:
             with tempfile.TemporaryFile(dir=self._site.store.folder):
                 pass
-            self._site.store.totals()
+            waited = self._site.store.figures()["oldest_waiting_seconds"]
+            if not self._site.works.workers and waited > _PATIENCE:
+                wrong.append("what waits finds no workers")
             if self._free() < self._site.limits.free_bytes:
                 wrong.append("the disk is nearly full")
         except Exception:  # noqa: BLE001

@@ -6,6 +6,7 @@ import hashlib
 import hmac
 import ipaddress
 import re
+import threading
 from collections.abc import Mapping
 
 from starlette.requests import Request
@@ -39,6 +40,7 @@ class Visitors:
         self._signer = signer
         self._attempts = Attempts()
         self._once = access.once
+        self._opening = threading.Lock()
         self._purpose = f"session {hashlib.sha256(access.token.encode()).hexdigest()}"
 
     def let_in(self, request: Request) -> Mapping[str, str]:
@@ -124,12 +126,14 @@ class Visitors:
         """Return the way in, with a cookie, for the token that works once."""
         if request.method != "GET":
             raise Refused(405, headers={"Allow": "GET"})
-        if self._access.once and not self._once:
-            raise Refused(403, "This address has been used once already, and works once alone.")
-        # Nobody guesses 256 bits: counting wrong ones would only let another user of this machine keep its owner out.
-        if not _is_same(request.path_params["token"], self._once):
-            raise Refused(401, "That is not the address that flexlash printed.", asks_for_token=True)
-        self._once = ""
+        with self._opening:
+            if self._access.once and not self._once:
+                raise Refused(403, "This address has been used once already, and works once alone.")
+            # Nobody guesses 256 bits: counting wrong ones would only let another user of this machine keep its owner
+            # out.
+            if not _is_same(request.path_params["token"], self._once):
+                raise Refused(401, "That is not the address that flexlash printed.", asks_for_token=True)
+            self._once = ""
         return self._welcomed(request, "/")
 
     def _welcomed(self, request: Request, to: str) -> Response:
