@@ -29,7 +29,7 @@ OUTER = 1e-6
 @pytest.fixture
 def _curves_without_a_report(monkeypatch):
     """Leave out the writing of whole reports, for tests that look at the Explorer alone."""
-    monkeypatch.setattr("flexlash.report.workbook.report_bytes", lambda _: b"")
+    monkeypatch.setattr("flexlash.report.workbook.report_bytes", lambda *_: b"")
 
 
 def _explorer_alone(outcome, path):

@@ -301,7 +301,7 @@ def test_the_summary_prints_whole_on_one_page_of_either_paper(study, table, soun
     }
     # The outcomes of reports, with as many curves as the chart can hold; the whole reports are not looked at.
     monkeypatch.setattr("flexlash.report.report_data.DRAWN", 70)
-    monkeypatch.setattr("flexlash.report.workbook.report_bytes", lambda _: b"")
+    monkeypatch.setattr("flexlash.report.workbook.report_bytes", lambda *_: b"")
     few = {"method": "random", "samples": 64}
     outcomes = {
         name: run(source, tmp_path / f"{name}.xlsx", **(few if name == "few" else {}))
