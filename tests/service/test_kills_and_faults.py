@@ -37,13 +37,13 @@ def _table(row):
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
-    """Return three submissions for INBOX, one of them good, one partly, one not, and the same one twice by page."""
+    """Return three submissions for INBOX, a partly good, a good and a broken one, and the same one twice by page."""
     wrong = SOUND | {"variant": "B", "torque_Nm": -5}
     path = tmp_path_factory.mktemp("scene") / "scene.pickle"
     path.write_bytes(
         pickle.dumps(
             scene_of(
-                {"good.csv": _table(SOUND), "partly.xlsx": filled([SOUND, wrong]), "broken.csv": b"no,table\n1,2\n"},
+                {"partly.xlsx": filled([SOUND, wrong]), "good.csv": _table(SOUND), "broken.csv": b"no,table\n1,2\n"},
                 {f"{number:032x}": ("page.csv", _table(SOUND)) for number in (1, 2)},
             )
         )

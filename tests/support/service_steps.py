@@ -52,7 +52,8 @@ _FREE_STEPS = 10**9
 class Scene:
     """What is handed in: files for INBOX, files for the page by their ID, and the answers that workers gave to them.
 
-    An answer stands by name and digest of a submission: what was told meanwhile, and the answer.
+    The first of INBOX is computed anew once it was delivered. An answer stands by name and digest of a submission: what
+    was told meanwhile, and the answer.
     """
 
     inbox: dict[str, bytes]
@@ -249,9 +250,9 @@ class Service:
                 return
 
     def _retry(self, store):
-        """Have what came through the folder computed anew, once it was delivered."""
+        """Have the first that came through the folder computed anew, once it was delivered."""
         for found in store.history():
-            if found.door == "folder" and found.has_ended and not _was_retried(store, found.id):
+            if self._is_anew(found) and found.has_ended and not _was_retried(store, found.id):
                 delivered = all(one.submission != found.id for one in store.undelivered())
                 if delivered:
                     store.retry(found.id)
@@ -260,8 +261,11 @@ class Service:
         found = store.history()
         wanted = len(self._scene.inbox) + len(self._scene.page)
         return len(found) == wanted and all(
-            one.has_ended and (one.door == "page" or _was_retried(store, one.id)) for one in found
+            one.has_ended and (not self._is_anew(one) or _was_retried(store, one.id)) for one in found
         )
+
+    def _is_anew(self, one):
+        return one.name == next(iter(self._scene.inbox))
 
 
 def _was_retried(store, id_):
