@@ -388,14 +388,17 @@ class Workers:
 
     def close(self) -> None:
         """Stop all workers, whatever they are doing; what has not been done is cancelled."""
+        given_up = []
         with self._lock:
             self._closing = True
             with suppress(Empty):
                 while piece := self._pieces.get_nowait()[1]:
-                    _give_up(piece)
+                    given_up.append(piece)
             for place, worker in self._workers.items():
                 self._pieces.put((-1 - place, None))
                 worker.kill()
+        for piece in given_up:
+            _give_up(piece)
         for thread in self._threads:
             thread.join()
         for worker in self._workers.values():
@@ -455,17 +458,18 @@ class Workers:
     def _repeat(self, number: int, piece: _Piece, stopped: StoppedError) -> None:
         """Have whoever is free repeat the work of a worker that was stopped, before any other work."""
         lost = replace(piece, losses=piece.losses + 1)
+        fault: BaseException = CancelledError()
         with self._lock:
-            if self._closing:
-                _give_up(piece)
-            elif stopped.setting:
-                message = f"a worker process exceeded its {stopped.setting}"
-                piece.future.set_exception(WorkerLostError(message, stopped.setting, lost.losses))
-            elif lost.losses == self._tries:
+            if not self._closing:
+                if not stopped.setting and lost.losses < self._tries:
+                    self._pieces.put((number, lost))
+                    return
                 message = f"a worker process was stopped {lost.losses} times ({stopped})"
-                piece.future.set_exception(WorkerLostError(message, losses=lost.losses))
-            else:
-                self._pieces.put((number, lost))
+                if stopped.setting:
+                    message = f"a worker process exceeded its {stopped.setting}"
+                fault = WorkerLostError(message, stopped.setting, lost.losses)
+        # Whoever is told of it may ask for something else, which takes the lock.
+        piece.future.set_exception(fault)
 
 
 def _give_up(piece: _Piece) -> None:

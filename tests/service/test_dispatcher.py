@@ -55,7 +55,7 @@ def _opening(executor):
     return opening
 
 
-def _until(condition, seconds=10.0):
+def _until(condition, seconds=30.0):
     """Wait until something is so."""
     end = time.monotonic() + seconds
     while not condition():
@@ -241,7 +241,7 @@ def test_a_fault_of_the_machine_has_a_submission_wait(store, clock, monkeypatch,
         id_ = hand_in(store)
         for rest in (5.0, 10.0, 20.0)[:times]:
             dispatcher.wake()
-            _until(lambda rest=rest: store.submission(id_).not_before == clock.now + rest, 5)
+            _until(lambda rest=rest: store.submission(id_).not_before == clock.now + rest, 60)
             found = store.submission(id_)
             assert (found.state, found.tries) == ("waiting", 0)
             assert str(fault.args[-1]) in found.trouble

@@ -85,7 +85,9 @@ def _serve(folder: Path, workers: int, *, poisoned: bool) -> None:
     stopped = threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: stopped.set())
     with Store(folder / STORE, serving=True) as store, (folder / "server.log").open("a") as log:
-        dispatcher = module.Dispatcher(store, lambda: local_executor(workers, tries=1), QUICK, Log(stream=log))
+        dispatcher = module.Dispatcher(
+            store, lambda: local_executor(workers, tries=1, warm=True), QUICK, Log(stream=log)
+        )
         dispatcher.start()
         begun, told = time.monotonic(), 0
         with (folder / MEASURED).open("a") as lines:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import random
 import signal
 import time
 from pathlib import Path
 
+from flexlash.batch.lent_workers import borrowed_workers
 from flexlash.reading.limited_process import ask
 from flexlash.reading.read import Source, submission_of
 from flexlash.reading.reading_limits import ReadingLimits
@@ -17,6 +19,8 @@ from flexlash.workers import tell, timed
 
 __all__ = [
     "ask_for_a_process",
+    "borrow",
+    "borrow_and_wait",
     "die",
     "die_once",
     "doubled",
@@ -162,3 +166,21 @@ def random_bytes(data):
     """Return as many bytes as are named after a seed, the same for every worker."""
     seed, size = data.decode().split()
     return random.Random(seed).randbytes(int(size))  # noqa: S311
+
+
+def borrow(name, pieces):
+    """Have borrowed workers do pieces of work of this module; return answers, or faults in words, in order."""
+    tell(pickle.dumps("begun"))
+    with borrowed_workers(2) as workers:
+        futures = [workers.submit(globals()[name], piece) for piece in pieces]
+        return pickle.dumps([_answer_or_fault(future) for future in futures])
+
+
+def borrow_and_wait(seconds):
+    """Want many pieces of work that take a while."""
+    return borrow("told", [b"import time; time.sleep(0.5)"] * (2 * seconds))
+
+
+def _answer_or_fault(future):
+    fault = future.exception()
+    return future.result() if fault is None else f"{type(fault).__name__}: {fault}"

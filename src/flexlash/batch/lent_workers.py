@@ -47,41 +47,60 @@ def driven(driver: Worker, function: Callable[..., bytes], executor: Executor, t
     `told` is called with what it tells beside that. Raises what the function raises, and StoppedError when the driver
     is stopped; what it has asked for is given up then.
     """
-    asked: dict[int, Future[bytes]] = {}
+    lending = _Lending(driver, executor, told)
+    try:
+        return driver.asked(function, *arguments, told=lending.heard)
+    finally:
+        lending.give_up()
 
-    def hand_over(wanted: _Wanted, losses: int = 0) -> None:
-        future = asked[wanted.number] = executor.submit(wanted.work, wanted.data)
-        future.add_done_callback(partial(answered, wanted, losses))
 
-    def answered(wanted: _Wanted, losses: int, future: Future[bytes]) -> None:
-        if asked.pop(wanted.number, None) is None:
+class _Lending:
+    """The pieces of work that a driver has asked for."""
+
+    def __init__(self, driver: Worker, executor: Executor, told: Told) -> None:
+        self._driver = driver
+        self._executor = executor
+        self._told = told
+        self._asked: dict[int, Future[bytes]] = {}
+
+    def heard(self, message: bytes) -> None:
+        """Have a piece of work done that the driver asks for, or hand on what it tells."""
+        said = pickle.loads(message)  # noqa: S301
+        if isinstance(said, _Wanted):
+            self._hand_over(said, 0)
+        else:
+            self._told(message)
+
+    def give_up(self) -> None:
+        """Cancel whatever nobody waits for any more."""
+        for number in list(self._asked):
+            if future := self._asked.pop(number, None):
+                future.cancel()
+
+    def _hand_over(self, wanted: _Wanted, losses: int) -> None:
+        try:
+            future = self._executor.submit(wanted.work, wanted.data)
+        except RuntimeError:
+            # The workers have ended.
+            future = Future()
+            future.cancel()
+        self._asked[wanted.number] = future
+        future.add_done_callback(partial(self._answered, wanted, losses))
+
+    def _answered(self, wanted: _Wanted, losses: int, future: Future[bytes]) -> None:
+        """Tell the driver what came of a piece of work; one that has lost its worker is done again."""
+        if self._asked.pop(wanted.number, None) is None:
             return
         fault = CancelledError() if future.cancelled() else future.exception()
         if isinstance(fault, WorkerLostError) and not fault.setting and fault.losses:
             losses += fault.losses
             if losses < _TRIES:
-                hand_over(wanted, losses)
+                self._hand_over(wanted, losses)
                 return
+        answer = b"" if fault else future.result()
         # A driver that was stopped hears nothing.
         with suppress(OSError):
-            known = _Answered(number=wanted.number, fault=fault) if fault else _Answered(
-                number=wanted.number, answer=future.result()
-            )  # fmt: skip
-            driver.say(pickle.dumps(known))
-
-    def heard(message: bytes) -> None:
-        said = pickle.loads(message)  # noqa: S301
-        if isinstance(said, _Wanted):
-            hand_over(said)
-        else:
-            told(message)
-
-    try:
-        return driver.asked(function, *arguments, told=heard)
-    finally:
-        for number in list(asked):
-            if future := asked.pop(number, None):
-                future.cancel()
+            self._driver.say(pickle.dumps(_Answered(number=wanted.number, answer=answer, fault=fault)))
 
 
 class _Borrowed:

@@ -29,12 +29,13 @@ class _LocalExecutor:
 
 
 @contextmanager
-def local_executor(workers: int, tries: int = 3) -> Iterator[Executor]:
+def local_executor(workers: int, tries: int = 3, *, warm: bool = False) -> Iterator[Executor]:
     """Give an executor of so many processes, which have ended when it is left.
 
-    A piece of work may cost so many of them (`tries`). Raises WorkerLostError where no process can be started.
+    A piece of work may cost so many of them (`tries`). A `warm` process has loaded all that answers need before it
+    takes up the first. Raises WorkerLostError where no process can be started.
     """
-    with Workers(workers, prepare, FEW_THREADS, tries=tries) as processes:
+    with Workers(workers, _prepare_warm if warm else prepare, FEW_THREADS, tries=tries) as processes:
         yield _LocalExecutor(workers=workers, processes=processes)
 
 
@@ -47,3 +48,10 @@ def worked(work: Work, data: bytes) -> bytes:
     except BaseException as exception:  # noqa: BLE001
         fault = Fault.of(exception)
         raise ProcessFaultError(f"{fault.kind} in a worker process\n{fault.trace}") from None
+
+
+def _prepare_warm() -> None:
+    """Make a process one that can be limited, and load the rest of what answers need."""
+    prepare()
+    from flexlash.batch import page_answer  # noqa: F401
+    from flexlash.report import workbook  # noqa: F401

@@ -57,7 +57,7 @@ class Setup:
         if self.scheduler is None:
             from flexlash.batch.local_executor import local_executor
 
-            return local_executor(self.workers, tries=1)
+            return local_executor(self.workers, tries=1, warm=True)
         from flexlash.batch.dask_executor import dask_executor
 
         return dask_executor(self.scheduler, self.workers)
