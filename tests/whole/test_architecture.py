@@ -141,7 +141,7 @@ BUILT = {
     "reading.delimited",
     "reading.survey",
     "report.submission_sheets",
-    "service.dispatcher",
+    "service.progress",
 }
 """Where a record is filled step by step by the code beside it, and stays with it."""
 
