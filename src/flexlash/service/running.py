@@ -8,7 +8,7 @@ from __future__ import annotations
 import signal
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -31,6 +31,9 @@ __all__ = ["STOPPING", "Service", "Setup", "running", "stopped_by_signals"]
 
 STOPPING = 25.0
 """Seconds within which what is at work may still end once the service is told to stop; 5 more and all has ended."""
+
+_LEAST_STOP = 1.0
+"""Seconds that each part has for its present step, however little is left."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,9 +119,9 @@ def running(setup: Setup, log: Log) -> Iterator[Service]:
         facts: dict[str, object] = {"inbox": places.inbox, "out": places.out} if places else {}
         log.say("started", "", store=store.folder, workers=setup.scheduler or setup.workers, **facts)
         parts: list[_Part] = [dispatcher, Keeper(store, setup.keep_seconds, log), *outward]
+        stack.callback(_stop, parts)
         for part in parts:
             part.start()
-            stack.callback(part.stop, STOPPING)
         yield Service(
             store=store,
             dispatcher=dispatcher,
@@ -129,6 +132,13 @@ def running(setup: Setup, log: Log) -> Iterator[Service]:
         )
         log.say("stopping")
     log.say("stopped")
+
+
+def _stop(parts: Sequence[_Part]) -> None:
+    """Stop parts, one after the other, so that all have ended in time however long one of them takes."""
+    end = time.monotonic() + STOPPING
+    for part in parts:
+        part.stop(max(_LEAST_STOP, end - time.monotonic()))
 
 
 @contextmanager
