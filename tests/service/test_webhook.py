@@ -16,9 +16,11 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 import pytest
 from dispatching import Clock, opened
 
+from flexlash.service.backup import back_up
 from flexlash.service.log import Log
 from flexlash.service.records import Ending, HandedIn, StoredFile
 from flexlash.service.running import Setup, running
+from flexlash.service.store import Store
 from flexlash.service.webhook import Webhook, webhook_address, webhook_key
 
 KEY = b"a key that both know"
@@ -238,10 +240,17 @@ def test_the_key_is_made_once_or_taken_from_a_file(tmp_path):
 
 
 def test_a_store_with_a_key_of_its_own_is_opened_again(tmp_path, listener):
-    """A service that tells a webhook is started again and again, with the key that it has made, which is whole."""
+    """A service that tells a webhook is started again and again with the key that it has made, also on a backup."""
     setup = Setup(store=tmp_path / "store", workers=1, webhook=listener.url)
     keys = set()
     for _ in range(2):
         with running(setup, Log(stream=io.StringIO())):
             keys.add((tmp_path / "store" / "webhook.key").read_bytes())
+    with Store(tmp_path / "store", serving=True) as store:
+        back_up(store, tmp_path / "copy")
+        back_up(store, tmp_path / "copy")
+    with running(Setup(store=tmp_path / "copy", workers=1, webhook=listener.url), Log(stream=io.StringIO())):
+        keys.add((tmp_path / "copy" / "webhook.key").read_bytes())
     assert len(keys) == 1
+    if sys.platform != "win32":
+        assert stat.S_IMODE((tmp_path / "copy" / "webhook.key").stat().st_mode) == 0o600

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from flexlash.outputs.writing import sync_folder
+from flexlash.outputs.writing import sync_folder, temporary
 from flexlash.schema.findings import shown
 from flexlash.service.blobs import Blobs
 from flexlash.service.database import Database, store_faults
-from flexlash.service.store_place import DATABASE, KEEPING_LOCK, StoreError, foreign
+from flexlash.service.store_place import DATABASE, KEEPING_LOCK, WEBHOOK_KEY, StoreError, foreign
 from flexlash.service.store_questions import StoreQuestions
 
 __all__ = ["BackedUp", "back_up"]
@@ -48,6 +49,7 @@ def back_up(store: StoreQuestions, folder: Path) -> BackedUp:
             copy = Blobs(folder / "blobs")
             copy.prepare()
             done = _copied(store.blobs, copy, named, folder)
+            _copy_key(store.folder, folder)
             _put_in_place(new, folder)
             copy.sweep({sha256 for sha256, _ in named}, 0.0)
     except Timeout:
@@ -88,6 +90,15 @@ def _copied(blobs: Blobs, copy: Blobs, named: Iterable[tuple[str, int]], folder:
         else:
             damaged.append(sha256)
     return BackedUp(folder=folder, copied=copied, copied_before=before, damaged=damaged)
+
+
+def _copy_key(store: Path, folder: Path) -> None:
+    """Copy the key by which messages are signed: whoever hears them takes those of a restored store for the same."""
+    with suppress(FileNotFoundError):
+        key = (store / WEBHOOK_KEY).read_bytes()
+        with temporary(folder, lambda file: file.write(key)) as made:
+            made.chmod(0o600)
+            made.replace(folder / WEBHOOK_KEY)
 
 
 def _put_in_place(new: Path, folder: Path) -> None:
