@@ -53,13 +53,13 @@ def _undisturbed(folder, count, workers=2):
     return _found(folder, ids)
 
 
-def _disturbed(folder, count, *, kinds, seed):
+def _disturbed(folder, count, *, kinds, seed, after=(1, 4)):
     """Compute submissions while servers and workers are stopped, each after some have ended; say what was stopped."""
     draw, stopped = random.Random(seed), Counter()  # noqa: S311
     ids = _handed_in(folder, count)
     server = served(folder, 2, "poisoned")
     for kind in cycle(kinds):
-        enough = min(_ended(folder) + draw.randint(1, 4), count)
+        enough = min(_ended(folder) + draw.randint(*after), count)
         while server.poll() is None and _ended(folder) < enough:
             time.sleep(0.02)
         time.sleep(draw.uniform(0, 1))
@@ -109,6 +109,7 @@ def test_five_hundred_end_right_and_memory_is_flat(tmp_path):
         assert measured[later]["server"] <= 1.1 * measured[1]["server"]
         assert measured[later]["worker"] <= 1.1 * measured[1]["worker"]
     assert measured[24]["server"] <= 60
-    found, stopped = _disturbed(tmp_path / "soak", 500, kinds=("worker", "server", "worker", "term"), seed=2)
+    kinds = ("worker", "server", "worker", "term")
+    found, stopped = _disturbed(tmp_path / "soak", 500, kinds=kinds, seed=2, after=(4, 16))
     print(stopped)  # noqa: T201
     _checked(found, expected)
