@@ -107,8 +107,8 @@ class Dispatcher(Questions):
         """Let what is at work end within so many seconds, and hand back the rest, for which no try is counted."""
         end = time.monotonic() + min(seconds, _LONGEST_STOP)
         self._is_stopping = True
-        while self._begun and time.monotonic() < end:
-            self._loop.wake()
+        # What is done of a large table is kept anyway.
+        while any(not one.is_large for one in list(self._begun.values())) and time.monotonic() < end:
             time.sleep(0.05)
         self._loop.stop(max(1.0, end - time.monotonic()))
         for begun in list(self._begun.values()):

@@ -15,6 +15,9 @@ from flexlash.workers import WorkerLostError
 
 __all__ = ["OpenExecutor", "Opening"]
 
+_CLOSING = 10.0
+"""Seconds that workers which are of no more use may take to end, before it goes on without them."""
+
 Opening = Callable[[], AbstractContextManager[Executor]]
 
 
@@ -53,7 +56,7 @@ class OpenExecutor:
         rest = back_off(self._faults)
         self._not_before = time.monotonic() + rest
         self._log.say("fault", what="workers", why=readable(fault), again_in_seconds=rest)
-        self.close(rest)
+        self.close(_CLOSING)
 
     def close(self, seconds: float) -> None:
         """End the workers, whatever they are doing; wait no longer than so many seconds."""
