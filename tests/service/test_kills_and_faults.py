@@ -8,6 +8,7 @@ import json
 import os
 import pickle
 import random
+import shutil
 import subprocess
 import sys
 from contextlib import contextmanager
@@ -15,16 +16,15 @@ from pathlib import Path
 
 import pytest
 from filled import SOUND, filled
-from service_steps import scene_of
+from service_steps import FAULTS, scene_of
 
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(not hasattr(os, "fork"), reason="a kill at each step needs processes that are forked"),
 ]
 
-_PROGRAM = Path(__file__).resolve().parents[1] / "support" / "service_steps.py"
+_PROGRAM = Path(__file__).resolve().parents[1] / "support" / "service_judge.py"
 _SOURCE = Path(__file__).resolve().parents[2] / "src"
-_FAULTS = ("ENOSPC", "EIO", "EACCES", "late")
 
 
 def _table(row):
@@ -117,7 +117,7 @@ def test_r3_a_fault_of_this_machine_at_each_kind_of_step_loses_nothing(scene):
     """
     with _judge(scene) as (steps, wrong):
         first = _first(steps)
-        for number, how in enumerate(_FAULTS):
+        for number, how in enumerate(FAULTS):
             assert wrong(_faulty(first[number::4], [how], 1)) == {}
             assert wrong(_faulty(first[number::16], [how], 20)) == {}
 
@@ -135,4 +135,18 @@ def test_r3_faults_of_this_machine_at_every_step_lose_nothing(scene):
     """The same at every step, for one step and for thirty."""
     with _judge(scene) as (steps, wrong):
         for lasting in (1, 30):
-            assert wrong(_faulty(range(1, len(steps) + 1), _FAULTS, lasting)) == {}
+            assert wrong(_faulty(range(1, len(steps) + 1), FAULTS, lasting)) == {}
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not shutil.which("strace"), reason="strace kills at system calls, and is not there")
+def test_r1_r3_kills_and_faults_within_sqlite_lose_nothing(scene):
+    """Killed, or refused, at any of the writes and flushes that SQLite makes, it comes to the same as well."""
+    drawn = random.Random(0)  # noqa: S311
+    calls = ("pwrite64", "fdatasync", "fsync")
+    hows = ("signal=KILL", "error=EIO", "error=ENOSPC")
+    points = [
+        {"steps": [drawn.randint(1, 400)], "how": drawn.choice(hows), "call": drawn.choice(calls)} for _ in range(200)
+    ]
+    with _judge(scene) as (_, wrong):
+        assert wrong(points) == {}
