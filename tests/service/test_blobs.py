@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import os
 import threading
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from dispatching import dispatching, ended, hand_in
+from stored import computed, handed
 
 from flexlash.service.blobs import Blobs, ChangedFileError, DamagedFileError
 from flexlash.service.records import Ending, HandedIn, StoredFile
@@ -74,6 +76,22 @@ def test_r2_a_damaged_result_answers_nobody_and_computing_anew_mends_it(tmp_path
         assert again.state == "waiting"
         end()
         assert path.read_bytes() == b"a report"
+
+
+def test_a_result_that_the_disk_does_not_give_back_keeps_nobody_from_handing_in(tmp_path, monkeypatch):
+    """Where the report of the same submission cannot be read, that is computed, in place of a fault for ever."""
+    with Store(tmp_path / "store", serving=True) as store:
+        store.accept(handed(), b"1")
+        found = computed(store)
+        bad, real = store.blobs.path(store.files(found.id)["report"].sha256), Path.open
+
+        def failing(path, *arguments):
+            if path == bad:
+                raise OSError(errno.EIO, "Input/output error")
+            return real(path, *arguments)
+
+        monkeypatch.setattr(Path, "open", failing)
+        assert store.accept(handed(), b"1").state == "waiting"
 
 
 @pytest.mark.slow

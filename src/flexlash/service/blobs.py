@@ -75,10 +75,10 @@ class Blobs:
         return False
 
     def is_whole(self, sha256: str) -> bool:
-        """Return whether the file of a digest is there with the bytes of the digest; raise OSError as `checked`."""
+        """Return whether the file of a digest is there, can be read, and has the bytes of the digest."""
         try:
             self.checked(sha256)
-        except DamagedFileError:
+        except OSError:
             return False
         return True
 

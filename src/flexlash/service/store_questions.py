@@ -135,11 +135,6 @@ class StoreQuestions:
         rows = self._database.all("SELECT state, count(*) AS n FROM submission GROUP BY state")
         return dict.fromkeys(STATES, 0) | {row["state"]: row["n"] for row in rows}
 
-    def waiting_count(self) -> int:
-        """Return how many submissions wait or are at work."""
-        totals = self.totals()
-        return totals["waiting"] + totals["working"]
-
     def waiting_bytes(self) -> int:
         """Return the size of all that waits or is at work."""
         row = self._database.one(
