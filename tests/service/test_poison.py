@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from dispatching import BROKEN, DATA, MIXED, dispatching, ended, hand_in, opened, table
-from poisoned import stopped_by_name
+from poison_files import stopped_by_name
 
 from flexlash import run
 from flexlash.analysis.options import Options

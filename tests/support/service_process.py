@@ -79,7 +79,7 @@ def _serve(folder: Path, workers: int, *, poisoned: bool) -> None:
     from flexlash.service.store import Store
 
     if poisoned:
-        from poisoned import stopped_by_name
+        from poison_files import stopped_by_name
 
         module.computed_apart = stopped_by_name
     stopped = threading.Event()
