@@ -34,12 +34,13 @@ def _environment():
 
 
 def children_of(number: int) -> list[int]:
-    """Return the processes that a process has started."""
+    """Return the workers that a process has started, without the process that tracks its semaphores."""
     found = []
     for entry in Path("/proc").iterdir():
         if entry.name.isdigit():
             with suppress(OSError, ValueError):
-                if int((entry / "stat").read_text().rpartition(")")[2].split()[1]) == number:
+                parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+                if parent == number and b"resource_tracker" not in (entry / "cmdline").read_bytes():
                     found.append(int(entry.name))
     return found
 
