@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
-from drop_folders import Service
+from drop_folders import _ENDINGS, Service
 
 from flexlash.service import delivering
 from flexlash.service.drop_folder import DropFolder
@@ -49,6 +49,19 @@ def test_files_go_to_out_and_the_original_to_done_or_rejected(service, state):
     assert (service.out / state / submission.id / "a.csv").read_bytes() == b"a,b\n1,2\n"
     assert list((service.out / "work" / service.store.name).iterdir()) == []
     assert service.store.undelivered() == []
+
+
+def test_what_the_report_of_a_large_table_names_lies_beside_it(service, monkeypatch):
+    """Such a report holds the worst rows alone and names the files that have all; any other needs none."""
+    monkeypatch.setitem(_ENDINGS, "results", "-results.parquet")
+    monkeypatch.setitem(_ENDINGS, "findings", "-findings.csv")
+    hand_in(service, files={**FILES, "results": b"all Results", "findings": b"all findings"})
+    assert service.delivered.keys() == {
+        "a-report.xlsx", "a-results.parquet", "a-findings.csv", "a-checked.xlsx", "a-reasons.txt",
+    }  # fmt: skip
+    monkeypatch.setitem(_ENDINGS, "results", "-results.csv")
+    hand_in(service, b"b\n", {"report": b"the report", "results": b"all Results"}, name="b.csv")
+    assert {name for name in service.delivered if name.startswith("b")} == {"b-report.xlsx"}
 
 
 def test_the_original_goes_last(service, monkeypatch):

@@ -1,8 +1,10 @@
 """The text that a sender finds beside, or in place of, a report."""
 
 from dataclasses import replace
+from pathlib import Path
 
 from flexlash.batch.answer import Answer, FileBytes
+from flexlash.batch.large_apart import LargeAnswer
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.service.reasons import answered_again_text, reasons_text
 from flexlash.service.records import StoredSubmission
@@ -43,6 +45,14 @@ def test_a_partly_computed_submission_is_told_what_where_required_mend_copy_and_
         assert needed in text
     assert "I501" not in text
     assert "passes through" not in text
+
+
+def test_who_handed_in_a_large_table_is_told_where_all_rows_are():
+    """The report of a large table holds its worst rows alone: the text names the file that has all."""
+    large = LargeAnswer.with_files(PARTLY, {"results": Path("a-results.parquet"), "report": Path("a-report.xlsx")})
+    text = said(reasons_text(large, "a.csv"))
+    assert "are in a-results.parquet, the worst of them also in a-report.xlsx. Of the others" in text
+    assert "are in a-report.xlsx. Of the others" in said(reasons_text(PARTLY, "a.csv"))
 
 
 def test_a_rejected_submission_is_told_why():

@@ -16,8 +16,8 @@ from flexlash.service.store_questions import StoreQuestions
 
 __all__ = ["Outbox"]
 
-_DELIVERED = ("report", "checked", "reasons")
-"""Roles of files that are delivered to OUT, in this order."""
+_DELIVERED = ("report", "results", "findings", "checked", "reasons")
+"""Roles of files that are delivered to OUT, in this order; `_leaves` says of which form."""
 
 _DUE = (
     "WITH turns AS (SELECT number, row_number() OVER (PARTITION BY submission"
@@ -131,7 +131,10 @@ class Outbox(StoreQuestions):
 
 
 def _leaves(file: StoredFile) -> bool:
-    """Whether a file goes to OUT: Results do where the report holds the worst of them alone and names their file."""
+    """Whether a file goes to OUT: Results do where the report holds the worst of them alone and names their file.
+
+    Findings have a file of their own there alone.
+    """
     return file.role != "results" or file.name.endswith(".parquet")
 
 

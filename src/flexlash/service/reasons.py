@@ -12,6 +12,7 @@ from pathlib import PurePath
 from flexlash import __version__
 from flexlash.batch.answer import Answer
 from flexlash.batch.ended import fault_words
+from flexlash.batch.large_apart import LargeAnswer
 from flexlash.reading.products import CHECKED_NAME, REPORT_NAME
 from flexlash.schema.findings import shown
 from flexlash.service.records import StoredSubmission
@@ -62,9 +63,9 @@ def _lines(answer: Answer, name: str, submission: str, reason: str) -> Iterator[
     yield f"{name}: {answer.words or 'nothing was computed'}."
     yield ""
     if computed and counts.get("computed") == counts.get("rows"):
-        yield f"All rows are in {stem}{REPORT_NAME}.xlsx. This is to be looked at:"
+        yield f"All rows are in {_place(answer, stem)}. This is to be looked at:"
     elif computed:
-        yield f"The rows that could be computed are in {stem}{REPORT_NAME}.xlsx. Of the others this is to be mended:"
+        yield f"The rows that could be computed are in {_place(answer, stem)}. Of the others this is to be mended:"
     else:
         yield "No report was written. This is why:"
     yield ""
@@ -81,6 +82,14 @@ def _lines(answer: Answer, name: str, submission: str, reason: str) -> Iterator[
     if not answer.refused and (sha256 := answer.told.get("sha256")):
         yield f"SHA-256 of the file: {sha256}"
     yield f"flexlash {__version__}"
+
+
+def _place(answer: Answer, stem: str) -> str:
+    """Return where the rows are that were computed: of a large table the report holds the worst alone."""
+    report = f"{stem}{REPORT_NAME}.xlsx"
+    if isinstance(answer, LargeAnswer) and (results := answer.files.get("results")):
+        return f"{stem}-results{results.suffix}, the worst of them also in {report}"
+    return report
 
 
 def _why(answer: Answer, reason: str) -> Iterator[str]:
