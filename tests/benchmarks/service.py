@@ -1,6 +1,6 @@
 """Small workbooks through the service: throughput, findings, hand-back, memory; a million rows beside them.
 
-    PYTHONPATH=tests/support python tests/benchmarks/service.py [--workbooks N] [--rows N]
+    python tests/benchmarks/service.py [--workbooks N] [--rows N]
 
 A server runs in a process of its own (`tests/support/service_process.py`) and is watched in /proc (Linux only). Printed
 are submissions a second with one worker and with two and the ratio, processor time of each submission, the server's
@@ -17,9 +17,12 @@ import json
 import os
 import signal
 import statistics
+import sys
 import tempfile
 import time
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 
 from dispatching import QUICK, hand_in, table
 from filled import SOUND, filled
