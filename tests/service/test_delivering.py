@@ -1,6 +1,7 @@
 """From the store into OUT: each file whole, once, under a name that nothing else has; the original last."""
 
 import errno
+import io
 import os
 import threading
 import time
@@ -8,12 +9,16 @@ from pathlib import Path
 
 import pytest
 from drop_folders import _ENDINGS, Service
+from web_pages import Idle, Visitor
 
 from flexlash.service import delivering
 from flexlash.service.drop_folder import DropFolder
 from flexlash.service.log import Log
 from flexlash.service.out_names import out_name
+from flexlash.service.repeated import Repeated
 from flexlash.service.store import Store
+from flexlash.service.web.access import Access
+from flexlash.service.web.app import application
 
 FILES = {"report": b"the report", "checked": b"the marked copy", "reasons": b"the reasons"}
 
@@ -320,3 +325,34 @@ def test_r8_a_name_in_out_never_leads_elsewhere():
         assert safe.isprintable()
         assert Path(safe).name == safe
         assert len(safe.encode()) <= 255 - len(" (9999)")
+
+
+def test_health_says_what_keeps_the_drop_folder_from_its_work(service, tmp_path, monkeypatch):
+    """Whoever watches the service hears of a lost drive, of files that do not come into OUT, of a thread that ended."""
+    app = application(
+        service.store, Idle(), Access.of(), "options", time.time(), log=Log(stream=io.StringIO()),
+        troubles=service.folder.troubles,
+    )  # fmt: skip
+
+    def wrong() -> list[str]:
+        return Visitor(app).get("/health").json()["wrong"]
+
+    assert wrong() == ["nothing looks into INBOX"]
+    monkeypatch.setattr(Repeated, "is_alive", True)
+    assert wrong() == []
+    service.out.rename(tmp_path / "away")
+    service.step()
+    assert wrong() == ["INBOX or OUT cannot be used"]
+    (tmp_path / "away").rename(service.out)
+    service.step()
+    assert wrong() == []
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(delivering, "put_new", full)
+        hand_in(service)
+    assert wrong() == ["files cannot be put into OUT"]
+    service.pass_time(10)
+    assert wrong() == []

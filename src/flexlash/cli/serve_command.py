@@ -59,7 +59,8 @@ def serve(inbox: Path | None, *, as_json: bool, **chosen: Any) -> None:
     log = Log(as_json=as_json)
     with started_or_why(), running(setup, log) as service:
         app = application(
-            service.store, service.dispatcher, access, service.options_digest, service.started_at, log=log
+            service.store, service.dispatcher, access, service.options_digest, service.started_at, log=log,
+            troubles=service.folder.troubles if service.folder else tuple,
         )  # fmt: skip
         server = PageServer(app, access, log)
         _say(server, service, opens=bool(access.once))

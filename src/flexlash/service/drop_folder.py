@@ -78,6 +78,15 @@ class DropFolder:
         """Look no more, and wait so long until the present step has ended."""
         self._repeated.stop(seconds)
 
+    def troubles(self) -> list[str]:
+        """Return what keeps it from its work, in words that name nobody and no file."""
+        told = [] if self._repeated.is_alive else ["nothing looks into INBOX"]
+        if self._inbox.is_hindered:
+            told.append("INBOX or OUT cannot be used")
+        if any(one.trouble for one in self._store.undelivered() if one.kind != "message"):
+            told.append("files cannot be put into OUT")
+        return told
+
     @property
     def is_idle(self) -> bool:
         """Whether nothing waits in INBOX, to settle or to be taken, all was computed, and all was delivered."""

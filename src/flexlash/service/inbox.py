@@ -114,6 +114,11 @@ class Inbox:
             accepted += self._take(one)
         return accepted, len(ready) > _AT_ONCE
 
+    @property
+    def is_hindered(self) -> bool:
+        """Whether INBOX or OUT could not be used when it was last looked through."""
+        return self._patience.stands_since("INBOX") is not None
+
     def expect(self, folder: Path) -> None:
         """Have what lies in a folder of this store's, named by its ID, accepted once it has settled."""
         self._unaccepted.add(folder)

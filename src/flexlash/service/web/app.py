@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib.resources import files
 
 from starlette.applications import Starlette
@@ -39,12 +39,16 @@ def application(
     *,
     log: Log | None = None,
     limits: Limits | None = None,
+    troubles: Callable[[], Sequence[str]] = tuple,
 ) -> Starlette:
-    """Return the page over a store and whoever works on it; raise OSError where its key cannot be read or made."""
+    """Return the page over a store and whoever works on it; `troubles` are told by /health.
+
+    Raises OSError where its key cannot be read or made.
+    """
     signer = Signer(stored_key(store.folder))
     site = Site(
         store=store, works=works, access=access, signer=signer, options=options_digest, started_at=started_at,
-        log=log or Log(), limits=limits or Limits(), templates=page_templates(),
+        log=log or Log(), limits=limits or Limits(), troubles=troubles, templates=page_templates(),
     )  # fmt: skip
     visitors = Visitors(access, signer)
     app = Starlette(

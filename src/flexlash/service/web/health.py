@@ -42,6 +42,7 @@ class Health:
             waited = self._site.store.figures()["oldest_waiting_seconds"]
             if not self._site.works.workers and waited > _PATIENCE:
                 wrong.append("what waits finds no workers")
+            wrong += self._site.troubles()
             if self._free() < self._site.limits.free_bytes:
                 wrong.append("the disk is nearly full")
         except Exception:  # noqa: BLE001

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -75,7 +75,7 @@ class Limits:
 
 @dataclass(frozen=True, kw_only=True)
 class Site:
-    """What the handlers share."""
+    """What the handlers share; `troubles` tells in words what keeps other doors from their work."""
 
     store: Store
     works: Works
@@ -85,6 +85,7 @@ class Site:
     started_at: float
     log: Log
     limits: Limits = field(default_factory=Limits)
+    troubles: Callable[[], Sequence[str]] = tuple
     templates: Jinja2Templates
 
     def page(
