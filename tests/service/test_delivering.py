@@ -339,6 +339,7 @@ def test_health_says_what_keeps_the_drop_folder_from_its_work(service, tmp_path,
 
     assert wrong() == ["nothing looks into INBOX"]
     monkeypatch.setattr(Repeated, "is_alive", True)
+    service.step()
     assert wrong() == []
     service.out.rename(tmp_path / "away")
     service.step()
