@@ -243,7 +243,8 @@ def test_names_of_downloads():
         safe = safe_name(name)
         assert re.fullmatch(r"[\w().-]{1,130}", safe), name
         assert not safe.startswith(".")
-    assert safe_name("a" * 300 + ".xlsx").endswith(".xlsx")
+    assert safe_name("a" * 300 + "-report.xlsx").endswith("a-report.xlsx")
+    assert safe_name("a" * 300 + "-mended.xlsx").endswith("a-mended.xlsx")
 
 
 def test_health_says_what_is_wrong(tmp_path, monkeypatch):
@@ -291,7 +292,8 @@ def test_the_log_has_what_changed_and_what_was_refused(tmp_path):
         visitor.hand_in()
         visitor.get("/nix%0d%0aforged")
         said = one.said.getvalue().splitlines()
-        assert [line.partition("request ")[2] for line in said] == [
-            "what=POST /submissions status=303 sender=anna",
-            "what=GET /nix··forged status=404 sender=anna",
+        assert [line.partition(" ")[2] for line in said] == [
+            f"received {one.store.history()[0].id} name=b3.xlsx",
+            "request what=POST /submissions status=303 sender=anna",
+            "request what=GET /nix··forged status=404 sender=anna",
         ]

@@ -14,7 +14,9 @@ from flexlash.service.web.refusals import Refused
 
 __all__ = ["attachment", "download", "safe_name"]
 
-_LONGEST = 120
+_LONGEST, _LAST = 120, 12
+"""Signs of a name, and how many of its last ones are kept: they say whether it is the report or the marked copy."""
+
 _SIGNS = frozenset("-_.()")
 _KINDS = {
     ".xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
@@ -35,7 +37,9 @@ def safe_name(name: str) -> str:
     base = unicodedata.normalize("NFC", name).replace("\\", "/").rpartition("/")[2]
     kept = "".join(sign if sign.isalnum() or sign in _SIGNS else "_" for sign in base).lstrip(".")
     ending = PurePosixPath(kept).suffix[:10]
-    stem = kept[: len(kept) - len(PurePosixPath(kept).suffix)][: _LONGEST - len(ending)]
+    stem = kept[: len(kept) - len(PurePosixPath(kept).suffix)]
+    if len(stem) > _LONGEST - len(ending):
+        stem = f"{stem[: _LONGEST - len(ending) - _LAST]}{stem[-_LAST:]}"
     return f"{stem}{ending}" if stem.strip("_.") else f"flexlash{ending}"
 
 

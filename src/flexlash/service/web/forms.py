@@ -59,7 +59,9 @@ class Forms:
                 self._require_room()
                 sender = request.scope["state"]["sender"]
                 handed = HandedIn(id=id_, name=one.name, options=self._site.options, door="page", sender=sender)
-                store.accept(handed, one.write_into)
+                stored = store.accept(handed, one.write_into)
+                again = {"answered_as": stored.same_as} if stored.same_as else {}
+                self._site.log.say("received", id_, name=stored.name, **again)
         self._site.works.wake()
         found = known or self._site.known(id_)
         headers = {"Location": f"/submissions/{id_}"}
