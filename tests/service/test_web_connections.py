@@ -201,6 +201,15 @@ def test_a_second_request_that_is_none_does_no_harm(tmp_path):
         assert "Traceback" not in one.said.getvalue()
 
 
+def test_a_request_of_two_lengths_is_refused_and_nothing_behind_it_is_read(tmp_path):
+    """What says both how long it is and that it comes in pieces may hold a second request, which is not answered."""
+    with served(tmp_path) as (_, server):
+        hidden = _head("Connection: close", method="GET", path="/history")
+        said = _asked(server, _head("Content-Length: 6", "Transfer-Encoding: chunked") + "0\r\n\r\n" + hidden)
+        assert said.startswith("HTTP/1.1 400")
+        assert said.count("HTTP/1.1 ") == 1
+
+
 def test_only_so_many_connections_are_held(tmp_path, monkeypatch):
     """Connections beyond the limit are closed at once, so that others can still be answered later."""
     monkeypatch.setattr(connections, "MOST_CONNECTIONS", 3)
@@ -270,7 +279,7 @@ ended = server.run()
 heavy = sorted({{name.partition(".")[0] for name in sys.modules}} & {heavy!r})
 print(ended, heavy, one.works.woken, flush=True)
 """
-HEAVY = {"polars", "numpy", "openpyxl", "xlsxwriter", "pandera", "scipy", "distributed", "matplotlib"}
+HEAVY = {"polars", "rapidfuzz", "numpy", "openpyxl", "xlsxwriter", "pandera", "scipy", "distributed", "matplotlib"}
 
 
 def _program(folder):

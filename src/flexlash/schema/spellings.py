@@ -11,9 +11,6 @@ from functools import lru_cache
 from itertools import islice, takewhile
 from typing import NamedTuple
 
-from rapidfuzz import process
-from rapidfuzz.distance import Indel
-
 __all__ = ["affordable", "closest", "likeness", "misspelt", "plain", "spelt_alike", "suggested", "words"]
 
 _CLOSE = 0.85
@@ -39,6 +36,8 @@ def plain(text: str) -> str:
 
 def likeness(first: str, second: str) -> float:
     """Return how alike two plain spellings are: twice the letters in common, in order, over the letters of both."""
+    from rapidfuzz.distance import Indel
+
     return Indel.normalized_similarity(first, second)
 
 
@@ -77,6 +76,9 @@ def _index(names: tuple[str, ...]) -> _Index:
 
 def closest(text: str, names: Iterable[str], cutoff: float = 0.6) -> str:
     """Return the name that a text most resembles, or an empty text."""
+    from rapidfuzz import process
+    from rapidfuzz.distance import Indel
+
     by_plain = _index(tuple(names)).by_plain
     near = process.extractOne(plain(text), by_plain.keys(), scorer=Indel.normalized_similarity, score_cutoff=cutoff)
     return by_plain[near[0]] if near else ""
@@ -110,6 +112,9 @@ def misspelt(text: str, names: Mapping[str, str]) -> str | None:
     >>> misspelt("standart", spelt_alike(["standard", "fine"])), misspelt("20Cr2Ni5", spelt_alike(["20Cr2Ni4"]))
     ('standard', None)
     """
+    from rapidfuzz import process
+    from rapidfuzz.distance import Indel
+
     wanted = plain(text)
     near = process.extract(wanted, names.keys(), scorer=Indel.normalized_similarity, score_cutoff=_CLOSE, limit=None)
     meant = {names[spelling] for spelling, _, _ in near}

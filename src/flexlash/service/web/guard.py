@@ -68,6 +68,9 @@ class Guard:
         known = self._visitors.let_in(request)
         if self._running > self._site.limits.requests:
             raise Refused(503)
+        if "transfer-encoding" in request.headers and "content-length" in request.headers:
+            # A proxy may see another end of such a request than we do, and take what follows for somebody else's.
+            raise Refused(400, headers={"Connection": "close"})
         limits = self._site.limits
         length = request.headers.get("content-length", "0")
         if not length.isdecimal() or int(length[:20]) > (
