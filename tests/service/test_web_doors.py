@@ -259,8 +259,11 @@ def test_open_lets_in_once(tmp_path):
         assert (answer.status_code, answer.headers["location"]) == (303, "/")
         assert re.search("httponly.*samesite=strict", answer.headers["set-cookie"].lower())
         assert first.get("/").status_code == 200
-        assert second.get(f"/open/{access.once}").status_code == 403
-        assert second.get("/").status_code == 401
+        used = second.get(f"/open/{access.once}")
+        assert (used.status_code, second.get("/").status_code) == (403, 401)
+        assert "start it again with --open" in used.text
+        assert "start it again with --open" in second.get("/").text
+        assert 'name="access"' not in second.get("/").text
         assert second.post("/login", data={"access": ""}).status_code == 401
         assert second.post("/login", data={"access": access.once}).status_code == 401
 

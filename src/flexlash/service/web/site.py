@@ -123,7 +123,8 @@ class Site:
             return JSONResponse({"error": told}, refused.status_code, refused.headers)
         name = "login" if refused.asks_for_token else "refused"
         again = request.headers.get("sec-fetch-site") == "cross-site"
-        context = told | ({"wanted": readable(request.scope["path"]), "again": again} if refused.asks_for_token else {})
+        asked = {"wanted": readable(request.scope["path"]), "again": again, "has_token": bool(self.access.token)}
+        context = told | (asked if refused.asks_for_token else {})
         return self.page(request, name, context, status=refused.status_code, headers=refused.headers)
 
     def known(self, id_: str) -> StoredSubmission:

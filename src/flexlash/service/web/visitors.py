@@ -26,6 +26,10 @@ OPENING = "/open/"
 _OPEN_TO_ALL = ("/health", "/metrics")
 """What names nobody, so that it may be watched without a token or a proxy."""
 
+_ONE_BROWSER = (
+    "flexlash was started for one browser alone. If that was yours and you have closed it, stop flexlash and start it"
+    " again with --open."
+)
 _SESSION = 30 * DAY
 _HOST = re.compile(r"(?P<name>[a-z0-9.-]{1,255}|\[[0-9a-f:.]{2,45}\])(:[0-9]{1,5})?")
 _WANTED = re.compile(r"/(?!/)[A-Za-z0-9/._-]{0,300}")
@@ -105,7 +109,8 @@ class Visitors:
             return {"session": "", "bearer": "yes"}
         value = self._signer.value(self._purpose, request.cookies.get(self._cookie(request), ""), _SESSION)
         if value is None:
-            raise Refused(401, headers={"WWW-Authenticate": "Bearer"}, asks_for_token=True)
+            sentence = "" if self._access.token else _ONE_BROWSER
+            raise Refused(401, sentence, headers={"WWW-Authenticate": "Bearer"}, asks_for_token=True)
         return {"session": value}
 
     def _require_right(self, request: Request, token: str) -> None:
@@ -128,7 +133,7 @@ class Visitors:
             raise Refused(405, headers={"Allow": "GET"})
         with self._opening:
             if self._access.once and not self._once:
-                raise Refused(403, "This address has been used once already, and works once alone.")
+                raise Refused(403, f"This address has been used once already, and works once alone. {_ONE_BROWSER}")
             # Nobody guesses 256 bits: counting wrong ones would only let another user of this machine keep its owner
             # out.
             if not _is_same(request.path_params["token"], self._once):
