@@ -57,14 +57,12 @@ class Blobs:
 
         Raises DamagedFileError where they are not or there is none, OSError where it cannot be read.
         """
-        digest = hashlib.sha256()
         try:
             with self.path(sha256).open("rb") as file:
-                while piece := file.read(_PIECE):
-                    digest.update(piece)
+                found = hashlib.file_digest(file, "sha256").hexdigest()
         except FileNotFoundError:
             raise DamagedFileError(f"the kept file {sha256} is gone") from None
-        if digest.hexdigest() != sha256:
+        if found != sha256:
             raise DamagedFileError(f"the kept file {sha256} is damaged")
         return self.path(sha256)
 
