@@ -68,7 +68,7 @@ def pages(text):
         "rules": render("rules", "/rules", view=lists.rules_view([rule])),
         "explained": render("explained", explanation=lists.explained("E202")),
         "help": render("help", "/help", sheets=ENTRY_SHEETS, codes=lists.codes_by_level()),
-        "login": render("login", title=text, sentence=text, status=401, wanted=text, again=True),
+        "login": render("login", title=text, sentence=text, status=401, wanted=text, has_token=True, again=True),
         "refused": render("refused", title=text, sentence=text, status=410),
         "checked": render("checked", view=checked_view(text, facts)),
         "difference": render("difference", submission=done, previous=done, when=Moment.of(NOW, NOW),
