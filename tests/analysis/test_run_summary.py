@@ -15,6 +15,7 @@ from flexlash.analysis.run_summary import (
     spread_notes,
     summary_lines,
     to_fix_words,
+    words_of_state,
     worst_first,
 )
 from flexlash.pipeline import check, run
@@ -226,3 +227,9 @@ def test_groups_have_their_count_and_their_mends():
         "    Mend: Write a.",
         "    Mend: Write b.",
     ]
+
+
+def test_many_rows_are_told_in_groups_of_digits():
+    """Rows are counted as everything else is: from 10,000 on with their digits in groups."""
+    counts = {"rows": 25_000, "computed": 24_999, "warnings": 0}
+    assert words_of_state(counts, "1 cell to fix", [], ran=True) == "24,999 of 25,000 rows computed; 1 cell to fix"

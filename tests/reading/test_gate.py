@@ -15,6 +15,7 @@ from flexlash.reading.refusal import Refusal
 from flexlash.schema.findings import finding
 
 REFUSED = {
+    "nothing": ("E101", b""),
     "random bytes": ("E101", np.random.default_rng(1).bytes(5000)),
     "a PDF": ("E101", b"%PDF-1.7\n1 0 obj\n<<>>\nendobj\n"),
     "a web page": ("E101", b"<html><table><tr><td>Variant</td></tr></table></html>"),

@@ -98,6 +98,32 @@ def test_the_queue_and_a_fault_of_the_machine_are_told():
     assert "No space left on the disk. The fault is this machine's, not your file's. It is tried again in 40" in told
 
 
+def test_where_all_findings_are_is_said_truly():
+    """A page that cannot show all findings says which file has them; a check only, of which there is none, how to."""
+    facts = made(PageFacts, "words")
+    for card in facts["cards"]:
+        card["more"] = card["cells"] = 11_119
+    view = submission_view(submission(state="done"), NOW, facts=facts, files=FILES)
+    assert "and 11,119 more: the file of all findings has them" in HtmlPage(render("submission", view=view)).text
+    small = {role: file for role, file in FILES.items() if role != "findings"}
+    view = submission_view(submission(state="done"), NOW, facts=facts, files=small)
+    assert "and 11,119 more: the marked copy has them all" in HtmlPage(render("submission", view=view)).text
+    checked = HtmlPage(render("checked", view=checked_view("x.xlsx", facts))).text
+    assert "has them all" not in checked
+
+
+def test_a_file_that_cannot_be_read_is_promised_nothing():
+    """Of a refused file no report is promised after a check, and what says why is not called a marked copy."""
+    facts = made(PageFacts, "words")
+    assert "the report of the rows that are ready" not in render("checked", view=checked_view("x.xlsx", facts))
+    files = {role: FILES[role] for role in ("checked", "reasons")}
+    html = render("submission", view=submission_view(submission(state="rejected"), NOW, facts=facts, files=files))
+    assert "Reasons (.xlsx)" in html
+    assert "Marked copy" not in html
+    facts["refused"] = None
+    assert "the report of the rows that are ready" in render("checked", view=checked_view("x.xlsx", facts))
+
+
 def test_findings_come_before_the_report_where_a_file_needs_fixing():
     """With errors the findings and the marked copy come first, without any the report does."""
     facts = made(PageFacts, "words")

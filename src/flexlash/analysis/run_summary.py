@@ -153,7 +153,8 @@ def state_words(outcome: Outcome, *, ran: bool) -> str:
 def words_of_state(counts: Mapping[str, int], to_fix: str, waiting: Iterable[str], *, ran: bool) -> str:
     """Return the same of counts, and of how much there is to fix and what waits for what in words."""
     rows, computed = counts["rows"], counts["computed"]
-    ready = f"{computed} of {rows} rows {'computed' if ran else 'ready'}" if rows else "nothing to compute"
+    done = f"{grouped(computed)} of {grouped(rows)} rows {'computed' if ran else 'ready'}"
+    ready = done if rows else "nothing to compute"
     warned = counted(counts["warnings"], "warning") if counts["warnings"] else ""
     return "; ".join(filter(None, [ready, to_fix, *waiting, warned]))
 

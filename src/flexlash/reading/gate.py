@@ -101,6 +101,8 @@ def kind_of(data: bytes, only: Kind | None = None) -> Kind:
 
 
 def _kind(data: bytes) -> Kind:
+    if not data:
+        raise Refusal("E101", found="the file is empty")
     if data.startswith(_ARCHIVE):
         return "workbook"
     if data.startswith(PARQUET):

@@ -35,8 +35,9 @@ def offered(
         return []
     computed = facts["counts"].get("computed", 0) if facts else 0
     fixes = facts["fixable"] if facts else 0
+    unread = submission.state == "rejected" and bool(facts and facts["refused"])
     words = {
-        "checked": "Marked copy",
+        "checked": "Reasons" if unread else "Marked copy",
         "mended": f"File with {counted(fixes, 'certain fix')}".replace("fixs", "fixes"),
         "report": f"Report of the {counted(computed, 'row')}" if partly and computed > 1 else "Report",
         "results": "Results",

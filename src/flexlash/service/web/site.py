@@ -16,6 +16,7 @@ from flexlash import __version__
 from flexlash.batch.answer import Answer
 from flexlash.batch.executor import Work
 from flexlash.schema.findings import readable
+from flexlash.schema.number_words import grouped
 from flexlash.service.log import Log
 from flexlash.service.records import StoredFile, StoredSubmission, new_id
 from flexlash.service.store import Store
@@ -151,4 +152,5 @@ def page_templates() -> Jinja2Templates:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["grouped"] = grouped
     return Jinja2Templates(env=environment)
