@@ -3,6 +3,7 @@
 import errno
 import io
 import os
+import shutil
 import threading
 import time
 from pathlib import Path
@@ -131,6 +132,21 @@ def test_a_drive_without_links_is_delivered_to(service, monkeypatch):
     (service.out / "a-report.xlsx").write_text("mine")
     hand_in(service, files={"report": b"the report"})
     assert service.delivered == {"a-report.xlsx": b"mine", "a-report (2).xlsx": b"the report"}
+
+
+def test_an_out_that_was_removed_and_made_anew_by_hand_is_used(service):
+    """What comes in after somebody has removed OUT and made it again, with `work`, is taken and delivered as ever."""
+    hand_in(service)
+    shutil.rmtree(service.out)
+    service.put("b.csv", b"b\n")
+    service.pass_time(20)
+    assert service.submissions()[-1].name == "a.csv"
+    (service.out / "work").mkdir(parents=True)
+    service.pass_time(20)
+    service.answer(FILES)
+    service.pass_time(20)
+    assert service.delivered.keys() == {"b-report.xlsx", "b-checked.xlsx", "b-reasons.txt"}
+    assert service.originals("done") == {("b.csv", b"b\n"): 1}
 
 
 @pytest.mark.parametrize("listed", ["file", "original"])

@@ -192,6 +192,8 @@ class Inbox:
         except FileNotFoundError:
             return None
         folder = self._own / new_id()
+        # Whoever puts a lost OUT in its place again by hand makes no more than its `work`.
+        self._own.mkdir(exist_ok=True)
         folder.mkdir()
         sync_folder(self._own)
         claimed = folder / one.path.name
