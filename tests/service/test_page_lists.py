@@ -42,6 +42,16 @@ def test_history_leads_to_older_ones_only_where_there_are_some():
     assert "/history?text=a%26b&amp;state=&amp;before=11" in render("history", "/history", view=more)
 
 
+def test_a_history_of_nothing_does_not_blame_the_filter():
+    """Where nothing was handed in, that is said; that nothing fits the filter only where there is something."""
+    nothing = render("history", view=lists.history_view([], NOW, totals={}))
+    assert "Nothing has been handed in yet" in nothing
+    assert "No submission is like that" not in nothing
+    assert "No submission is like that" in render(
+        "history", view=lists.history_view([], NOW, text="x", totals={"done": 1})
+    )
+
+
 def test_what_fails_most_names_columns_as_the_template_does():
     """A column is told by its header, one of the engineer's own by its name, and each rule leads to its explanation."""
     row = {"level": "error", "code": "E202", "sheet": "Variants", "cells": 41, "submissions": 9}

@@ -261,6 +261,7 @@ def test_open_lets_in_once(tmp_path):
         assert first.get("/").status_code == 200
         used = second.get(f"/open/{access.once}")
         assert (used.status_code, second.get("/").status_code) == (403, 401)
+        assert access.once not in one.said.getvalue()
         assert "start it again with --open" in used.text
         assert "start it again with --open" in second.get("/").text
         assert 'name="access"' not in second.get("/").text

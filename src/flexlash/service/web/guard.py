@@ -14,7 +14,7 @@ from flexlash.schema.findings import readable
 from flexlash.service.web.answer_headers import HEADERS
 from flexlash.service.web.refusals import Refused, full_or_busy
 from flexlash.service.web.site import Site
-from flexlash.service.web.visitors import Visitors
+from flexlash.service.web.visitors import OPENING, Visitors
 
 __all__ = ["Guard"]
 
@@ -84,10 +84,10 @@ class Guard:
         if isinstance(fault, Refused):
             return fault
         if isinstance(fault, OSError | sqlite3.OperationalError):
-            self._site.log.say("fault", what=f"{request.method} {request.scope['path']}", why=readable(fault))
+            self._site.log.say("fault", what=_asked(request), why=readable(fault))
             return full_or_busy(fault)
         words = f"{type(fault).__name__}: {readable(fault)}"
-        self._site.log.say("internal error", what=f"{request.method} {request.scope['path']}", why=words)
+        self._site.log.say("internal error", what=_asked(request), why=words)
         return Refused(500)
 
     def _note(self, request: Request, status: int) -> None:
@@ -96,7 +96,13 @@ class Guard:
             return
         sender = request.scope["state"]["sender"]
         who = {"sender": sender} if sender else {}
-        self._site.log.say("request", what=f"{request.method} {request.scope['path']}", status=status or "left", **who)
+        self._site.log.say("request", what=_asked(request), status=status or "left", **who)
+
+
+def _asked(request: Request) -> str:
+    """Return what a request asks, for the log; without the token of an address that works once."""
+    path: str = request.scope["path"]
+    return f"{request.method} {f'{OPENING}…' if path.startswith(OPENING) else path}"
 
 
 class _Body:

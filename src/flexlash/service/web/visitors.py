@@ -27,8 +27,8 @@ _OPEN_TO_ALL = ("/health", "/metrics")
 """What names nobody, so that it may be watched without a token or a proxy."""
 
 _ONE_BROWSER = (
-    "flexlash was started for one browser alone. If that was yours and you have closed it, stop flexlash and start it"
-    " again with --open."
+    "flexlash was started for the browser that opened it. If that was yours and you have closed it, stop flexlash and"
+    " start it again with --open."
 )
 _SESSION = 30 * DAY
 _HOST = re.compile(r"(?P<name>[a-z0-9.-]{1,255}|\[[0-9a-f:.]{2,45}\])(:[0-9]{1,5})?")
