@@ -53,6 +53,7 @@ def test_the_sentences_say_what_waits_works_and_has_ended(store):
         "At work: works.csv, 5 of 10 rows, since ",
         "Waiting: waits.csv.",
         "Rejected: no.csv: E118 the reader failed.",
+        "Done: done.csv",
         "Not delivered yet: report of done.csv: No space left on device; tried 1 times",
     ):
         assert any(line.startswith(start) for line in lines), start

@@ -33,6 +33,7 @@ def everything(held: Outbox) -> dict[str, Any]:
         "working": [asdict(one) for one in held.history(state="working", most=_MOST)],
         "waiting": [asdict(one) for one in held.queue(_MOST)],
         "rejected": [asdict(one) for one in held.history(state="rejected", most=_MOST)],
+        "done": [asdict(one) for one in held.history(state="done", most=_MOST)],
         "undelivered": [_delivery(held, one) for one in held.undelivered()],
     }
 
@@ -61,7 +62,7 @@ def all_lines(facts: Mapping[str, Any]) -> Iterator[str]:
         f"{counts['working']} at work, {counts['waiting']} waiting ({waiting:.1f} MiB to be computed), "
         f"{counts['done']} done, {counts['rejected']} rejected; {facts['kept_bytes'] / _MIB:.1f} MiB kept."
     )
-    for state in ("working", "waiting", "rejected"):
+    for state in ("working", "waiting", "rejected", "done"):
         for found in facts[state]:
             yield f"{_state(found)}  {found['id']}"
         if (more := counts[state] - len(facts[state])) > 0:
