@@ -146,6 +146,22 @@ def test_what_a_task_tells_is_there_before_its_answer(store, held):
         _until(lambda: store.submission(id_).rows_done == 7)
 
 
+def test_the_first_rows_and_the_last_are_not_waited_for(store, held):
+    """However soon rows follow what was found, some are told at once; so is that the report is being written."""
+    from flexlash.batch.answer import Told
+
+    with dispatching(store, _opening(held), stop=0.0):
+        id_ = hand_in(store)
+        _until(lambda: held.held)
+        told = held.held[0][2]
+        told(Told(rows=7, counts={"rows": 7}, page=b"{}").as_bytes())
+        told(Told(rows=7, rows_done=3, stage="computing").as_bytes())
+        _until(lambda: store.submission(id_).rows_done == 3)
+        told(Told(rows=7, rows_done=5, stage="computing").as_bytes())
+        told(Told(rows=7, rows_done=7, stage="writing").as_bytes())
+        _until(lambda: store.submission(id_).rows_done == 7)
+
+
 def test_rows_are_written_down_at_most_twice_a_second(store, held, monkeypatch):
     """However often a task tells its rows, the store is written to twice a second."""
     from flexlash.batch.answer import Told

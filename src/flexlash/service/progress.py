@@ -37,8 +37,10 @@ class Begun:
                 with store.blobs.keeping():
                     page = kept(store.blobs, self.submission, KeptFile(role="page", ending=PAGE, data=told.page))
                     store.note_checked(id_, told.counts, page)
-            if told.rows and (told.page or time.monotonic() - self._noted >= _NOTED):
-                self._noted = time.monotonic()
+            is_due = time.monotonic() - self._noted >= _NOTED
+            if told.rows and (told.page or told.stage == "writing" or is_due):
+                # The first rows are written down at once, however soon they follow what was found; so is the end.
+                self._noted = 0.0 if told.page else time.monotonic()
                 store.note_rows(id_, told.rows_done, told.rows)
         except ENVIRONMENT_FAULTS as fault:
             log.say("fault", id_, what="progress", why=readable(fault))
