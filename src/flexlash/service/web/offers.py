@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from flexlash.report.page.shape import PageFacts
+from flexlash.schema.number_words import grouped
 from flexlash.service.records import StoredFile, StoredSubmission
 from flexlash.service.web.words import counted, size_words
 
@@ -38,7 +39,7 @@ def offered(
     unread = submission.state == "rejected" and bool(facts and facts["refused"])
     words = {
         "checked": "Reasons" if unread else "Marked copy",
-        "mended": f"File with {counted(fixes, 'certain fix')}".replace("fixs", "fixes"),
+        "mended": f"File with {grouped(fixes)} certain fix{'' if fixes == 1 else 'es'}",
         "report": f"Report of the {counted(computed, 'row')}" if partly and computed > 1 else "Report",
         "results": "Results",
         "findings": "All findings",

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from flexlash.service.records import StoredFile, StoredSubmission
 from flexlash.service.store import Store
 from flexlash.service.web import views
 
-__all__ = ["facts_of_page", "history_told", "submission_told"]
+__all__ = ["history_told", "submission_told"]
 
 _SHOWN = (
     "id", "name", "sha256", "size", "door", "sender", "received_at", "state", "began_at", "ended_at", "rows_done",
@@ -30,23 +29,15 @@ def submission_told(store: Store, one: StoredSubmission) -> dict[str, Any]:
     files = store.files(one.id)
     return _brief(one) | {
         "position": store.position(one) if one.state == "waiting" else None,
-        "seconds_left": views.seconds_left(store, one),
+        "seconds_left": views.seconds_left(one),
         "files": [_file(one, file) for role, file in files.items() if role != "page"],
-        "page": facts_of_page(store, files.get("page")),
+        "page": views.facts_of_page(store, files),
     }
 
 
 def _file(one: StoredSubmission, file: StoredFile) -> dict[str, Any]:
     href = f"/submissions/{one.id}/files/{file.role}"
     return {"role": file.role, "name": file.name, "size": file.size, "sha256": file.sha256, "href": href}
-
-
-def facts_of_page(store: Store, file: StoredFile | None) -> Mapping[str, Any] | None:
-    """Return the facts of a page, None where there are none yet."""
-    if file is None:
-        return None
-    facts: Mapping[str, Any] = json.loads(store.blobs.read(file.sha256))
-    return facts
 
 
 def history_told(found: Sequence[StoredSubmission]) -> dict[str, Any]:

@@ -18,6 +18,7 @@ __all__ = [
     "checked",
     "difference",
     "explained",
+    "facts_of_page",
     "hand_in",
     "history",
     "how_to_fill",
@@ -42,7 +43,7 @@ def submission(store: Store, one: StoredSubmission) -> dict[str, Any]:
     view = submission_page.submission_view(
         one,
         time.time(),
-        facts=_facts(store, files),
+        facts=facts_of_page(store, files),
         files=files,
         before=store.position(one) if one.state == "waiting" else 0,
         waiting=store.totals()["waiting"],
@@ -56,7 +57,7 @@ def submission(store: Store, one: StoredSubmission) -> dict[str, Any]:
 
 def variant(store: Store, one: StoredSubmission, number: int) -> dict[str, Any] | None:
     """Return the page of a variant, counted from 0 as drawn; None where there is none."""
-    facts = _facts(store, store.files(one.id))
+    facts = facts_of_page(store, store.files(one.id))
     view = variant_page.variant_view(one, facts, number) if facts else None
     return {"view": view} if view else None
 
@@ -95,7 +96,7 @@ def how_to_fill() -> dict[str, Any]:
     return {"sheets": ENTRY_SHEETS, "codes": lists.codes_by_level()}
 
 
-def seconds_left(store: Store, one: StoredSubmission) -> float | None:  # noqa: ARG001
+def seconds_left(one: StoredSubmission) -> float | None:
     """Return the seconds until a submission at work will be done, None where that cannot be told."""
     speed = remaining(one, time.time())[0] if one.state == "working" else 0.0
     return (one.rows - one.rows_done) / speed if speed else None
@@ -111,7 +112,7 @@ def _undelivered(store: Store, one: StoredSubmission, events: Sequence[Mapping[s
     return f"{troubles[0][:1].upper()}{troubles[0][1:].rstrip('.')}." if troubles else ""
 
 
-def _facts(store: Store, files: Mapping[str, StoredFile]) -> PageFacts | None:
+def facts_of_page(store: Store, files: Mapping[str, StoredFile]) -> PageFacts | None:
     """Return the facts of a submission's page, None before there are any."""
     if "page" not in files:
         return None
