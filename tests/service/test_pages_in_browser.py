@@ -135,18 +135,18 @@ def test_the_same_file_again_is_answered_at_once_and_told_so(tab):
 def test_progress_is_true_and_survives_a_reload(tab, tmp_path):
     """A table at work shows rows that only rise, under an address that stays."""
     table = tmp_path / "sweep.csv"
-    rows = [{**SOUND, "variant": f"v{number}", "wall_thickness_mm": 0.4 + number / 1e5} for number in range(200)]
+    rows = [{**SOUND, "variant": f"v{number}", "wall_thickness_mm": 0.4 + number / 1e5} for number in range(800)]
     table.write_text("\n".join(",".join(map(str, row)) for row in [list(rows[0]), *(row.values() for row in rows)]))
     page = tab()
     address, seen, end = hand_in(page, table), [], time.monotonic() + 60
     while "rows computed" not in (html := page.request.get(address).text()) and time.monotonic() < end:
-        seen += [int(done) for done in re.findall(r'aria-label="Rows computed" max="200" value="(\d+)"', html)]
+        seen += [int(done) for done in re.findall(r'aria-label="Rows computed" max="800" value="(\d+)"', html)]
         if len(seen) in {1, 4}:
             page.reload()
         time.sleep(0.1)
     assert seen == sorted(seen)
-    assert any(0 < done < 200 for done in seen), seen
-    until(page, "200 of 200 rows computed")
+    assert any(0 < done < 800 for done in seen), seen
+    until(page, "800 of 800 rows computed")
     assert page.url == address
 
 
