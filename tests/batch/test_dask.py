@@ -12,6 +12,7 @@ import time
 
 import pytest
 import regenerate
+from batch_runs import ENVIRONMENT
 from dask_cluster import dask_cluster
 from in_order import in_order
 from worker_tasks import doubled, random_bytes, read_within, told
@@ -244,7 +245,21 @@ def test_a_scheduler_of_its_own():
     end = time.monotonic() + 5
     while threading.active_count() > threads + 2 and time.monotonic() < end:
         time.sleep(0.1)
-    assert threading.active_count() <= threads + 2
+    assert threading.active_count() <= threads + 2, [t.name for t in threading.enumerate()]
+
+
+def test_a_scheduler_can_be_opened_again():
+    """A second scheduler answers in a process that loaded Dask with the first: a service may lose its first."""
+    code = (
+        "from flexlash.batch.dask_executor import dask_executor\n"
+        "for _ in range(2):\n"
+        "    with dask_executor('local', 1) as executor:\n"
+        "        print(executor.submit(bytes.upper, b'done').result())\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=ENVIRONMENT, capture_output=True, text=True, check=False, timeout=120
+    )  # fmt: skip
+    assert done.stdout == "b'DONE'\nb'DONE'\n", done.stderr
 
 
 def test_an_address_without_a_scheduler_is_told():

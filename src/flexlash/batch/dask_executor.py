@@ -19,7 +19,7 @@ from importlib.util import find_spec
 from typing import Any, TypeVar
 
 from flexlash import __version__
-from flexlash.batch.dask_work import OtherVersion, carried_out_here, end_processes
+from flexlash.batch.dask_work import OtherVersion, begin_processes, carried_out_here, end_processes
 from flexlash.batch.executor import ClusterError, Executor, Told, Work, WorkerLostError
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.findings import shown
@@ -179,6 +179,7 @@ def dask_executor(address: str, workers: int | None = None) -> Iterator[Executor
     """
     require_address(address)
     import dask
+    import distributed  # noqa: F401 - else its own settings would be forgotten with those that are set here
 
     with dask.config.set(_QUIET), _loop() as loop:
         stack = AsyncExitStack()
@@ -203,6 +204,7 @@ async def _connected(
                 dashboard_address=_HERE, worker_dashboard_address=_HERE, asynchronous=True,
             )
         )  # fmt: skip
+        begin_processes()
         # Before the worker ends, which would wait for what they are doing.
         stack.callback(end_processes)
     try:

@@ -18,7 +18,7 @@ from flexlash.reading.libraries import ChangedLibrary
 from flexlash.reading.limited_process import ProcessFaultError
 from flexlash.workers import FEW_THREADS, Told, Workers
 
-__all__ = ["OtherVersion", "carried_out_here", "end_processes"]
+__all__ = ["OtherVersion", "begin_processes", "carried_out_here", "end_processes"]
 
 
 class OtherVersion(Exception):
@@ -29,20 +29,31 @@ _STARTING = threading.Lock()
 _PROCESSES: list[Workers] = []
 """The processes of this worker, as many as it has threads."""
 
+_ENDED = threading.Event()
+"""Set once the worker ends: a piece of work that it takes up then would start others, which nobody ends."""
+
 
 def _processes() -> Workers:
     """Return the processes of this worker, which the first piece of work starts."""
     from distributed import get_worker
 
     with _STARTING:
+        if _ENDED.is_set():
+            raise CancelledError
         if not _PROCESSES:
             _PROCESSES.append(Workers(get_worker().state.nthreads, prepare, FEW_THREADS))
         return _PROCESSES[0]
 
 
+def begin_processes() -> None:
+    """Let a worker in this process have processes, also after another has ended here."""
+    _ENDED.clear()
+
+
 def end_processes() -> None:
     """End the processes of a worker that ends before its own process does."""
     with _STARTING:
+        _ENDED.set()
         while _PROCESSES:
             _PROCESSES.pop().close()
 

@@ -99,8 +99,8 @@ def _role(path: Path, stem: str) -> str:
 def _inert_stem(name: str) -> str:
     """Return the stem of a stranger's name with nothing in it that has a meaning in a path.
 
-    >>> _inert_stem("../a:b.csv"), _inert_stem(".csv")
-    ('_a_b', 'submission')
+    >>> _inert_stem("../a:b.csv"), _inert_stem("...")
+    ('a_b', 'submission')
     """
     stem = "".join(letter if letter.isalnum() or letter in "-_ ." else "_" for letter in Path(name).stem)
     return stem.strip(". ")[:_STEM] or "submission"
