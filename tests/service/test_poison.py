@@ -43,7 +43,7 @@ def _shared(executor):
     return lambda: nullcontext(executor)
 
 
-def test_poison_costs_three_tries_and_the_others_are_done(store, processes, monkeypatch):
+def test_r4_poison_costs_three_tries_and_the_others_are_done(store, processes, monkeypatch):
     """Files that kill, hang or occupy their reader are rejected with that reason; all others are done meanwhile."""
     monkeypatch.setattr("flexlash.service.dispatcher.computed_apart", stopped_by_name)
     poison = ["kills-1.csv", "hangs-1.csv", "kills-2.csv", "loops-1.csv"]

@@ -91,7 +91,7 @@ def _checked(found, expected):
     assert found == expected
 
 
-def test_all_end_right_though_servers_and_workers_are_killed(tmp_path):
+def test_r10_all_end_right_though_servers_and_workers_are_killed(tmp_path):
     """Twelve files, two of them poison, with a worker, the server, and the server by SIGTERM stopped in turn."""
     expected = _undisturbed(tmp_path / "quiet", 12)
     found, stopped = _disturbed(tmp_path / "soak", 12, kinds=("worker", "server", "term"), seed=1)
@@ -100,7 +100,7 @@ def test_all_end_right_though_servers_and_workers_are_killed(tmp_path):
 
 
 @pytest.mark.long
-def test_five_hundred_end_right_and_memory_is_flat(tmp_path):
+def test_r10_five_hundred_end_right_and_memory_is_flat(tmp_path):
     """Five hundred files with kills every few seconds; undisturbed, memory after 200 and 480 is that after 20."""
     expected = _undisturbed(tmp_path / "quiet", 500)
     lines = (tmp_path / "quiet" / MEASURED).read_text().splitlines()

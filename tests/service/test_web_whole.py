@@ -1,6 +1,7 @@
 """The page over a whole service with a worker: what comes out of a file, whatever stands in it."""
 
 import csv
+import html
 import io
 import re
 import time
@@ -9,6 +10,7 @@ from pathlib import Path
 import httpx
 import pytest
 from filled import SOUND
+from own_workbooks import REFUSED
 from served import served
 
 from flexlash.feedback.template.template_workbook import study, template_bytes
@@ -73,6 +75,21 @@ def test_texts_in_cells_are_inert(client):
     for text in pages:
         assert "<script>alert" not in text
         assert "<img src=x" not in text
+
+
+def test_r5_r6_files_that_must_be_refused_are_refused_by_name(client):
+    """Every kind of damaged, locked, foreign or hostile workbook is rejected on its page by its code, in words."""
+    answers = {kind: _hand_in(client, "own.xlsx", make()) for kind, (_, make) in REFUSED.items()}
+    for kind, answer in answers.items():
+        told = _ended(client, answer)
+        refused = told["page"]["refused"] if told["page"] else None
+        found = refused["code"] if refused else told["reason"]
+        assert (told["state"], told["exit_code"], found) == ("rejected", 4, REFUSED[kind][0]), kind
+        shown = client.get(told["href"])
+        assert shown.status_code == 200
+        assert refused["fix"] in html.unescape(shown.text)
+        assert "Traceback" not in shown.text
+    assert _ended(client, _hand_in(client, "sound.csv", _table(SOUND)))["state"] == "done"
 
 
 def test_files_of_a_result_are_those_that_were_computed(client, service):
