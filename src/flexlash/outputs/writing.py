@@ -98,15 +98,9 @@ def held(path: Path) -> int | None:
     """
     for _ in range(_TRIES):
         handle = os.open(path, os.O_CREAT | os.O_RDWR | _OPENED, 0o666)
-        if fcntl is not None:
-            try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                os.close(handle)
-                return None
-            except OSError:
-                # A file system without locks locks nothing.
-                pass
+        if _is_held_elsewhere(handle):
+            os.close(handle)
+            return None
         # The one that held it may have removed it before it was locked here.
         if _is_still(path, handle):
             return handle
@@ -120,16 +114,22 @@ def hold_folder(folder: Path) -> int | None:
     Not for Windows, which does not open folders. Raises OSError when it cannot be opened.
     """
     handle = os.open(folder, os.O_RDONLY | _OPENED)
+    if _is_held_elsewhere(handle):
+        os.close(handle)
+        return None
+    return handle
+
+
+def _is_held_elsewhere(handle: int) -> bool:
+    """Whether another process has the lock, which is taken otherwise. A file system without locks locks nothing."""
     if fcntl is not None:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            os.close(handle)
-            return None
+            return True
         except OSError:
-            # A file system without locks on folders locks nothing.
             pass
-    return handle
+    return False
 
 
 def _is_still(path: Path, handle: int) -> bool:
