@@ -15,7 +15,7 @@ from batch_runs import ENVIRONMENT, none_left
 from click.testing import CliRunner
 from filled import SOUND, filled
 
-from flexlash.cli import cli, service_options
+from flexlash.cli import cli
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
 
@@ -219,9 +219,7 @@ def test_what_does_not_go_together_is_a_usage_error(arguments, sentence, tmp_pat
 def test_a_missing_extra_is_named(command, monkeypatch, tmp_path):
     """Without the libraries of the service each of its commands names the extra that brings them, and ends with 2."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
-    for module in (service_options, sys.modules["flexlash.cli.status_command"]):
-        monkeypatch.setattr(module, "find_spec", lambda _: None)
+    monkeypatch.setattr("flexlash.cli.status_command.find_spec", lambda _: None)
     done = CliRunner().invoke(cli, command)
     assert done.exit_code == 2
     assert "pip install 'flexlash[service]'" in done.output

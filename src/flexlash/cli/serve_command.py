@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from flexlash.cli.service_options import of_service, require_extra, setup_of, started_or_why
+from flexlash.cli.service_options import of_service, setup_of, started_or_why
+from flexlash.cli.status_command import require_extra
 from flexlash.cli.terminal import named
 
 if TYPE_CHECKING:
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from flexlash.service.web.serving import PageServer
 
 __all__ = ["serve"]
+
+_PAGE = ("starlette", "uvicorn", "jinja2", "python_multipart")
 
 
 @click.command()
@@ -42,7 +45,7 @@ def serve(inbox: Path | None, *, as_json: bool, **chosen: Any) -> None:
       flexlash serve --open               the page, for you alone
       flexlash serve inbox --out reports  the page, and a folder to save into
     """  # noqa: D301
-    require_extra(page=True)
+    require_extra(*_PAGE)
     who = {name: chosen.pop(name) for name in ("host", "port", "opens", "token_file", "behind_proxy", "host_names")}
     from flexlash.service.web.access import Access, AccessError
 

@@ -6,7 +6,6 @@ import os
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -20,13 +19,10 @@ from flexlash.schema.findings import shown
 if TYPE_CHECKING:
     from flexlash.service.running import Setup
 
-__all__ = ["of_service", "require_extra", "setup_of", "started_or_why"]
+__all__ = ["of_service", "setup_of", "started_or_why"]
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-_EXTRA = "The service needs the extra of this name: pip install 'flexlash[service]'."
-_NEEDED = ("filelock", "platformdirs")
-_PAGE = ("starlette", "uvicorn", "jinja2", "python_multipart")
 
 _UNITS = {"h": 3_600, "d": 86_400, "w": 7 * 86_400, "y": 365 * 86_400}
 _DURATION = re.compile(r"([1-9]\d{0,4})([hdwy])")
@@ -73,12 +69,6 @@ def of_service(command: Command) -> Command:
     for one in reversed((OUT, STORE, WORKERS, SCHEDULER, KEEP, WEBHOOK, WEBHOOK_KEY, LOG_JSON)):
         command = one(command)
     return command
-
-
-def require_extra(*, page: bool) -> None:
-    """Raise a usage error where a library of the service is missing."""
-    if any(find_spec(name) is None for name in (*_NEEDED, *(_PAGE if page else ()))):
-        raise click.UsageError(_EXTRA)
 
 
 @contextmanager

@@ -19,12 +19,20 @@ from flexlash.schema.findings import shown
 if TYPE_CHECKING:
     from flexlash.service.outbox import Outbox
 
-__all__ = ["retry", "status"]
+__all__ = ["STORE", "require_extra", "retry", "status"]
+
+_NEEDED = ("filelock", "platformdirs")
 
 STORE = click.option(
     "--store", type=click.Path(path_type=Path), metavar="FOLDER",
     help="Where submissions and results are kept. Default: your data folder.",
 )  # fmt: skip
+
+
+def require_extra(*further: str) -> None:
+    """Raise a usage error where a library of the service is missing, or one of these further ones."""
+    if any(find_spec(name) is None for name in (*_NEEDED, *further)):
+        raise click.UsageError("The service needs the extra of this name: pip install 'flexlash[service]'.")
 
 
 @click.command()
@@ -84,8 +92,7 @@ def retry(id_: str, store: Path | None) -> None:
 @contextmanager
 def _opened(folder: Path | None) -> Iterator[Outbox]:
     """Open a store to read it; raise a usage error where a library of the service is missing."""
-    if any(find_spec(name) is None for name in ("filelock", "platformdirs")):
-        raise click.UsageError("The service needs the extra of this name: pip install 'flexlash[service]'.")
+    require_extra()
     from flexlash.service.outbox import Outbox
     from flexlash.service.store_place import default_store
 

@@ -7,7 +7,8 @@ from typing import Any
 
 import click
 
-from flexlash.cli.service_options import of_service, require_extra, setup_of, started_or_why
+from flexlash.cli.service_options import of_service, setup_of, started_or_why
+from flexlash.cli.status_command import require_extra
 
 __all__ = ["watch"]
 
@@ -25,7 +26,7 @@ def watch(inbox: Path, *, once: bool, as_json: bool, **chosen: Any) -> None:
     What is not readable or has errors comes back with the reasons and its cells marked. Originals go to OUT/done or
     OUT/rejected; nothing is deleted. Ctrl-C ends it; what was at work is done after the next start.
     """
-    require_extra(page=False)
+    require_extra()
     if chosen["out"] is None:
         raise click.UsageError("watch needs --out FOLDER, where reports go.")
     setup = setup_of(inbox, **chosen)
