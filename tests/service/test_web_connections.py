@@ -7,13 +7,12 @@ import signal
 import socket
 import subprocess
 import sys
-import threading
 import time
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from web_pages import Page
+from web_pages import answering
 
 from flexlash.service.log import Log
 from flexlash.service.records import Ending, StoredFile
@@ -25,20 +24,9 @@ from flexlash.service.web.site import Limits
 SHORT = Limits(idle_seconds=0.3, body_seconds=0.9)
 
 
-@contextmanager
 def served(folder, *, access=None, limits=SHORT):
     """Yield a page and its server, which answers in a thread."""
-    one = Page(folder, access=access or Access.of(port=0), limits=limits)
-    server = PageServer(one.app, one.access, Log(stream=one.said))
-    thread = threading.Thread(target=server.run)
-    thread.start()
-    try:
-        yield one, server
-    finally:
-        server.stop()
-        thread.join(15)
-        one.store.close()
-        assert not thread.is_alive()
+    return answering(folder, limits=limits, access=access or Access.of(port=0))
 
 
 @pytest.fixture(autouse=True)

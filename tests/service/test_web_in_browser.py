@@ -9,11 +9,10 @@ from http.server import BaseHTTPRequestHandler, HTTPServer
 import httpx
 import pytest
 from served import chromium, needs_chromium
-from web_pages import JSON, Page
+from web_pages import JSON, answering
 
-from flexlash.service.log import Log
 from flexlash.service.web.access import Access
-from flexlash.service.web.serving import PageServer, open_browser
+from flexlash.service.web.serving import open_browser
 
 pytestmark = [pytest.mark.slow, needs_chromium]
 
@@ -38,18 +37,8 @@ def tab(browser):
     context.close()
 
 
-@contextmanager
 def _served(folder, **access):
-    one = Page(folder, access=Access.of(port=0, **access))
-    server = PageServer(one.app, one.access, Log(stream=one.said))
-    thread = threading.Thread(target=server.run)
-    thread.start()
-    try:
-        yield one, server
-    finally:
-        server.stop()
-        thread.join(15)
-        one.store.close()
+    return answering(folder, access=Access.of(port=0, **access))
 
 
 @contextmanager

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import io
 import re
+import threading
 import time
 from contextlib import contextmanager
 
@@ -14,6 +15,7 @@ from flexlash.service.log import Log
 from flexlash.service.store import Store
 from flexlash.service.web.access import Access
 from flexlash.service.web.app import application
+from flexlash.service.web.serving import PageServer
 
 OWN = {"sec-fetch-site": "same-origin"}
 JSON = {"accept": "application/json"}
@@ -95,3 +97,19 @@ def page(folder, **how):
         yield made
     finally:
         made.store.close()
+
+
+@contextmanager
+def answering(folder, **how):
+    """Yield a page over a new store and its server, which answers in a thread at a free port."""
+    one = Page(folder, **{"access": Access.of(port=0), **how})
+    server = PageServer(one.app, one.access, Log(stream=one.said))
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    try:
+        yield one, server
+    finally:
+        server.stop()
+        thread.join(15)
+        one.store.close()
+        assert not thread.is_alive()
