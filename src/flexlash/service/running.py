@@ -100,38 +100,44 @@ def running(setup: Setup, log: Log) -> Iterator[Service]:
         if setup.inbox is not None and setup.out is not None:
             places = stack.enter_context(Places.of(setup.inbox, setup.out, setup.store))
         store = stack.enter_context(Store(setup.store, serving=True, webhook=bool(setup.webhook)))
-        options = service_options(setup.options)
-        digest = options_digest(options, {}, marked=True)
-        outward: list[DropFolder | Webhook] = []
-
-        def ended() -> None:
-            for part in outward:
-                part.wake()
-
-        dispatcher = Dispatcher(store, setup.executor, setup.options, log, ended=ended)
-        folder = None
-        if places is not None:
-            most = options.limits.file_mebibytes * 2**20
-            folder = DropFolder(store, places, digest, log, dispatcher.wake, most_bytes=most)
-        outward += [folder] if folder else []
-        if setup.webhook:
-            outward.append(Webhook(store, setup.webhook, webhook_key(store.folder, setup.webhook_key_file), log))
+        service, parts = _put_together(setup, store, places, log)
         facts: dict[str, object] = {"inbox": places.inbox, "out": places.out} if places else {}
         log.say("started", "", store=store.folder, workers=setup.scheduler or setup.workers, **facts)
-        parts: list[_Part] = [dispatcher, Keeper(store, setup.keep_seconds, log), *outward]
         stack.callback(_stop, parts)
         for part in parts:
             part.start()
-        yield Service(
-            store=store,
-            dispatcher=dispatcher,
-            places=places,
-            folder=folder,
-            options_digest=digest,
-            started_at=time.time(),
-        )
+        yield service
         log.say("stopping")
     log.say("stopped")
+
+
+def _put_together(setup: Setup, store: Store, places: Places | None, log: Log) -> tuple[Service, Sequence[_Part]]:
+    """Return a service and its parts, in the order in which they are started and stopped."""
+    options = service_options(setup.options)
+    digest = options_digest(options, {}, marked=True)
+    outward: list[DropFolder | Webhook] = []
+
+    def ended() -> None:
+        for part in outward:
+            part.wake()
+
+    dispatcher = Dispatcher(store, setup.executor, setup.options, log, ended=ended)
+    folder = None
+    if places is not None:
+        most = options.limits.file_mebibytes * 2**20
+        folder = DropFolder(store, places, digest, log, dispatcher.wake, most_bytes=most)
+        outward.append(folder)
+    if setup.webhook:
+        outward.append(Webhook(store, setup.webhook, webhook_key(store.folder, setup.webhook_key_file), log))
+    service = Service(
+        store=store,
+        dispatcher=dispatcher,
+        places=places,
+        folder=folder,
+        options_digest=digest,
+        started_at=time.time(),
+    )
+    return service, [dispatcher, Keeper(store, setup.keep_seconds, log), *outward]
 
 
 def _stop(parts: Sequence[_Part]) -> None:
