@@ -67,7 +67,7 @@ def _digits(number_format):
 def _with_errors():
     """Return the Results columns that have a standard error, and the key of that error."""
     keys = {column.key for column in result_columns(cross_check=True)}
-    found = {"skewness": "skewness_standard_error"}
+    found = {key: f"{key}_standard_error" for key in ("skewness", "kurtosis")}
     for key in keys:
         error = f"{key.removesuffix('_arcmin')}_standard_error_arcmin"
         if error in keys:
@@ -95,7 +95,14 @@ def test_results_show_no_more_digits_than_their_error_justifies(table, sound, tm
                 assert row[error] < 10 * unit
                 assert cell.value == pytest.approx(row[key], rel=1e-15)
                 seen.add((key, unit))
-    assert {key for key, _ in seen} >= {"mean_arcmin", "sd_arcmin", "p99_865_arcmin", "skewness"}
+    assert {key for key, _ in seen} >= {
+        "mean_arcmin",
+        "sd_arcmin",
+        "p1_arcmin",
+        "p99_865_arcmin",
+        "skewness",
+        "kurtosis",
+    }
     assert len({unit for _, unit in seen}) >= 3
 
 

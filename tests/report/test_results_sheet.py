@@ -95,6 +95,8 @@ FOLDED = {
     "spread_points": True,
     "backlash_arcmin": False,
     "p97_5_arcmin": False,
+    "p1_arcmin": True,
+    "p75_arcmin": True,
     "coverage_low_arcmin": False,
     "worst_case_high_arcmin": False,
     "coverage_low_standard_error_arcmin": True,

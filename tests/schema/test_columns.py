@@ -134,7 +134,21 @@ RESULT_KEYS = [
     "main_contributor_share",
     "backlash_limit_arcmin",
 ]
-ERROR_KEYS = ["mean", "sd", "p0_135", "p2_5", "p5", "p50", "p95", "p97_5", "p99_865", "coverage_low", "coverage_high"]
+FURTHER_PERCENTILES = ["p1", "p25", "p75", "p99"]
+ERROR_KEYS = [
+    "mean",
+    "sd",
+    "p0_135",
+    "p2_5",
+    "p5",
+    "p50",
+    "p95",
+    "p97_5",
+    "p99_865",
+    "coverage_low",
+    "coverage_high",
+    *FURTHER_PERCENTILES,
+]
 FURTHER_KEYS = [
     "rim_windup_rad",
     "wall_windup_rad",
@@ -154,8 +168,11 @@ FURTHER_KEYS = [
     "catalogue_size",
     "catalogue_stiffness_Nm_per_rad",
     "drive_lost_motion_arcmin",
+    *(f"{name}_arcmin" for name in FURTHER_PERCENTILES),
     "skewness",
     "skewness_standard_error",
+    "kurtosis",
+    "kurtosis_standard_error",
     "ppm_over_limit_low",
     "ppm_over_limit_high",
     "ppk_normal",

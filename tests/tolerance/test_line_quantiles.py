@@ -52,7 +52,7 @@ def test_shares_of_one_input_are_exact(distribution, reference):
 
 @each_input
 def test_moments_of_one_input_are_exact(distribution, reference):
-    """Mean, standard deviation and skewness of a single input are exact, with errors that say so."""
+    """Mean, standard deviation, skewness and kurtosis of a single input are exact, with errors that say so."""
     moments = moments_of(sound_lines(lambda a: a, {"a": distribution}, lines=8))
     sd = distribution.standard_deviation
     assert moments.mean[0] == pytest.approx(distribution.expectation, rel=0, abs=1e-9 * sd)
@@ -60,7 +60,9 @@ def test_moments_of_one_input_are_exact(distribution, reference):
     assert moments.skewness[0] == pytest.approx(float(reference.stats("s")), abs=1e-8)
     assert 0 < moments.mean_error[0] <= 2e-9 * sd
     assert 0 < moments.sd_error[0] <= 2e-9 * sd
+    assert moments.kurtosis[0] == pytest.approx(float(reference.stats("k")), abs=1e-7)
     assert 0 < moments.skewness_error[0] <= 2e-9
+    assert 0 < moments.kurtosis_error[0] <= 2e-8
 
 
 def test_moments_of_a_falling_output_are_exact():
@@ -105,13 +107,15 @@ def test_sums_of_uniforms_against_irwin_and_hall(widths):
 
 
 def test_moments_of_sums_of_uniforms():
-    """Mean, standard deviation and skewness of a sum of uniforms agree within four of their standard errors."""
+    """Mean, sd, skewness and kurtosis of a sum of uniforms agree within four of their standard errors."""
     widths = (1.0, 2.0, 0.5, 3.0)
     moments = moments_of(sound_lines(total, uniforms(*widths), lines=512))
     sd = math.sqrt(sum(width**2 for width in widths) / 12)
     assert abs(moments.mean[0] - sum(widths) / 2) <= 4 * moments.mean_error[0]
     assert abs(moments.sd[0] - sd) <= 4 * moments.sd_error[0]
     assert abs(moments.skewness[0]) <= 4 * moments.skewness_error[0]
+    excess = -1.2 * sum(width**4 for width in widths) / sum(width**2 for width in widths) ** 2
+    assert abs(moments.kurtosis[0] - excess) <= 4 * moments.kurtosis_error[0]
     assert moments.mean_error[0] <= 1e-2 * sd
 
 
@@ -123,7 +127,16 @@ def test_moments_of_a_lognormal():
     assert abs(moments.mean[0] - reference.mean()) <= 4 * moments.mean_error[0]
     assert abs(moments.sd[0] - reference.std()) <= 4 * moments.sd_error[0]
     assert abs(moments.skewness[0] - reference.stats("s")) <= 4 * moments.skewness_error[0]
+    assert abs(moments.kurtosis[0] - reference.stats("k")) <= 4 * moments.kurtosis_error[0]
     assert moments.mean_error[0] <= 1e-4
+
+
+@pytest.mark.parametrize("sd", [0.5, 1.0, 1.5])
+def test_what_lies_beyond_the_lines_is_told(sd):
+    """A long tail, part of whose fourth moment lies beyond the ends of the lines, has moments within their errors."""
+    moments = moments_of(sound_lines(lambda x: np.exp(x), {"x": Normal(0, sd)}, lines=8))
+    for name, exact in zip(("skewness", "kurtosis"), stats.lognorm(sd).stats("sk"), strict=True):
+        assert abs(getattr(moments, name)[0] - exact) <= getattr(moments, f"{name}_error")[0]
 
 
 def test_quantiles_and_shares_are_each_others_inverse():

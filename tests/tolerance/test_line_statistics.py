@@ -139,7 +139,7 @@ def test_lines_of_many_rows_agree_with_plain_monte_carlo():
     """Each of many rows agrees with plain Monte Carlo in every statistic within 4.5 combined standard errors."""
     plain = batch_statistics(ROWS["seven"], plan("random", 2**16, 7))
     for toleranced, line, other in zip(ROWS["seven"], together("seven", "lines as needed"), plain, strict=True):
-        for name in (*PERCENTILES, "mean", "sd", "skewness"):
+        for name in (*PERCENTILES, "mean", "sd", "skewness", "kurtosis"):
             error = math.hypot(line.numbers[f"{name}_standard_error"], other.numbers[f"{name}_standard_error"])
             # One in 50 runs of 300 comparisons has one beyond four.
             assert abs(line.numbers[name] - other.numbers[name]) <= 4.5 * error
@@ -160,7 +160,7 @@ def test_statistics_of_a_normal_output(of_a_sum):
     """A sum of normals has the percentiles, mean, sd and skewness of a normal within four standard errors."""
     found = of_a_sum[0].numbers
     exact = {name: 10.0 + 3.0 * float(ndtri(share)) for name, share in PERCENTILES.items()}
-    for name, value in (exact | {"mean": 10.0, "sd": 3.0, "skewness": 0.0}).items():
+    for name, value in (exact | {"mean": 10.0, "sd": 3.0, "skewness": 0.0, "kurtosis": 0.0}).items():
         assert abs(found[name] - value) <= 4 * found[f"{name}_standard_error"]
     assert found["first_order_sd"] == pytest.approx(3.0, rel=1e-9)
     assert found["worst_case_high"] == pytest.approx(25.0, rel=1e-12)
@@ -297,7 +297,7 @@ def test_statistics_of_points_are_those_of_their_spread():
     for name, share in PERCENTILES.items():
         assert own.numbers[name] == spread.quantile(share)
         assert own.numbers[f"{name}_standard_error"] == spread.standard_error(share)
-    for name in ("mean", "sd", "skewness"):
+    for name in ("mean", "sd", "skewness", "kurtosis"):
         assert own.numbers[name] == getattr(spread, name)
         assert own.numbers[f"{name}_standard_error"] == getattr(spread, f"{name}_standard_error")
     assert own.numbers["probability_over_limit"] == spread.probability_above(16.0)

@@ -31,7 +31,7 @@ LIMITS = {
     "youngs_modulus": Limits(low=207e9, high=215e9),
 }
 EXACT = float(CUP(NOMINAL))
-ERRORS = [f"{name}_standard_error" for name in (*PERCENTILES, "mean", "sd", "skewness")]
+ERRORS = [f"{name}_standard_error" for name in (*PERCENTILES, "mean", "sd", "skewness", "kurtosis")]
 
 
 def spread(limits=LIMITS, *, nominal=NOMINAL, limit=None, method="line", samples=None, seed=0, coverage=0.95):
@@ -44,7 +44,9 @@ def spread(limits=LIMITS, *, nominal=NOMINAL, limit=None, method="line", samples
 def test_percentiles_rise_between_the_worst_cases(method):
     """The percentiles rise from P0.135 to P99.865, and mean and median lie close together in their middle."""
     found = spread(method=method).numbers
-    order = [found[key] for key in ("p0_135", "p2_5", "p5", "p50", "p95", "p97_5", "p99_865")]
+    names = ("p0_135", "p1", "p2_5", "p5", "p25", "p50", "p75", "p95", "p97_5", "p99", "p99_865")
+    order = [found[key] for key in names]
+    assert set(names) == set(PERCENTILES)
     assert order == sorted(order)
     assert len(set(order)) == len(order)
     assert abs(found["mean"] - found["p50"]) < 0.1 * found["sd"]
@@ -90,7 +92,7 @@ def test_standard_errors_are_small_and_ordered(method):
     """Every standard error is positive and below a tenth of the sd, that of P0.135 greater than that of P50."""
     found = spread(method=method).numbers
     for error in ERRORS:
-        size = 1 if error.startswith("skewness") else found["sd"]
+        size = 1 if error.startswith(("skewness", "kurtosis")) else found["sd"]
         assert 0 < found[error] < 0.1 * size
     if method != "line":
         assert found["p99_865_standard_error"] > found["p97_5_standard_error"] > found["p50_standard_error"]
@@ -218,7 +220,7 @@ def test_without_tolerances_everything_is_exact(method):
     found = spread({}, method=method)
     for key in (*PERCENTILES, "mean", "coverage_low", "coverage_high", "worst_case_low", "worst_case_high"):
         assert found.numbers[key] == EXACT
-    for key in ("sd", "skewness", "first_order_sd", *ERRORS):
+    for key in ("sd", "skewness", "kurtosis", "first_order_sd", *ERRORS):
         assert found.numbers[key] == 0
     assert found.texts["first_order_valid"] == "yes"
     assert found.shares == found.total_shares == found.swings == {}

@@ -51,6 +51,9 @@ SHARE_DECIMALS = 4
 _DETAILS = ("_low", "_high", "_shear_radius_mm", "_range", "_points")
 """Ends of keys whose columns can be folded away, beside standard errors, radians, seconds and plain draws."""
 
+_FURTHER_PERCENTILES = ("p1_arcmin", "p25_arcmin", "p75_arcmin", "p99_arcmin")
+"""Percentiles for who plots or compares a distribution; those that decide are never folded."""
+
 _BARS = {"probability_over_limit": "orange", "disk_share": "sky", "main_contributor_share": "sky"}
 _NUMBER, _WORDS, _PASSED = 11.0, 14.0, 16.0
 _WIDTHS = {"status": 11.0, "main_contributor": 20.0, "first_order_valid": 11.0}
@@ -64,7 +67,7 @@ _NEW_PAGE = (
     "mean_arcmin",
     "first_order_sd_arcmin",
     "von_mises_MPa",
-    "mean_standard_error_arcmin",
+    "p1_arcmin",
     "interaction_share",
     "random_mean_arcmin",
     "elasticity_windup_rad",
@@ -81,6 +84,8 @@ def _is_detail(column: Column) -> bool:
     key = column.key
     if key.startswith(("coverage", "worst_case")) and "standard_error" not in key:
         return False
+    if key in _FURTHER_PERCENTILES:
+        return True
     return "standard_error" in key or key.startswith("random_") or key.endswith(("_rad", "_arcsec", *_DETAILS))
 
 

@@ -160,13 +160,25 @@ RESULTS = (
         "Of the whole drive of the nearest catalogue size at the same torque: 2 p T_rated/K1, its least K1. Blank "
         "outside sizes 14 to 100 and where that torque exceeds T1, the end of the first slope.",
     ),
+    _percentile("p1", "1"),
+    _percentile("p25", "25"),
+    _percentile("p75", "75"),
+    _percentile("p99", "99"),
     _error("mean", "Mean"),
     _error("sd", "Standard deviation"),
-    *(_error(key, label) for key, label in (("p0_135", "P0.135"), ("p2_5", "P2.5"), ("p5", "P5"))),
-    *(_error(key, label) for key, label in (("p50", "P50"), ("p95", "P95"))),
+    *(_error(key, label) for key, label in (("p0_135", "P0.135"), ("p1", "P1"), ("p2_5", "P2.5"), ("p5", "P5"))),
+    *(_error(key, label) for key, label in (("p25", "P25"), ("p50", "P50"), ("p75", "P75"))),
+    *(_error(key, label) for key, label in (("p95", "P95"), ("p99", "P99"))),
     *(_error(key, label) for key, label in (("coverage_low", "Coverage low"), ("coverage_high", "Coverage high"))),
     _result("skewness", "Skewness", "Third central moment over the cube of the standard deviation; 0 for a normal."),
     _result("skewness_standard_error", "Skewness standard error", "Standard error of the skewness."),
+    _result(
+        "kurtosis",
+        "Excess kurtosis",
+        "Fourth central moment over the fourth power of the standard deviation, less 3: 0 for a normal, below it for "
+        "short tails, above it for long ones.",
+    ),
+    _result("kurtosis_standard_error", "Excess kurtosis standard error", "Standard error of the excess kurtosis."),
     _result(
         "ppm_over_limit_low", "Over limit low", "Lower end of its 95 % interval.", "ppm", minimum=0, maximum=1_000_000
     ),

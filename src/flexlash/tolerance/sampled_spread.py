@@ -109,10 +109,29 @@ class SampledSpread(Spread):
         deviation = (self.values - self.mean) / self.sd
         # The skewness moves with mean and sd as well as with the third moment.
         squares = deviation * deviation
-        moves = squares * deviation - 3 * deviation - 1.5 * self.skewness * squares
+        return self._mean_error(squares * deviation - 3 * deviation - 1.5 * self.skewness * squares)
+
+    @cached_property
+    def kurtosis(self) -> float:
+        """Fourth central moment over the fourth power of the standard deviation, less 3."""
+        return self._moment(4) - 3 if self.sd > 0 else 0.0
+
+    @cached_property
+    def kurtosis_standard_error(self) -> float:
+        """Standard error of the kurtosis."""
+        if self.sd == 0:
+            return 0.0
+        deviation = (self.values - self.mean) / self.sd
+        squares = deviation * deviation
+        # The kurtosis moves with mean and sd as well as with the fourth moment.
+        moves = squares * squares - 4 * self.skewness * deviation - 2 * self._moment(4) * squares
+        return self._mean_error(moves)
+
+    def _mean_error(self, values: Array) -> float:
+        """Return the standard error of the mean of one number a point."""
         if self._independent:
-            return float(moves.std()) / math.sqrt(self.size)
-        return float(standard_error(moves.mean(axis=1)))
+            return float(values.std()) / math.sqrt(self.size)
+        return float(standard_error(values.mean(axis=1)))
 
     def _moment(self, power: int) -> float:
         """Return a central moment in standard deviations; 0 where nothing varies."""

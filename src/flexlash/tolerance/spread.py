@@ -1,7 +1,7 @@
 """The spread of an output: its whole distribution, of which any statistic can be asked.
 
     spread              the distribution of a model's output that follows from the distributions of its inputs
-    statistic           one number of it: mean, sd, skewness, a quantile, a probability above a value
+    statistic           one number of it: mean, sd, skewness, kurtosis, a quantile, a probability above a value
     share               of variance: the Sobol' index of an input, first-order or total
     standard error      how well a statistic is known; ± 1.96 of them are its 95 % interval
 
@@ -66,6 +66,16 @@ class Spread(ABC):
     @abstractmethod
     def skewness_standard_error(self) -> float:
         """Standard error of the skewness."""
+
+    @property
+    @abstractmethod
+    def kurtosis(self) -> float:
+        """Fourth central moment over the fourth power of the standard deviation, less 3: 0 for a normal."""
+
+    @property
+    @abstractmethod
+    def kurtosis_standard_error(self) -> float:
+        """Standard error of the kurtosis."""
 
     @property
     @abstractmethod

@@ -22,13 +22,19 @@ __all__ = ["PERCENTILES", "SpreadStatistics", "exact_statistics", "named_probabi
 
 PERCENTILES = {
     "p0_135": 0.00135,
+    "p1": 0.01,
     "p2_5": 0.025,
     "p5": 0.05,
+    "p25": 0.25,
     "p50": 0.5,
+    "p75": 0.75,
     "p95": 0.95,
     "p97_5": 0.975,
+    "p99": 0.99,
     "p99_865": 0.99865,
 }
+
+_MOMENTS = ("mean", "sd", "skewness", "kurtosis")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +84,7 @@ def statistics_of(spread: Spread, limit: float | None, *, coverage: float, note:
     numbers: dict[str, float] = dict(zip(probabilities, spread.quantile(levels).tolist(), strict=True))
     errors = spread.standard_error(levels).tolist()
     numbers |= {f"{name}_standard_error": error for name, error in zip(probabilities, errors, strict=True)}
-    for name in ("mean", "sd", "skewness"):
+    for name in _MOMENTS:
         numbers |= {name: getattr(spread, name), f"{name}_standard_error": getattr(spread, f"{name}_standard_error")}
     if limit is not None:
         low, high = spread.probability_interval(limit)
@@ -102,8 +108,8 @@ def exact_statistics(value: float, limit: float | None) -> SpreadStatistics:
     """Return the statistics of a row none of whose dimensions scatters."""
     quantiles = named_probabilities(0.95)
     numbers: dict[str, float | None] = dict.fromkeys((*quantiles, "mean", "worst_case_low", "worst_case_high"), value)
-    numbers |= dict.fromkeys((f"{name}_standard_error" for name in (*quantiles, "mean", "sd", "skewness")), 0.0)
-    numbers |= dict.fromkeys(("sd", "skewness", "first_order_sd"), 0.0)
+    numbers |= dict.fromkeys((f"{name}_standard_error" for name in (*quantiles, *_MOMENTS)), 0.0)
+    numbers |= dict.fromkeys(("sd", "skewness", "kurtosis", "first_order_sd"), 0.0)
     if limit is not None:
         over = float(value > limit)
         numbers |= dict.fromkeys((f"probability_over_limit{end}" for end in ("", "_low", "_high")), over)

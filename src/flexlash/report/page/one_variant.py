@@ -46,10 +46,11 @@ _TEXT = 200
 """Most characters of a text of Results."""
 
 _NUMBERS = (
-    "backlash_arcmin", "mean_arcmin", "sd_arcmin", "p0_135_arcmin", "p2_5_arcmin", "p5_arcmin", "p50_arcmin",
-    "p95_arcmin", "p97_5_arcmin", "p99_865_arcmin", "coverage_low_arcmin", "coverage_high_arcmin",
-    "worst_case_low_arcmin", "worst_case_high_arcmin", "first_order_sd_arcmin", "first_order_valid", "skewness",
-    "backlash_limit_arcmin", "probability_over_limit", "probability_over_limit_low", "probability_over_limit_high",
+    "backlash_arcmin", "mean_arcmin", "sd_arcmin", "p0_135_arcmin", "p1_arcmin", "p2_5_arcmin", "p5_arcmin",
+    "p25_arcmin", "p50_arcmin", "p75_arcmin", "p95_arcmin", "p97_5_arcmin", "p99_arcmin", "p99_865_arcmin",
+    "coverage_low_arcmin", "coverage_high_arcmin", "worst_case_low_arcmin", "worst_case_high_arcmin",
+    "first_order_sd_arcmin", "first_order_valid", "skewness", "kurtosis", "backlash_limit_arcmin",
+    "probability_over_limit", "probability_over_limit_low", "probability_over_limit_high",
     "ppm_over_limit", "ppk", "ppk_normal", "interaction_share", "disk_share", "cylinder_only_backlash_arcmin",
     "two_term_backlash_arcmin", "lost_motion_arcmin", "drive_lost_motion_arcmin", "stiffness_Nm_per_rad",
     "stiffness_Nm_per_arcmin", "catalogue_stiffness_Nm_per_rad", "wall_shear_MPa", "rim_shear_MPa", "hub_shear_MPa",

@@ -4,7 +4,7 @@
     line_points         where they pass: scores across the direction
     line_tables         the model along the lines, and what keeps lines from a row
     line_quantiles      outputs and the probabilities above them
-    line_moments        mean, sd and skewness
+    line_moments        mean, sd, skewness and kurtosis
     line_shares         shares of variance
     line_precision      how many lines a row needs
     line_spread         the spread of one model by lines

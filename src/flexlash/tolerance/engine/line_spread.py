@@ -119,6 +119,16 @@ class LineSpread(Spread):
         """Standard error of the skewness."""
         return float(self._moments.skewness_error[0])
 
+    @cached_property
+    def kurtosis(self) -> float:
+        """Excess kurtosis of the output."""
+        return float(self._moments.kurtosis[0])
+
+    @cached_property
+    def kurtosis_standard_error(self) -> float:
+        """Standard error of the kurtosis."""
+        return float(self._moments.kurtosis_error[0])
+
     def _quantiles(self, probability: Array) -> Array:
         return self._line_quantiles(probability).output[:, 0]
 

@@ -146,6 +146,8 @@ class _Reading:
             "sd_standard_error": moments.sd_error,
             "skewness": moments.skewness,
             "skewness_standard_error": moments.skewness_error,
+            "kurtosis": moments.kurtosis,
+            "kurtosis_standard_error": moments.kurtosis_error,
         }
         notes = precision_notes(self.decisive, moments.sd) if plan.samples is None else [""] * self._lines.rows
         columns = {name: values[rows].tolist() for name, values in numbers.items()}
