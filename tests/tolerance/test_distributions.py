@@ -1,4 +1,4 @@
-"""The four distributions against scipy.stats: quantiles, moments, cuts in both tails, and what they refuse."""
+"""Distributions against scipy.stats: quantiles, moments, shares below, cuts in both tails, and what they refuse."""
 
 import math
 
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy import stats
 from scipy.special import ndtr, ndtri
 
-from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform
+from flexlash.tolerance import Lognormal, Normal, Student, Triangular, TruncatedNormal, Uniform
 
 thorough = settings(deadline=None, max_examples=80, derandomize=True)
 
@@ -19,6 +19,12 @@ PROBABILITIES = np.array([2.0**-53, 1e-9, 0.00135, 0.025, 0.3, 0.5, 0.7, 0.975, 
 def truncated(mean, sd, low, high):
     """Return scipy's truncated normal of the same four numbers."""
     return stats.truncnorm((low - mean) / sd, (high - mean) / sd, loc=mean, scale=sd)
+
+
+def lognormal(mean, sd, low=0.0):
+    """Return scipy's lognormal of this mean and sd above a low end, by its own parameters."""
+    square = math.log(1 + (sd / (mean - low)) ** 2)
+    return stats.lognorm(math.sqrt(square), low, math.exp(math.log(mean - low) - square / 2))
 
 
 CASES = {
@@ -39,6 +45,11 @@ CASES = {
     "cut below alone": (TruncatedNormal(1.0, 2.0, 0.0, math.inf), truncated(1.0, 2.0, 0.0, math.inf)),
     "cut above alone": (TruncatedNormal(1.0, 2.0, -math.inf, 0.0), truncated(1.0, 2.0, -math.inf, 0.0)),
     "cut above zero in the tail": (TruncatedNormal(0.0, 1.0, 2.0, math.inf), truncated(0.0, 1.0, 2.0, math.inf)),
+    "lognormal": (Lognormal(mean=2.0, sd=0.5), lognormal(2.0, 0.5)),
+    "lognormal far from its low end": (Lognormal(mean=80.0, sd=0.02, low=10.0), lognormal(80.0, 0.02, 10.0)),
+    "lognormal above a low end below zero": (Lognormal(mean=1.0, sd=2.0, low=-3.0), lognormal(1.0, 2.0, -3.0)),
+    "student of 5 degrees": (Student(mean=80.0, scale=0.02, degrees=5), stats.t(5, 80.0, 0.02)),
+    "student of 18.5 degrees": (Student(mean=-1.0, scale=3.0, degrees=18.5), stats.t(18.5, -1.0, 3.0)),
     "not cut": (TruncatedNormal(1.0, 2.0, -math.inf, math.inf), stats.norm(1.0, 2.0)),
 }
 each_case = pytest.mark.parametrize(("own", "reference"), CASES.values(), ids=list(CASES))
@@ -81,6 +92,20 @@ def test_moments_follow_from_the_quantiles(own, reference):
     values = quantiles(own, probabilities)
     assert own.expectation == pytest.approx(values.mean(), abs=1e-4 * values.std())
     assert own.standard_deviation == pytest.approx(values.std(), rel=1e-3)
+
+
+@each_case
+def test_shares_below_are_the_distribution_function(own, reference):
+    """The share below a standard value is scipy's, 0 and 1 at and beyond ends, and that of the value's own score."""
+    ends = np.array(reference.support())
+    spread = reference.std()
+    values = np.concatenate([reference.mean() + spread * np.linspace(-9, 9, 181), ends[np.isfinite(ends)]])
+    found = own.probability_below((values - own.location) / own.scale)
+    assert found == pytest.approx(reference.cdf(values), rel=1e-8, abs=1e-12)
+    assert own.probability_below(np.full((3, 4), 0.3)).shape == (3, 4)
+    # The difference of the values near a far cut from the cut itself is what rounding leaves of it.
+    scores = np.linspace(-8, 3, 111)
+    assert own.probability_below(own.standard_at(scores)) == pytest.approx(ndtr(scores), rel=1e-9, abs=1e-12)
 
 
 def rise_within(values, support):
@@ -237,6 +262,8 @@ def test_triangle_peaks_in_the_middle_unless_told():
         (Normal(mean=0, sd=1), Normal(mean=80, sd=0.02)),
         (Uniform(low=0, high=1), Uniform(low=1.55, high=1.65)),
         (Triangular(low=0, high=4, mode=1), Triangular(low=0, high=8, mode=2)),
+        (Lognormal(mean=2, sd=1), Lognormal(mean=6, sd=2, low=2)),
+        (Student(mean=0, scale=1, degrees=7), Student(mean=5, scale=2, degrees=7)),
         (TruncatedNormal(0, 1, -3, 3), TruncatedNormal(10, 2, 4, 16)),
     ],
 )
@@ -258,6 +285,10 @@ def test_other_shapes_are_told_apart():
         TruncatedNormal(0, 1, -3, 3),
         TruncatedNormal(0, 1, -2, 3),
         TruncatedNormal(0, 1, -3, 2),
+        Lognormal(2, 1),
+        Lognormal(2, 1, 0.5),
+        Student(0, 1, 4),
+        Student(0, 1, 5),
     ]
     assert len({one.shape for one in different}) == len(different)
 
@@ -280,6 +311,12 @@ def test_other_shapes_are_told_apart():
         (lambda: Triangular(low=0, high=1, mode=2), "mode = 2 must lie between low = 0 and high = 1"),
         (lambda: Triangular(low=0, high=1, mode=-0.5), "mode = -0.5 must lie between low = 0 and high = 1"),
         (lambda: Triangular(low=0, high=1, mode=math.nan), "mode = nan: a finite number is required"),
+        (lambda: Lognormal(mean=1, sd=0), "sd = 0 must be a finite number greater than 0"),
+        (lambda: Lognormal(mean=0, sd=1), "low = 0 must be less than mean = 0"),
+        (lambda: Lognormal(mean=1, sd=1, low=math.nan), "low = nan: a finite number is required"),
+        (lambda: Lognormal(mean=1, sd=1e7), "sd = 1e+07 must be at most 1e+06 times mean less low"),
+        (lambda: Student(mean=0, scale=0, degrees=5), "scale = 0 must be a finite number greater than 0"),
+        (lambda: Student(mean=0, scale=1, degrees=2.9), "degrees = 2.9 must be at least 3"),
     ],
 )
 def test_impossible_distributions_are_refused(make, message):
@@ -297,6 +334,8 @@ def test_impossible_distributions_are_refused(make, message):
         (lambda: TruncatedNormal(0, 1, None, 1), "low = None: a number is required"),
         (lambda: Uniform(0, [1, 2]), "high = [1, 2]: a number is required"),
         (lambda: Triangular(0, 1, "0.5"), "mode = '0.5': a finite number is required"),
+        (lambda: Lognormal(1, 1, None), "low = None: a finite number is required"),
+        (lambda: Student(0, 1, "5"), "degrees = '5': a finite number is required"),
     ],
 )
 def test_what_is_no_number_is_refused(make, message):

@@ -6,7 +6,7 @@
     score               quantile of the standard normal with the same probability: Φ(score) = probability
     break               score at which the standard value has a kink
 
-The normal cut at both ends is in `truncated_normal`.
+The normal cut at both ends is in `truncated_normal`; others have modules of their own: `lognormal`, `student`.
 """
 
 from __future__ import annotations
@@ -57,6 +57,9 @@ class Distribution(Protocol):
 
     def standard_at(self, score: Array) -> Array:
         """Return the standard values at the probabilities of standard normal scores, exact in both tails."""
+
+    def probability_below(self, standard: Array) -> Array:
+        """Return the distribution function at standard values; 0 and 1 beyond the ends."""
 
 
 def require_order(low: float, high: float, *, finite: bool = True) -> None:
@@ -133,6 +136,10 @@ class Normal(AroundMean):
         """Return the scores themselves."""
         return score
 
+    def probability_below(self, standard: Array) -> Array:
+        """Return the normal distribution function."""
+        return np.asarray(ndtr(standard))
+
 
 class _Interval:
     """What distributions between two finite ends share."""
@@ -190,6 +197,10 @@ class Uniform(_Interval):
     def standard_at(self, score: Array) -> Array:
         """Return the probabilities of the scores."""
         return np.asarray(ndtr(score))
+
+    def probability_below(self, standard: Array) -> Array:
+        """Return the standard values themselves, between 0 and 1."""
+        return np.clip(standard, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -252,6 +263,12 @@ class Triangular(_Interval):
     def standard_at(self, score: Array) -> Array:
         """Return quantiles of the triangle on [0, 1], counted from the nearer end."""
         return self._quantiles(ndtr(score), ndtr(-score))
+
+    def probability_below(self, standard: Array) -> Array:
+        """Return the areas of the triangle on [0, 1] below standard values."""
+        fraction, inside = self._fraction, np.clip(standard, 0.0, 1.0)
+        rising, falling = inside * inside / (fraction or 1.0), (1 - inside) ** 2 / ((1 - fraction) or 1.0)
+        return np.where(inside < fraction, rising, 1 - falling)
 
     def _quantiles(self, below: Array, above: Array) -> Array:
         """Return quantiles of the triangle on [0, 1] from the probabilities below and above them."""

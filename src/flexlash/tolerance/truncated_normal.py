@@ -97,6 +97,13 @@ class TruncatedNormal(AroundMean):
         from_above = -ndtri(ndtr(-last) + ndtr(-score) * mass)
         return np.clip(np.where(from_below < 0, from_below, from_above), first, last)
 
+    def probability_below(self, standard: Array) -> Array:
+        """Return the distribution function of the cut standard normal, from the tail that keeps the digits."""
+        first, last = self._cuts
+        inside = np.clip(standard, first, last)
+        below = ndtr(-first) - ndtr(-inside) if first > 0 else ndtr(inside) - ndtr(first)
+        return np.asarray(below / self._mass)
+
 
 def _narrow_moments(first: float, last: float) -> tuple[float, float]:
     """Return mean and variance of a standard normal cut to a narrow range, where the closed form cancels."""
