@@ -108,6 +108,20 @@ def test_shares_below_are_the_distribution_function(own, reference):
     assert own.probability_below(own.standard_at(scores)) == pytest.approx(ndtr(scores), rel=1e-9, abs=1e-12)
 
 
+@each_case
+def test_bits_do_not_depend_on_the_place(own, reference):
+    """Each number of an array has the bits that it has alone, in all three functions."""
+    del reference
+    probabilities = np.random.default_rng(1).random(200)
+    for function, arguments in (
+        (own.standard, probabilities),
+        (own.standard_at, ndtri(probabilities)),
+        (own.probability_below, own.standard(probabilities)),
+    ):
+        alone = [function(arguments[index : index + 1])[0] for index in range(len(arguments))]
+        assert np.array_equal(function(arguments), alone)
+
+
 def rise_within(values, support):
     """Whether values never fall and never leave a support by more than rounding."""
     slack = 1e-12 * (values[-1] - values[0])

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtr, ndtri
+from scipy.special import exp2, ndtr, ndtri, xlogy
 
 from flexlash.schema.argument_checks import number
 from flexlash.schema.arrays import Array
@@ -83,13 +83,13 @@ class Lognormal:
 
     def standard(self, probability: Array) -> Array:
         """Return quantiles of the lognormal with the median 1."""
-        return np.asarray(np.exp(self._sigma * ndtri(probability)))
+        return self.standard_at(ndtri(probability))
 
     def standard_at(self, score: Array) -> Array:
         """Return the exponentials of the scores, each times the standard deviation of the logarithm."""
-        return np.asarray(np.exp(self._sigma * score))
+        # NumPy's exp may round otherwise at another place of an array; SciPy's functions do not.
+        return np.asarray(exp2(self._sigma / math.log(2) * score))
 
     def probability_below(self, standard: Array) -> Array:
         """Return the probabilities of lesser standard values."""
-        with np.errstate(divide="ignore"):
-            return np.asarray(ndtr(np.log(np.maximum(standard, 0.0)) / self._sigma))
+        return np.asarray(ndtr(xlogy(1 / self._sigma, np.maximum(standard, 0.0))))
