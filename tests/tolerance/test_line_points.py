@@ -101,10 +101,13 @@ def test_mirrored_net_cancels_linear_effects(width):
     assert not np.array_equal(mirrored_net(1, width, 64), scores)
 
 
-@pytest.mark.parametrize(("lines", "points"), [(8, 64), (64, 64), (512, 512), (2**14, 2048)])
-def test_mirrored_net_has_about_as_many_points_as_lines(lines, points):
-    """A row that takes many lines gets many points for its shares, within bounds."""
-    assert mirrored_net(0, 2, lines).shape == (2, points)
+@pytest.mark.parametrize("points", [16, 64, 1024])
+def test_mirrored_net_has_replicates_of_its_own(points):
+    """Each replicate, one after the other, is mirrored in itself and has points that no other has."""
+    scores = mirrored_net(0, 2, points).reshape(2, LINE_REPLICATES, -1)
+    half = scores.shape[2] // 2
+    assert np.array_equal(scores[:, :, :half], -scores[:, :, half:])
+    assert len(np.unique(scores[0])) == points
 
 
 def test_mirrored_net_is_standard_normal():

@@ -1,75 +1,34 @@
-"""Shares of variance: Gauss rules with the moments of their distributions, and Sobol' indices known in closed form."""
+"""Shares of variance by the line engine: Sobol' indices known in closed form, within errors that are honest."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from line_models import row_model
-from scipy import stats
 
 from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform, propagate
 from flexlash.tolerance.engine.line_direction import Inputs
-from flexlash.tolerance.engine.line_points import mirrored_net
-from flexlash.tolerance.engine.line_shares import gauss_rule, variance_shares
+from flexlash.tolerance.engine.line_shares import line_shares
 
 thorough = settings(deadline=None, max_examples=30, derandomize=True)
-
-SHAPES = {
-    "normal": (Normal(0, 1), stats.norm()),
-    "uniform": (Uniform(0, 1), stats.uniform()),
-    "triangular": (Triangular(0, 1), stats.triang(0.5)),
-    "skewed": (Triangular(0, 1, 0.25), stats.triang(0.25)),
-    "falling": (Triangular(0, 1, 0.0), stats.triang(0.0)),
-    "cut at 3 sigma": (TruncatedNormal(0, 1, -3, 3), stats.truncnorm(-3, 3)),
-    "cut off centre": (TruncatedNormal(0, 1, -0.5, 2), stats.truncnorm(-0.5, 2)),
-    "cut to a tail": (TruncatedNormal(0, 1, 4, 5), stats.truncnorm(4, 5)),
-}
 
 
 def indices(function, *rows, variance, seed=0):
     """Return first-order and total indices (inputs, rows)."""
-    net = mirrored_net(seed, len(rows[0]), 64)
-    return variance_shares(row_model(function), Inputs.of(rows), net, np.array(variance, dtype=float))
+    return shares(function, *rows, variance=variance, seed=seed)[:2]
 
 
-@pytest.mark.parametrize(("distribution", "reference"), SHAPES.values(), ids=list(SHAPES))
-def test_gauss_rule_has_the_moments_of_its_distribution(distribution, reference):
-    """Five nodes and weights have the first nine central moments of a distribution."""
-    nodes, weights = gauss_rule(distribution)
-    assert nodes.shape == weights.shape == (5,)
-    assert weights.min() > 0
-    assert weights.sum() == pytest.approx(1, rel=1e-12)
-    mean, sd = reference.mean(), reference.std()
-    low, high = (max(min(end, 40.0), -40.0) for end in reference.support())
-    corners = {low, high}
-    points, mass = np.polynomial.legendre.leggauss(100)
-    pieces = sorted(corners | {reference.ppf(share) for share in (0.25, 0.5, 0.75)} | {reference.ppf(1 - 1e-12)})
-    for power in range(10):
-        exact = 0.0
-        for first, last in pairwise(pieces):
-            half = (last - first) / 2
-            place = first + half * (points + 1)
-            exact += float((half * mass * reference.pdf(place) * ((place - mean) / sd) ** power).sum())
-        assert (weights * ((nodes - mean) / sd) ** power).sum() == pytest.approx(exact, rel=1e-5, abs=1e-5)
-
-
-def test_gauss_rule_belongs_to_a_shape():
-    """Distributions of one shape share a rule, others have their own, also when more are asked for than are kept."""
-    assert gauss_rule(Normal(0, 1))[0] is gauss_rule(Normal(80, 0.02))[0]
-    modes = np.linspace(0.05, 0.95, 300)
-    means = []
-    for mode in modes:
-        nodes, weights = gauss_rule(Triangular(0, 1, mode))
-        means.append((nodes * weights).sum())
-    assert means == pytest.approx((1 + modes) / 3, abs=1e-5)
+def shares(function, *rows, variance, seed=0):
+    """Return first-order and total indices and their standard errors, (4, inputs, rows)."""
+    known = np.array(variance, dtype=float)
+    return line_shares(row_model(function), Inputs.of(rows), (known, 0 * known), seed)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_additive_model(seed):
-    """In a weighted sum first and total index of an input are its part of the variance, exactly."""
+    """In a weighted sum first and total index of an input are its part of the variance, but for the kink of c."""
     row = {"a": Normal(3, 2), "b": Uniform(-1, 4), "c": Triangular(0, 2), "d": TruncatedNormal(0, 1, -2, 2)}
     slopes = {"a": 1.0, "b": -2.0, "c": 0.5, "d": 3.0}
     parts = np.array([(slopes[name] * one.standard_deviation) ** 2 for name, one in row.items()])
@@ -79,16 +38,16 @@ def test_additive_model(seed):
         variance=[parts.sum()],
         seed=seed,
     )
-    assert first[:, 0] == pytest.approx(parts / parts.sum(), rel=1e-6)
-    assert total[:, 0] == pytest.approx(parts / parts.sum(), rel=1e-6)
+    assert first[:, 0] == pytest.approx(parts / parts.sum(), abs=2e-5)
+    assert total[:, 0] == pytest.approx(parts / parts.sum(), abs=2e-5)
 
 
 def test_additive_polynomial_of_degree_four():
     """A polynomial of degree 4 in each input, without interaction, is exact too."""
     exact = np.array([96.0, 2.0])
     first, total = indices(lambda a, b: a**4 + b**2, {"a": Normal(0, 1), "b": Normal(0, 1)}, variance=[exact.sum()])
-    assert first[:, 0] == pytest.approx(exact / exact.sum(), rel=1e-6)
-    assert total[:, 0] == pytest.approx(exact / exact.sum(), rel=1e-6)
+    assert first[:, 0] == pytest.approx(exact / exact.sum(), rel=1e-4)
+    assert total[:, 0] == pytest.approx(exact / exact.sum(), rel=1e-4)
 
 
 @pytest.mark.parametrize("spread", [0.02, 0.1, 0.2])
@@ -99,7 +58,7 @@ def test_multiplicative_model(spread):
     squares = 1 + variation**2
     whole = squares.prod() - 1
     first, total = indices(lambda a, b, c: a * b * c, row, variance=[whole * 1e6])
-    # The mean over the other inputs is taken at 64 points.
+    # The mean over the other inputs is taken at 16 points or a few more.
     assert first[:, 0] == pytest.approx(variation**2 / whole, rel=0.1 * spread + 1e-6, abs=1e-4)
     assert total[:, 0] == pytest.approx(variation**2 * squares.prod() / squares / whole, rel=0.5 * spread + 1e-6)
     assert (total >= first).all()
@@ -116,8 +75,8 @@ def test_pure_interaction():
 def test_an_input_without_effect_has_no_share():
     """An input that the output ignores has both indices 0."""
     first, total = indices(lambda a, b: a + 0 * b, {"a": Normal(0, 1), "b": Normal(0, 1)}, variance=[1.0])
-    assert first[:, 0] == pytest.approx([1, 0], abs=1e-9)
-    assert total[:, 0] == pytest.approx([1, 0], abs=1e-9)
+    assert first[:, 0] == pytest.approx([1, 0], abs=1e-6)
+    assert total[:, 0] == pytest.approx([1, 0], abs=1e-6)
 
 
 def test_an_output_that_does_not_vary_has_no_shares():
@@ -136,6 +95,7 @@ def test_a_shift_of_the_output_changes_no_share():
     assert shifted[1] == pytest.approx(plain[1], abs=1e-8)
 
 
+@pytest.mark.slow
 @thorough
 @given(
     slopes=st.lists(st.floats(-3, 3), min_size=3, max_size=3).filter(lambda one: max(map(abs, one)) > 0.1),
@@ -155,7 +115,7 @@ def test_first_index_is_within_0_and_the_total(slopes, bend, twist):
     assert (first >= 0).all()
     assert (first <= total * (1 + 1e-9) + 1e-12).all()
     assert first.sum() <= 1.02
-    assert first[2, 0] == pytest.approx(effects[2] / (effects.sum() + twist**2 / 3), abs=1e-5)
+    assert first[2, 0] == pytest.approx(effects[2] / (effects.sum() + twist**2 / 3), abs=2e-4)
 
 
 def test_rows_do_not_depend_on_their_neighbours():
@@ -179,6 +139,6 @@ def test_shares_of_a_spread_are_these():
     whole = parts.sum() + both
     assert list(spread.shares.values()) == pytest.approx(list(parts / whole), abs=1e-3)
     assert list(spread.total_shares.values()) == pytest.approx(
-        list((parts + np.array([both, both, 0])) / whole), abs=2e-3
+        list((parts + np.array([both, both, 0])) / whole), abs=3e-3
     )
     assert math.fsum(spread.shares.values()) == pytest.approx(1 - both / whole, abs=1e-3)

@@ -179,7 +179,7 @@ def test_lines_are_exact_for_a_normal_output(of_a_sum):
 def test_shares_of_a_sum(of_a_sum):
     """The shares of a sum are the parts of its variance, first-order and total alike."""
     found, method = of_a_sum
-    allowed = {"line": 1e-9, "sobol": 0.02, "random": 0.1}[method]
+    allowed = {"line": 1e-8, "sobol": 0.02, "random": 0.1}[method]
     exact = dict(zip(SUM_NAMES, (1 / 9, 4 / 9, 4 / 9), strict=True))
     assert found.shares == pytest.approx(exact, abs=allowed)
     assert found.total_shares == pytest.approx(exact, abs=allowed)

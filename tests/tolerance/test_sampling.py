@@ -111,7 +111,7 @@ def test_sobol_points_are_balanced():
 
 
 @each_method
-@pytest.mark.parametrize(("samples", "length"), [(64, 4), (2**13, 512), (2**15, 512)])
+@pytest.mark.parametrize(("samples", "length"), [(64, 4), (2**13, 512), (2**16, 2048)])
 def test_leading_and_second_sets(method, samples, length):
     """The shares' first set is the leading part of all points, their second as long, and other points."""
     points = points_of(method, samples=samples)

@@ -17,8 +17,10 @@ from scipy.special import ndtri
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.capability import clopper_pearson
 from flexlash.tolerance.distributions import Distribution
+from flexlash.tolerance.sampled_shares import sampled_shares
 from flexlash.tolerance.sampling import UnitPoints, standard_error
 from flexlash.tolerance.spread import Spread
+from flexlash.tolerance.variance_shares import VarianceShares
 
 __all__ = ["Model", "SampledSpread"]
 
@@ -180,36 +182,13 @@ class SampledSpread(Spread):
         return clopper_pearson(self._count_above(value), self.size, confidence)
 
     @cached_property
-    def _both_shares(self) -> tuple[dict[str, float], dict[str, float]]:
-        """First-order and total indices: both point sets crossed one input at a time (Saltelli et al. 2010)."""
-        if len(self._inputs) == 1 or self.sd == 0:
-            whole = dict.fromkeys(self._inputs, float(self.sd > 0))
-            return whole, whole
-        count = self._points.share_count
-        first = {name: self._points.standard(name, self._inputs[name], "leading") for name in self._inputs}
-        second = {name: self._points.standard(name, self._inputs[name], "second") for name in self._inputs}
-        base = self.values[:, :count]
-        other = _evaluate(self._model, second, self._inputs)
-        middle = (base.mean() + other.mean()) / 2
-        variance = float(((base - middle) ** 2).mean() + ((other - middle) ** 2).mean()) / 2
-        shares, totals = {}, {}
-        for name in self._inputs:
-            crossed = _evaluate(self._model, first | {name: second[name]}, self._inputs)
-            caused = float(((other - middle) * (crossed - base)).mean())
-            touched = float(((base - crossed) ** 2).mean()) / 2
-            shares[name] = min(max(caused / variance, 0.0), 1.0) if variance > 0 else 0.0
-            totals[name] = touched / variance if variance > 0 else 0.0
-        return shares, totals
+    def variance_shares(self) -> VarianceShares:
+        """First-order and total Sobol' indices with their standard errors."""
 
-    @property
-    def shares(self) -> dict[str, float]:
-        """First-order Sobol' index of each input: the share of variance it causes by itself."""
-        return self._both_shares[0]
+        def outputs(standard: Mapping[str, Array]) -> Array:
+            return _evaluate(self._model, standard, self._inputs)
 
-    @property
-    def total_shares(self) -> dict[str, float]:
-        """Total Sobol' index of each input: the share of variance it has any part in."""
-        return self._both_shares[1]
+        return sampled_shares(outputs, self._inputs, self._points, self.values)
 
 
 def _evaluate(model: Model, standard: Mapping[str, Array], inputs: Mapping[str, Distribution]) -> Array:

@@ -30,7 +30,9 @@ DEFAULT_SAMPLES = {"sobol": 2**15, "random": 2**17}
 PointMethod = Literal["sobol", "random"]
 PointSet = Literal["all", "leading", "second"]
 
-_SHARE_POINTS = 512
+_SHARE_POINTS = 2048
+"""Most points in each replicate behind shares of variance."""
+
 _CACHED_SHAPES = 256
 
 

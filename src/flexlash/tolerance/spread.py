@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from flexlash.schema.argument_checks import number, numbers, whole_number
 from flexlash.schema.arrays import Array
+from flexlash.tolerance.variance_shares import VarianceShares
 
 __all__ = ["Method", "Spread"]
 
@@ -78,14 +79,29 @@ class Spread(ABC):
         """Standard error of the kurtosis."""
 
     @property
-    @abstractmethod
     def shares(self) -> dict[str, float]:
         """First-order Sobol' index of each input: the share of variance it causes by itself."""
+        return self.variance_shares.first
+
+    @property
+    def shares_standard_error(self) -> dict[str, float]:
+        """Standard errors of `shares`."""
+        return self.variance_shares.first_error
+
+    @property
+    def total_shares(self) -> dict[str, float]:
+        """Total Sobol' index of each input: the share of variance it has any part in."""
+        return self.variance_shares.total
+
+    @property
+    def total_shares_standard_error(self) -> dict[str, float]:
+        """Standard errors of `total_shares`."""
+        return self.variance_shares.total_error
 
     @property
     @abstractmethod
-    def total_shares(self) -> dict[str, float]:
-        """Total Sobol' index of each input: the share of variance it has any part in."""
+    def variance_shares(self) -> VarianceShares:
+        """First-order and total Sobol' indices with their standard errors."""
 
     @overload
     def quantile(self, probability: float) -> float: ...

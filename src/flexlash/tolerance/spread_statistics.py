@@ -2,7 +2,8 @@
 
 numbers        by result key without unit: `mean`, `p97_5`, `p97_5_standard_error`, `probability_over_limit`, …
 texts          by result key: `spread_method`, `spread_note`, `first_order_valid`, `cross_check`
-shares         first-order Sobol' index of each dimension; `total_shares` the total ones
+shares         first-order Sobol' index of each dimension, `total_shares` the total ones; `share_errors` and
+               `total_share_errors` their standard errors
 swings         output with one dimension at its lower and upper limit, the others in the middle of theirs
 limit          greatest output allowed
 """
@@ -17,6 +18,7 @@ import numpy as np
 
 from flexlash.tolerance.capability import ppk_normal, ppk_upper
 from flexlash.tolerance.spread import Method, Spread
+from flexlash.tolerance.variance_shares import VarianceShares
 
 __all__ = ["PERCENTILES", "SpreadStatistics", "exact_statistics", "named_probabilities", "statistics_of"]
 
@@ -45,6 +47,8 @@ class SpreadStatistics:
     texts: Mapping[str, str | None] = field(default_factory=dict)
     shares: Mapping[str, float] = field(default_factory=dict)
     total_shares: Mapping[str, float] = field(default_factory=dict)
+    share_errors: Mapping[str, float] = field(default_factory=dict)
+    total_share_errors: Mapping[str, float] = field(default_factory=dict)
     swings: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @classmethod
@@ -56,8 +60,7 @@ class SpreadStatistics:
         method: Method,
         size: int,
         note: str,
-        shares: dict[str, float],
-        total_shares: dict[str, float],
+        shares: VarianceShares,
     ) -> SpreadStatistics:
         """Return the statistics with the numbers that follow from others; NaN is none, `size` lines or points."""
         kept: dict[str, float | None] = {name: value for name, value in numbers.items() if not math.isnan(value)}
@@ -67,8 +70,10 @@ class SpreadStatistics:
         return cls(
             numbers=kept | {"spread_points": float(size)},
             texts={"spread_method": method, "spread_note": note or None},
-            shares=shares,
-            total_shares=total_shares,
+            shares=shares.first,
+            total_shares=shares.total,
+            share_errors=shares.first_error,
+            total_share_errors=shares.total_error,
         )
 
 
@@ -99,8 +104,7 @@ def statistics_of(spread: Spread, limit: float | None, *, coverage: float, note:
         method=spread.method,
         size=spread.size,
         note=note,
-        shares=spread.shares,
-        total_shares=spread.total_shares,
+        shares=spread.variance_shares,
     )
 
 

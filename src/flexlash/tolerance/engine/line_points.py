@@ -16,9 +16,6 @@ __all__ = ["LINE_REPLICATES", "Net", "line_net", "mirrored_net", "normal_density
 LINE_REPLICATES = 8
 """Independent replicates behind every standard error: 7 degrees of freedom."""
 
-_SHARE_POINTS = 64, 2048
-"""Fewest and most points over the other inputs behind each share of variance."""
-
 _SPACED = {8: 4.0, 16: 5.0}
 """Points of an evenly spaced coordinate, and how far it reaches to both sides."""
 
@@ -84,12 +81,18 @@ def line_net(seed: int, width: int, lines: int, *, single_curved: bool) -> Net:
 
 
 @lru_cache(maxsize=64)
-def mirrored_net(seed: int, width: int, lines: int) -> Array:
-    """Return scores (width, points), half of them mirrored so that linear effects cancel; about as many as lines.
+def mirrored_net(seed: int, width: int, points: int) -> Array:
+    """Return scores (width, points), half of them mirrored so that linear effects cancel; replicate after replicate.
 
-    A row that takes many lines has inputs that act together, so its shares take many points too: 64 to 2048.
+    Equation: u = ± Φ⁻¹ of scrambled Sobol' points, LINE_REPLICATES independent ones
+    Arguments: seed; points in all, 2 · LINE_REPLICATES times a power of two.
+    Valid: any width; beyond 64 coordinates the points are independent.
+    Source: Owen 1995; antithetic points (Hammersley and Morton 1956).
+
+    >>> scores = mirrored_net(0, 3, 32).reshape(3, 8, 4)
+    >>> bool((scores[:, :, :2] == -scores[:, :, 2:]).all())
+    True
     """
-    points = min(max(lines, _SHARE_POINTS[0]), _SHARE_POINTS[1])
     generator = np.random.default_rng([seed, points, width])
     half = ndtri(scrambled_net(width, LINE_REPLICATES, points // (2 * LINE_REPLICATES), generator))
     return np.concatenate([half, -half], axis=2).reshape(width, points)

@@ -1,97 +1,134 @@
-"""Which input causes how much: Sobol' indices by quadrature over one input and a net over the others.
+"""Which input causes how much: Sobol' indices by quadrature over one input and mirrored points over the others.
 
-The inner variance, over one input, is exact for a polynomial of degree 4; the outer mean varies little, since
-for a nearly additive model the effect of an input hardly depends on the others. So a few points do.
+The effect of an input hardly depends on the others where a model is nearly additive, so a few points do there; rows
+whose errors are too great get four times as many, and again.
+
+    effect      mean of the output at a node of one input, over the points of the others, less its own mean
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from flexlash.schema.arrays import Array
-from flexlash.tolerance.distributions import Distribution
-from flexlash.tolerance.engine.line_direction import Inputs, RowModel
-from flexlash.tolerance.engine.line_tables import REACH
+from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel
+from flexlash.tolerance.engine.line_points import LINE_REPLICATES, mirrored_net, normal_density
+from flexlash.tolerance.sampling import standard_error
 
-__all__ = ["gauss_rule", "variance_shares"]
+__all__ = ["line_shares"]
 
-_POINTS = 5
-_SCORES = np.linspace(-REACH, REACH, 1661)
-_MASS = np.exp(-_SCORES * _SCORES / 2) / np.exp(-_SCORES * _SCORES / 2).sum()
-_RULES: dict[tuple[str | float, ...], tuple[Array, Array]] = {}
-_MOST_RULES = 256
+SHARE_PRECISION = 2e-3
+"""Standard error wanted of every share."""
 
+FEWEST_POINTS, MOST_POINTS = 16, 1024
+"""Points over the other inputs in all replicates; the fewest are one and its mirror image in each."""
 
-def gauss_rule(distribution: Distribution) -> tuple[Array, Array]:
-    """Return the five nodes and weights of the Gauss rule for a distribution's standard shape, (5,) each.
+_MORE = 4
+"""How many times more points a row gets whose errors are too great."""
 
-    Equation: ∫ f(x) dF(x) = Σ wᵢ f(xᵢ)
-    Arguments: a distribution, whose shape alone matters.
-    Valid: exact for a polynomial of degree 9.
-    Source: Stieltjes' recurrence on a fine grid of scores; Golub and Welsch 1969.
+_STOPPED = 0.3
+"""Part by which errors are widened that stopped just at what was wanted."""
 
-    >>> from flexlash.tolerance.distributions import Normal
-    >>> nodes, weights = gauss_rule(Normal(0, 1))
-    >>> round(float((weights * nodes**8).sum()), 6)
-    105.0
-    """
-    rule = _RULES.get(distribution.shape)
-    if rule is None:
-        rule = _stieltjes(distribution.standard_at(_SCORES))
-        if len(_RULES) < _MOST_RULES:
-            _RULES[distribution.shape] = rule
-    return rule
+_NODES = np.linspace(-6.0, 6.0, 25)[:, None]
+"""Scores of one input; beyond them a heavy tail such as that of Student's t with 5 degrees has 1e-5 of its variance."""
+
+_BLOCK = 1 << 16
+"""Numbers of an array that leave room in the cache for a few others."""
 
 
-def _stieltjes(values: Array) -> tuple[Array, Array]:
-    """Return the Gauss rule of a discrete measure by its three-term recurrence (Golub and Welsch 1969)."""
-    before, now = np.zeros_like(values), np.ones_like(values)
-    size_before, diagonal, beside = 1.0, [], []
-    for order in range(_POINTS):
-        size = float((_MASS * now * now).sum())
-        centre = float((_MASS * values * now * now).sum()) / size
-        diagonal.append(centre)
-        if order:
-            beside.append(size / size_before)
-        before, now = now, (values - centre) * now - (beside[-1] if order else 0.0) * before
-        size_before = size
-    off = np.sqrt(beside)
-    nodes, vectors = np.linalg.eigh(np.diag(diagonal) + np.diag(off, 1) + np.diag(off, -1))
-    return nodes, vectors[0] ** 2
-
-
-def variance_shares(model: RowModel, inputs: Inputs, net: Array, variance: Array) -> tuple[Array, Array]:
-    """Return first-order and total Sobol' indices, (inputs, rows) each.
+def line_shares(model: RowModel, inputs: Inputs, variance: tuple[Array, Array], seed: int) -> Array:
+    """Return first-order and total Sobol' indices of rows alike and their standard errors, (4, inputs, rows).
 
     Equation: Sᵢ = Var(E[y | xᵢ])/Var y, Sᵢᵀ = E[Var(y | all but xᵢ)]/Var y
-    Arguments: model and inputs of rows alike; net of standard normal scores (inputs, points); variance of the output
-        (rows,) in its squared unit.
-    Valid: the inner variance is exact for a polynomial of degree 4; the outer mean is as good as the points.
+    Arguments: model and inputs of rows alike; variance of the output and its standard error (rows,) in its squared
+        unit; seed of the points.
+    Valid: independent inputs; an output smooth in the scores, or the difference to half as many nodes tells its error.
+        Where `MOST_POINTS` do not reach `SHARE_PRECISION`, the error is what it is.
     Source: Sobol' 1993; Homma and Saltelli 1996.
     """
+    found = np.zeros((4, *inputs.location.shape))
     if len(inputs.names) == 1:
-        alone = (variance > 0).astype(float)[None]
-        return alone, alone
+        found[:2] = variance[0] > 0
+        return np.clip(found, 0, 1)
+    pending, points = np.flatnonzero(variance[0] > 0), FEWEST_POINTS
+    while len(pending):
+        net = mirrored_net(seed, len(inputs.names), points)
+        for block in _blocks(pending, points * len(_NODES)):
+            known = variance[0][block], variance[1][block]
+            found[:, :, block] = _estimate(_of(model, block), inputs.take(block), net, known)
+        excess = found[2:, :, pending].max(axis=(0, 1)) / SHARE_PRECISION
+        # Points were found enough by errors some of which came out small by chance.
+        found[2:, :, pending] *= 1 + _STOPPED * np.minimum(excess, 1) ** 2
+        pending = pending[excess > 1] if points < MOST_POINTS else pending[:0]
+        points *= _MORE
+    return np.clip(found, 0, 1)
+
+
+def _blocks(rows: Indices, size: int) -> Iterator[Indices]:
+    """Yield rows in blocks that fit the cache, `size` numbers a row."""
+    step = max(_BLOCK // size, 1)
+    for start in range(0, len(rows), step):
+        yield rows[start : start + step]
+
+
+def _of(model: RowModel, rows: Indices) -> RowModel:
+    """Return the model of some of the rows."""
+    return lambda arguments, chosen: model(arguments, rows[chosen])
+
+
+def _estimate(model: RowModel, inputs: Inputs, net: Array, variance: tuple[Array, Array]) -> Array:
+    """Return first-order and total indices and their standard errors by points (inputs, points): (4, inputs, rows)."""
     points = net.shape[1]
     rows = np.repeat(np.arange(inputs.count), points)
-    location, scale = inputs.location[:, rows], inputs.scale[:, rows]
-    everywhere = np.tile(net, inputs.count)
-    base = {
-        name: (location[index] + scale[index] * inputs.shapes[index].standard_at(everywhere[index]))[None]
-        for index, name in enumerate(inputs.names)
-    }
-    first, total = np.empty(inputs.location.shape), np.empty(inputs.location.shape)
-    size = np.where(variance > 0, variance, 1.0)
+    base = {name: _values(inputs, index, net[index], rows) for index, name in enumerate(inputs.names)}
+    found = np.empty((4, *inputs.location.shape))
     for index, name in enumerate(inputs.names):
-        nodes, weights = gauss_rule(inputs.shapes[index])
-        weight = weights[:, None]
-        varied = location[index] + scale[index] * nodes[:, None]
-        output = model(base | {name: varied}, rows)
-        output = output - output[:1]
-        mean = (weight * output).sum(axis=0)
-        inner = (weight * (output - mean) ** 2).sum(axis=0).reshape(inputs.count, points)
-        by_node = output.reshape(_POINTS, inputs.count, points).mean(axis=2)
-        centre = (weight * by_node).sum(axis=0)
-        first[index] = (weight * (by_node - centre) ** 2).sum(axis=0) / size
-        total[index] = inner.mean(axis=1) / size
-    return np.clip(first, 0, 1), np.clip(total, 0, 1)
+        output = model(base | {name: _values(inputs, index, _NODES, rows)}, rows)
+        sound = np.isfinite(output)
+        output = np.where(sound, output - output[len(_NODES) // 2], 0.0)
+        # A third of what twice the spacing changes is the error of a kink, and more than that of a smooth output.
+        fine = _parts(output, inputs.count, 1)
+        coarse = _parts(output, inputs.count, 2)
+        found[:2, index], found[2:, index] = fine[:2], fine[2:] + np.abs(fine[:2] - coarse[:2]) / 3
+        found[2:, index, ~sound.reshape(-1, inputs.count, points).all(axis=(0, 2))] = np.inf
+    found /= variance[0]
+    found[2:] = np.hypot(found[2:], found[:2] * variance[1] / variance[0])
+    return found
+
+
+def _values(inputs: Inputs, index: int, scores: Array, rows: Indices) -> Array:
+    """Return an input of rows (k, rows × points) at scores of all points, or (k, 1) of all rows."""
+    standard = inputs.shapes[index].standard_at(scores)
+    if standard.ndim == 1:
+        standard = np.tile(standard, inputs.count)[None]
+    return np.asarray(inputs.location[index, rows] + inputs.scale[index, rows] * standard)
+
+
+def _parts(output: Array, rows: int, every: int) -> Array:
+    """Return what one input causes of the variance, first-order and total, and standard errors of both: (4, rows).
+
+    Equation: V = Σ_{r≠s} ⟨cᵣ, cₛ⟩/(n(n − 1)), Vᵀ = mean over points of Σ w (y − Σ w y)², ⟨c, d⟩ = Σ w c d
+    Arguments: output (nodes, rows × points) at nodes of the input and points of the others; `every` so many of the
+        nodes is used; c the effects of each of n replicates.
+    Valid: products of different replicates leave out the variance of the means, by which V would be too great.
+    Source: Hoeffding 1948 (U-statistics), whose standard error is the jackknife's (Efron and Stein 1981); trapezoidal
+        rule in the score, nearly exact for what is smooth.
+    """
+    output = output[::every]
+    weight = normal_density(_NODES[::every])
+    weight /= weight.sum()
+    deviation = output - (weight * output).sum(axis=0)
+    inner = (weight * deviation * deviation).sum(axis=0).reshape(rows, LINE_REPLICATES, -1).mean(axis=2)
+    effect = deviation.reshape(len(output), rows, LINE_REPLICATES, -1).mean(axis=3)
+    count = LINE_REPLICATES
+    mean = effect.mean(axis=2, keepdims=True)
+    own = (weight[:, :, None] * effect * effect).sum(axis=0)
+    crossed = count * (weight[:, :, None] * effect * mean).sum(axis=0) - own
+    products = crossed.sum(axis=1, keepdims=True)
+    without = (products - 2 * crossed) / ((count - 1) * (count - 2))
+    first = products[:, 0] / (count * (count - 1))
+    # Pseudo-values of the jackknife have the spread of the replicates.
+    pseudo = count * first[:, None] - (count - 1) * without
+    return np.stack([first, inner.mean(axis=1), standard_error(pseudo), standard_error(inner)])

@@ -12,7 +12,7 @@ from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.engine.line_direction import Inputs, LineDirection, RowModel, direction_of
 from flexlash.tolerance.engine.line_moments import Moments, moments_of
-from flexlash.tolerance.engine.line_points import line_net, mirrored_net
+from flexlash.tolerance.engine.line_points import line_net
 from flexlash.tolerance.engine.line_precision import (
     DECISIVE,
     initial_lines,
@@ -21,9 +21,10 @@ from flexlash.tolerance.engine.line_precision import (
     unresolved,
 )
 from flexlash.tolerance.engine.line_quantiles import LineQuantiles, probability_interval, quantiles_at, quantiles_of
-from flexlash.tolerance.engine.line_shares import variance_shares
+from flexlash.tolerance.engine.line_shares import line_shares
 from flexlash.tolerance.engine.line_tables import FAULTS, STEPS, Lines
 from flexlash.tolerance.spread import Spread
+from flexlash.tolerance.variance_shares import VarianceShares
 
 __all__ = ["LineSpread", "LinesUnsuitable"]
 
@@ -153,18 +154,8 @@ class LineSpread(Spread):
 
     @cached_property
     @np.errstate(all="ignore")
-    def _both_shares(self) -> tuple[dict[str, float], dict[str, float]]:
-        names = self._inputs.names
-        net = mirrored_net(self._seed, len(names), self.size)
-        first, total = variance_shares(self._model, self._inputs, net, self._moments.sd**2)
-        return dict(zip(names, first[:, 0].tolist(), strict=True)), dict(zip(names, total[:, 0].tolist(), strict=True))
-
-    @cached_property
-    def shares(self) -> dict[str, float]:
-        """First-order Sobol' index of each input."""
-        return self._both_shares[0]
-
-    @cached_property
-    def total_shares(self) -> dict[str, float]:
-        """Total Sobol' index of each input."""
-        return self._both_shares[1]
+    def variance_shares(self) -> VarianceShares:
+        """First-order and total Sobol' indices with their standard errors."""
+        variance = self._moments.sd**2, 2 * self._moments.sd * self._moments.sd_error
+        found = line_shares(self._model, self._inputs, variance, self._seed)
+        return VarianceShares.of(self._inputs.names, found[:, :, 0])

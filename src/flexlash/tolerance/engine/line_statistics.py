@@ -13,7 +13,7 @@ import numpy as np
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel, direction_of
 from flexlash.tolerance.engine.line_moments import moments_of
-from flexlash.tolerance.engine.line_points import line_net, mirrored_net
+from flexlash.tolerance.engine.line_points import line_net
 from flexlash.tolerance.engine.line_precision import (
     DECISIVE,
     initial_lines,
@@ -22,10 +22,11 @@ from flexlash.tolerance.engine.line_precision import (
     unresolved,
 )
 from flexlash.tolerance.engine.line_quantiles import probability_interval, quantiles_at, quantiles_of
-from flexlash.tolerance.engine.line_shares import variance_shares
+from flexlash.tolerance.engine.line_shares import line_shares
 from flexlash.tolerance.engine.line_tables import FAULTS, NODES, STEPS, Lines
 from flexlash.tolerance.sampling import SamplingPlan
 from flexlash.tolerance.spread_statistics import SpreadStatistics, named_probabilities
+from flexlash.tolerance.variance_shares import VarianceShares
 
 __all__ = ["line_statistics"]
 
@@ -136,8 +137,8 @@ class _Reading:
         """Return the statistics of some of the rows, whose model this is."""
         inputs = self._lines.inputs.take(rows)
         moments = moments_of(self._lines).widened(self._margin)
-        net = mirrored_net(plan.seed, len(inputs.names), self._lines.lines)
-        first, total = variance_shares(model, inputs, net, moments.sd[rows] ** 2)
+        variance = moments.sd[rows] ** 2, 2 * moments.sd[rows] * moments.sd_error[rows]
+        shares = line_shares(model, inputs, variance, plan.seed)
         numbers = self._quantile_numbers() | self._over_numbers()
         numbers |= {
             "mean": moments.mean,
@@ -159,8 +160,7 @@ class _Reading:
                 method="line",
                 size=self._lines.lines,
                 note=notes[rows[index]],
-                shares=dict(zip(inputs.names, first[:, index].tolist(), strict=True)),
-                total_shares=dict(zip(inputs.names, total[:, index].tolist(), strict=True)),
+                shares=VarianceShares.of(inputs.names, shares[:, :, index]),
             )
             for index, values in enumerate(zip(*columns.values(), strict=True))
         ]
