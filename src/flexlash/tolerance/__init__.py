@@ -12,9 +12,20 @@ taken; a `Spread` is the output's whole distribution, `SpreadStatistics` the num
 
 from flexlash.tolerance.distributions import Normal, Triangular, Uniform
 from flexlash.tolerance.lognormal import Lognormal
+from flexlash.tolerance.measured import Measured
 from flexlash.tolerance.propagate import propagate
 from flexlash.tolerance.spread import Spread
 from flexlash.tolerance.student import Student
 from flexlash.tolerance.truncated_normal import TruncatedNormal
 
-__all__ = ["Lognormal", "Normal", "Spread", "Student", "Triangular", "TruncatedNormal", "Uniform", "propagate"]
+__all__ = [
+    "Lognormal",
+    "Measured",
+    "Normal",
+    "Spread",
+    "Student",
+    "Triangular",
+    "TruncatedNormal",
+    "Uniform",
+    "propagate",
+]
