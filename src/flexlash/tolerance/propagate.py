@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import get_args
+from collections.abc import Collection, Mapping
+from typing import cast, get_args
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.engine.line_direction import Indices, RowModel
 from flexlash.tolerance.engine.line_spread import LineSpread, LinesUnsuitable
+from flexlash.tolerance.nested_lots import lots_of
 from flexlash.tolerance.sampled_spread import Model, SampledSpread
 from flexlash.tolerance.sampling import UnitPoints
 from flexlash.tolerance.spread import Method, Spread
@@ -29,12 +30,14 @@ def propagate(
     method: Method = "line",
     samples: int | None = None,
     seed: int = 0,
+    between: Collection[str] = (),
 ) -> Spread:
     """Return the spread of a model whose inputs vary independently.
 
     `model` takes the inputs as keyword arrays of one shape and returns an array of that shape. `samples` are the
     lines or points in all, rounded up to replicates × a power of two; without them `line` takes as many lines as
-    its precision needs. Where lines do not serve the model, Sobol' points answer and `notes` says why.
+    its precision needs. Where lines do not serve the model, Sobol' points answer and `notes` says why. `between` names
+    the inputs that are one value for a whole lot of parts, so that the spread tells lots from parts.
 
     Raises TypeError or ValueError, with its name, for an argument that is none of these, and ValueError for a model
     that returns another shape or a number that is not finite.
@@ -43,6 +46,9 @@ def propagate(
     >>> spread = propagate(lambda a, b: a + b, {"a": Normal(0, 3), "b": Normal(0, 4)})
     >>> f"{spread.sd:.9f} {spread.quantile(0.99865):.4f} {spread.shares['b']:.2f}"
     '5.000000000 14.9999 0.64'
+    >>> lots = propagate(lambda a, b: a + b, {"a": Normal(0, 3), "b": Normal(0, 4)}, between={"a"})
+    >>> f"{lots.within_lot_sd:.6f} {lots.between_lots_sd:.6f} {lots.lots_failing(limit=12, ppm=1350):.6f}"
+    '4.000000 3.000000 0.499988'
     """
     one_of("method", method, get_args(Method))
     samples = None if samples is None else whole_number("samples", samples, least=1)
@@ -53,14 +59,32 @@ def propagate(
         of_type(f"inputs[{name!r}]", distribution, Distribution, "a distribution such as Normal(0, 1)")
     if not inputs:
         raise ValueError("at least one input must vary")
+    together = {one_of("a name of between", name, inputs) for name in _names(between)}
+    spread = _spread_of(model, inputs, method, samples, seed)
+    if together:
+        spread.divide(*lots_of(_row_model(model), inputs, together, spread.method, samples=samples, seed=seed))
+    return spread
+
+
+def _names(between: object) -> Collection[object]:
+    """Return a collection of names, which a text is not."""
+    required = "a collection of names of inputs"
+    if isinstance(between, str):
+        raise TypeError(f"between = {between!r}: {required} is required")
+    return cast("Collection[object]", of_type("between", between, Collection, required))
+
+
+def _spread_of(
+    model: Model, inputs: Mapping[str, Distribution], method: Method, samples: int | None, seed: int
+) -> Spread:
+    """Return the spread by a method; by Sobol' points where lines do not serve."""
+    notes: tuple[str, ...] = ()
     if method == "line":
         try:
             return LineSpread(_row_model(model), inputs, samples=samples, seed=seed)
         except LinesUnsuitable as reason:
-            notes: tuple[str, ...] = (f"{NOT_LINES}: {reason}.",)
+            notes = (f"{NOT_LINES}: {reason}.",)
             method = "sobol"
-    else:
-        notes = ()
     points = UnitPoints(list(inputs), method=method, samples=samples, seed=seed)
     return SampledSpread(model=model, inputs=inputs, points=points, notes=notes)
 

@@ -4,12 +4,14 @@
     statistic           one number of it: mean, sd, skewness, kurtosis, a quantile, a probability above a value
     share               of variance: the Sobol' index of an input, first-order or total
     standard error      how well a statistic is known; ± 1.96 of them are its 95 % interval
+    lot                 parts that share the values of some inputs: `lots`
 
 By lines it is a `LineSpread`, by points a `SampledSpread`; `SpreadStatistics` are what a report keeps of it.
 """
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any, Literal, overload
@@ -19,11 +21,17 @@ import numpy.typing as npt
 
 from flexlash.schema.argument_checks import number, numbers, whole_number
 from flexlash.schema.arrays import Array
+from flexlash.tolerance.lots import AllParts, Lots
 from flexlash.tolerance.variance_shares import VarianceShares
 
 __all__ = ["Method", "Spread"]
 
 Method = Literal["line", "sobol", "random"]
+
+_MILLION = 1e6
+
+_ONE_ERROR = 0.6826894921370859
+"""Confidence of an interval that reaches one standard error to both sides of a normal estimate."""
 
 
 class Spread(ABC):
@@ -31,12 +39,14 @@ class Spread(ABC):
 
     `method` is the one that answered, `notes` say why another was not taken, `size` counts the lines or points.
     A number ± 1.96 of its standard errors is its 95 % interval: errors that come from independent replicates are
-    widened for their small number, as Student's t asks.
+    widened for their small number, as Student's t asks. `lots` says how lots and parts divide the spread; without
+    more ado every part draws all inputs.
     """
 
     method: Method
     notes: tuple[str, ...]
     size: int
+    lots: Lots = AllParts()
 
     @property
     @abstractmethod
@@ -102,6 +112,54 @@ class Spread(ABC):
     @abstractmethod
     def variance_shares(self) -> VarianceShares:
         """First-order and total Sobol' indices with their standard errors."""
+
+    def divide(self, lots: Lots, notes: tuple[str, ...] = ()) -> None:
+        """Take over how lots and parts divide the spread, and what is to be said of that."""
+        self.lots = lots
+        self.notes += notes
+
+    @property
+    def within_lot_sd(self) -> float:
+        """Standard deviation of the parts within a lot: the root of the mean variance over lots."""
+        return self.lots.division.within * self.sd
+
+    @property
+    def within_lot_sd_standard_error(self) -> float:
+        """Standard error of the standard deviation within a lot."""
+        division = self.lots.division
+        return math.hypot(division.within * self.sd_standard_error, division.within_error * self.sd)
+
+    @property
+    def between_lots_sd(self) -> float:
+        """Standard deviation of the lots' means."""
+        return self.lots.division.between * self.sd
+
+    @property
+    def between_lots_sd_standard_error(self) -> float:
+        """Standard error of the standard deviation of the lots' means."""
+        division = self.lots.division
+        return math.hypot(division.between * self.sd_standard_error, division.between_error * self.sd)
+
+    def lots_failing(self, limit: float, ppm: float) -> float:
+        """Return the share of lots in which more than so many parts in a million are greater than a limit.
+
+        Raises TypeError or ValueError for a limit that is no number, or ppm that are none between 0 and a million.
+        """
+        return self._failing(limit, ppm)[0]
+
+    def lots_failing_standard_error(self, limit: float, ppm: float) -> float:
+        """Return the standard error of the share of lots that fail."""
+        return self._failing(limit, ppm)[1]
+
+    def _failing(self, limit: float, ppm: float) -> tuple[float, float]:
+        number("limit", limit)
+        acceptable = float(numbers("ppm", number("ppm", ppm), least=0, most=_MILLION)) / _MILLION
+        return self.lots.failing(float(limit), acceptable, self._over)
+
+    def _over(self, limit: float) -> tuple[float, float]:
+        """Return the probability above a limit, and its standard error."""
+        low, high = self._interval(limit, _ONE_ERROR)
+        return self.probability_above(limit), (high - low) / 2
 
     @overload
     def quantile(self, probability: float) -> float: ...

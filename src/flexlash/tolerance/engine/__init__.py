@@ -9,6 +9,10 @@
     line_precision      how many lines a row needs
     line_spread         the spread of one model by lines
     line_statistics     the statistics of many rows by lines
+    lot_inputs          inputs that a lot draws once, those that each part draws, and how both act together
+    lot_variance        how the variance divides into that within lots and that between them
+    line_lots           the share of lots that fail, by lines through the inputs of lots and of parts
+    lot_statistics      what lots and parts have of the spread of many rows
 
 Every input is a function of a standard normal *score*. A *position* on a line is a score as well. *Rows alike* have
 the same model and the same shapes of distribution; arrays hold them all: (inputs, rows), (levels, rows), or with all

@@ -1,0 +1,274 @@
+"""Lots and parts by lines: the share of lots in which too many parts lie above a limit.
+
+A lot fails where the output that its parts stay below with the probability 1 − a lies above the limit. This output, the
+lot's quantile, is a smooth function of the lot inputs alone, so that lines through the space of the lot inputs find the
+share of lots that fail, and lines through that of the part inputs the quantile in a lot.
+
+Equation: P(p(l) > a) = P(q(l) > limit), with p(l) = P(Y > limit | l) and q(l) the quantile of Y | l at 1 − a
+Valid: what keeps lines from a row is told by `FAULTS`, as for its spread.
+Source: line sampling, as in `line_tables`; the quantile at a fixed design point of the parts, which the tables hold, is
+    that of first-order reliability (Hasofer and Lind 1974): its slopes at the medians are those of the quantile.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import ndtri
+
+from flexlash.schema.arrays import Array
+from flexlash.tolerance.engine.line_direction import Indices, Inputs, LineDirection, RowModel, direction_of
+from flexlash.tolerance.engine.line_moments import moments_of
+from flexlash.tolerance.engine.line_points import LINE_REPLICATES, Net, line_net
+from flexlash.tolerance.engine.line_precision import unresolved
+from flexlash.tolerance.engine.line_quantiles import LEAST_PROBABILITY, LineQuantiles, quantiles_at, quantiles_of
+from flexlash.tolerance.engine.line_tables import NODES, STEPS, Lines
+from flexlash.tolerance.engine.lot_inputs import LOTS_ALIKE, PARTS_ALIKE, PRODUCT, LotsAndParts, holding
+from flexlash.tolerance.engine.lot_variance import VarianceSplit, split_of, variance_split
+from flexlash.tolerance.lots import step_at
+
+__all__ = ["EntangledLots", "FailingLots", "LineNumbers", "LotLines", "SeparableLots"]
+
+_BLOCK = 1 << 21
+"""Numbers of the tables through lots that are held at once."""
+
+
+_NO_GRADIENT, _SIGN = 1, 3
+"""Faults of lines: no gradient; an output that falls somewhere, as a product does beyond a change of sign."""
+
+
+class LineNumbers(NamedTuple):
+    """How many lines pass through the lot inputs of a row, and through the part inputs."""
+
+    lots: int
+    parts: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class FailingLots:
+    """The share of lots that fail in each row, and the fault that kept lines from it; (rows,) each.
+
+    Its standard error is made of that which the lines through the lot inputs leave and that through the part inputs.
+    """
+
+    share: Array
+    lots_error: Array
+    parts_error: Array
+    faults: Indices
+
+    @property
+    def error(self) -> Array:
+        """Standard error of the share."""
+        return np.asarray(np.hypot(self.lots_error, self.parts_error))
+
+
+class LotLines(ABC):
+    """Lines through the lot inputs and through the part inputs of rows alike.
+
+    The rows have one relation of lots and parts, and inputs of both kinds. `faults` (rows,) is as that of `Lines`; what
+    else is read holds for the other rows.
+    """
+
+    faults: Indices
+
+    def __init__(self, split: LotsAndParts, seed: int, lines: LineNumbers) -> None:
+        self.split = split
+        self.seed = seed
+        self.centre = split.at_medians()
+        self._every = np.arange(split.rows)
+        self._lot_direction = direction_of(split.lots_alone, split.lots)
+        self._part_direction = direction_of(split.parts_alone, split.parts)
+        self._lot_net = self._net(split.lots, 1, lines.lots)
+        self._part_net = self._net(split.parts, 2, lines.parts)
+
+    def _net(self, inputs: Inputs, stream: int, lines: int) -> Net:
+        """Return the net of one kind of inputs; the two have nothing in common. One input alone has one line."""
+        seed = int(np.random.default_rng([self.seed, stream]).integers(1 << 62))
+        width = len(inputs.names) - 1
+        return line_net(seed, width, lines if width else LINE_REPLICATES, single_curved=inputs.single_curved)
+
+    @abstractmethod
+    def variance(self) -> VarianceSplit:
+        """Return how the variance of each row is split."""
+
+    @abstractmethod
+    def failing(self, limit: Array, acceptable: float) -> FailingLots:
+        """Return the share of lots with more than the acceptable share of parts over the limit (rows,)."""
+
+
+class SeparableLots(LotLines):
+    """Rows whose output is the sum or the product of what the lot and what the part does, exact for each by itself.
+
+    Equation: q(l) = g(l) + h at the quantile, or g(l) h
+    """
+
+    def __init__(self, split: LotsAndParts, relation: int, seed: int, lines: LineNumbers) -> None:
+        super().__init__(split, seed, lines)
+        self._product = relation == PRODUCT
+        self._lots = self._parts = None
+        self.faults = np.zeros(split.rows, dtype=np.intp)
+        if relation != LOTS_ALIKE:
+            self._lots = Lines(split.lots_alone, split.lots, self._lot_direction, self._lot_net)
+            self.faults = self._lots.faults
+            if self._product:
+                ends = np.stack(self._lots.bounds) * self.centre
+                self.faults = np.where((ends <= 0).any(axis=0) & (self.faults == 0), _SIGN, self.faults)
+        if relation != PARTS_ALIKE:
+            self._parts = Lines(split.parts_alone, split.parts, self._part_direction, self._part_net)
+            self.faults = np.where(self.faults > 0, self.faults, self._parts.faults)
+
+    def variance(self) -> VarianceSplit:
+        """Return how the variance of each row is split.
+
+        Equation: between² = Var g and within² = Var h for a sum; for a product, with v = Var/E² of each, between² ∝ v_g
+            and within² ∝ v_h (1 + v_g)
+        """
+        between, between_error = self._variance(self._lots)
+        within, within_error = self._variance(self._parts)
+        if self._product:
+            within, within_error = within * (1 + between), within_error * (1 + between)
+        return split_of(within, between, within_error, between_error)
+
+    def _variance(self, lines: Lines | None) -> tuple[Array, Array]:
+        """Return the variance over some lines, for a product over the squared mean, and its standard error."""
+        if lines is None:
+            return np.zeros(self.split.rows), np.zeros(self.split.rows)
+        moments = moments_of(lines)
+        size = np.abs(moments.mean) if self._product else np.ones(self.split.rows)
+        spread = moments.sd / size
+        error = 2 * spread * (moments.sd_error + (spread * moments.mean_error if self._product else 0.0)) / size
+        return spread * spread, error
+
+    def failing(self, limit: Array, acceptable: float) -> FailingLots:
+        """Return the share of lots with more than the acceptable share of parts over the limit (rows,)."""
+        quantile, error, faults = self.centre, np.zeros(self.split.rows), self.faults
+        if self._parts is not None:
+            found = quantiles_of(self._parts, np.array([1 - acceptable]))
+            quantile, error = found.output[0], found.output_error[0]
+            faults = _worse(faults, self._parts, found)
+        if self._lots is None:
+            share, unsure = step_at(quantile - limit, error)
+            return FailingLots(share=share, lots_error=np.zeros_like(share), parts_error=unsure, faults=faults)
+        if self._product:
+            ratio = quantile / self.centre
+            faults = np.where((ratio <= 0) & (faults == 0), _SIGN, faults)
+            threshold = limit / np.where(ratio > 0, ratio, 1.0)
+            error = error * np.abs(threshold / np.where(ratio > 0, quantile, 1.0))
+        else:
+            threshold = limit - (quantile - self.centre)
+        above = quantiles_at(self._lots, threshold[None])
+        faults = _worse(faults, self._lots, above)
+        return _failing(above, error, faults)
+
+
+class EntangledLots(LotLines):
+    """Rows in which lots and parts act together otherwise: crossings are corrected with the lots' own quantiles.
+
+    The same lines through the part inputs serve every lot, so that the quantile is smooth over the lots.
+    """
+
+    def __init__(self, split: LotsAndParts, seed: int, lines: LineNumbers) -> None:
+        super().__init__(split, seed, lines)
+        self._fewest = min(lines)
+        steady = (self._lot_direction.vector != 0).any(axis=0) & (self._part_direction.vector != 0).any(axis=0)
+        self.faults = np.where(steady, 0, _NO_GRADIENT)
+
+    def variance(self) -> VarianceSplit:
+        """Return how the variance of each row is split."""
+        return variance_split(self.split, self.seed, self._fewest)
+
+    def failing(self, limit: Array, acceptable: float) -> FailingLots:
+        """Return the share of lots with more than the acceptable share of parts over the limit (rows,)."""
+        quantiles = _LotQuantiles(self.split, self._part_direction, self._part_net, acceptable)
+        medians = quantiles({name: values[None] for name, values in self.split.lot_medians.items()}, self._every)
+        lines = _QuantileLines(
+            self._at_design_point(acceptable, medians[0]),
+            quantiles,
+            self.split.lots,
+            self._lot_direction,
+            self._lot_net,
+        )
+        above = quantiles_at(lines, limit[None])
+        faults = np.where(self.faults > 0, self.faults, lines.faults)
+        faults = _worse(np.where(faults > 0, faults, quantiles.faults), lines, above)
+        return _failing(above, quantiles.errors.reshape(lines.rows, -1).mean(axis=1), faults)
+
+    def _at_design_point(self, acceptable: float, quantile: Array) -> RowModel:
+        """Return the output of the lot inputs with the parts at their design point, moved to the medians' quantile.
+
+        Equation: y(l) = Y(l, p*) + q(l₀) − Y(l₀, p*), p* at the score Φ⁻¹(1 − a) α in the direction α of the parts
+        """
+        score = float(ndtri(np.clip(1 - acceptable, LEAST_PROBABILITY, 1 - LEAST_PROBABILITY)))
+        parts = {
+            name: self.split.parts.location[index]
+            + self.split.parts.scale[index]
+            * self.split.parts.shapes[index].standard_at(score * self._part_direction.vector[index])
+            for index, name in enumerate(self.split.parts.names)
+        }
+        fixed = holding(self.split.model, parts, self._every)
+        medians = fixed({name: values[None] for name, values in self.split.lot_medians.items()}, self._every)[0]
+        return lambda arguments, rows: fixed(arguments, rows) + (quantile - medians)[rows]
+
+
+class _LotQuantiles:
+    """The model of a lot's quantile: an output that depends on the lot inputs alone.
+
+    `errors` are the standard errors that it was last found with; `faults` (rows,) tells what kept lines from any lot.
+    """
+
+    def __init__(self, split: LotsAndParts, direction: LineDirection, net: Net, acceptable: float) -> None:
+        self._split = split
+        self._direction = direction
+        self._net = net
+        self._probability = np.array([1 - acceptable])
+        self.errors = np.zeros(0)
+        self.faults = np.zeros(split.rows, dtype=np.intp)
+
+    def __call__(self, arguments: Mapping[str, Array], rows: Indices) -> Array:
+        """Return the quantiles in lots (k, columns) by name; each column belongs to the row of its index."""
+        shape = next(iter(arguments.values())).shape
+        lots = {name: values.reshape(-1) for name, values in arguments.items()}
+        every = np.broadcast_to(rows, shape).reshape(-1)
+        step = max(_BLOCK // (len(NODES) * self._net.lines), 1)
+        pieces = [self._quantiles(lots, every, slice(start, start + step)) for start in range(0, len(every), step)]
+        quantiles, errors = (np.concatenate(values) for values in zip(*pieces, strict=True))
+        self.errors = errors
+        return np.asarray(quantiles).reshape(shape)
+
+    def _quantiles(self, lots: Mapping[str, Array], rows: Indices, chosen: slice) -> tuple[Array, Array]:
+        """Return the quantiles and their standard errors in some lots, (n,) each."""
+        rows = rows[chosen]
+        model = holding(self._split.model, {name: values[chosen] for name, values in lots.items()}, rows)
+        lines = Lines(model, self._split.parts.take(rows), self._direction.take(rows), self._net)
+        found = quantiles_of(lines, self._probability)
+        faults = _worse(lines.faults, lines, found)
+        np.maximum.at(self.faults, rows, faults)
+        return found.output[0], found.output_error[0]
+
+
+class _QuantileLines(Lines):
+    """Lines tabulated by a model that is near to another one, on which their crossings are corrected."""
+
+    def __init__(self, near: RowModel, exact: RowModel, inputs: Inputs, direction: LineDirection, net: Net) -> None:
+        super().__init__(near, inputs, direction, net)
+        self._model = exact
+
+
+def _failing(above: LineQuantiles, error: Array, faults: Indices) -> FailingLots:
+    """Return the share of lots beyond thresholds that are known with this standard error (rows,)."""
+    return FailingLots(
+        share=above.above[0],
+        lots_error=above.above_error[0] + above.density[0] * above.residual[0],
+        parts_error=above.density[0] * error,
+        faults=faults,
+    )
+
+
+def _worse(faults: Indices, lines: Lines, found: LineQuantiles) -> Indices:
+    """Return the faults, and that of steps where quantiles could not be found or are no numbers."""
+    lost = unresolved(lines, found) | ~np.isfinite(found.output[0] + found.output_error[0])
+    return np.where(lost & (faults == 0), STEPS, faults)
