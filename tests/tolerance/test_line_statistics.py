@@ -224,7 +224,7 @@ def level(dimensions):
 FAULTY = {
     hinged: "the output does not rise everywhere along its gradient at the median",
     broken: "the model is not finite within 8 standard deviations",
-    stepped: "the output has steps or dips between the points looked at",
+    stepped: "the output rises in steps",
     level: "the output has no gradient at the median",
 }
 

@@ -150,7 +150,7 @@ def fault_of(function, row):
 
 
 TWO = {"a": Normal(0, 1), "b": Normal(0, 1)}
-NO_GRADIENT, NOT_FINITE, NOT_RISING, STEPS = FAULTS[1:]
+NO_GRADIENT, NOT_FINITE, NOT_RISING, STEPS, BENDS, STEEP = FAULTS[1:]
 
 
 @pytest.mark.parametrize(
@@ -168,7 +168,7 @@ NO_GRADIENT, NOT_FINITE, NOT_RISING, STEPS = FAULTS[1:]
         (lambda a, b: a + b + 2e-2 * np.where(a + b > 4, 4 - a - b, 0) * 100, NOT_RISING),
         (lambda a, b: np.floor(a + b), STEPS),
         (lambda a, b: np.sign(a + b), STEPS),
-        (lambda a, b: a + b + 0.2 * np.sin(2 * np.pi * (a + b) / np.sqrt(2)), STEPS),
+        (lambda a, b: a + b + 0.2 * np.sin(2 * np.pi * (a + b) / np.sqrt(2)), STEEP),
     ],
 )
 def test_fault_is_detected(function, fault):

@@ -3,6 +3,7 @@
     line_direction      which way the lines of a row run
     line_points         where they pass: scores across the direction
     line_tables         the model along the lines, and what keeps lines from a row
+    line_smoothness     steps, bends and dips between the positions of a table
     line_quantiles      outputs and the probabilities above them
     line_moments        mean, sd, skewness and kurtosis
     line_shares         shares of variance

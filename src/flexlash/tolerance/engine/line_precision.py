@@ -89,7 +89,7 @@ def lines_needed(
 
 
 def unresolved(lines: Lines, decisive: LineQuantiles) -> Bools:
-    """Return of which rows (rows,) the quantiles could not be found, since the output has steps or dips."""
+    """Return of which rows (rows,) the quantiles could not be found, since the output jumps or is too steep."""
     return np.asarray((decisive.residual > SD_PRECISION * lines.scale).any(axis=0))
 
 

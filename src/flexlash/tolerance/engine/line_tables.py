@@ -19,6 +19,7 @@ from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Normal
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, LineDirection, RowModel, scores_across
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, Net
+from flexlash.tolerance.engine.line_smoothness import ALMOST_STRAIGHT, is_stepped, looked_closely
 from flexlash.tolerance.sampling import standard_error
 
 __all__ = ["FAR", "FAULTS", "NODES", "REACH", "STEP", "STEPS", "Lines"]
@@ -38,17 +39,20 @@ FAULTS = (
     "the output has no gradient at the median",
     "the model is not finite within 8 standard deviations",
     "the output does not rise everywhere along its gradient at the median",
-    "the output has steps or dips between the points looked at",
+    "the output rises in steps",
+    "the output bends sharply or stays the same over a part of its range",
+    "the output jumps, or rises too steeply for the points looked at",
 )
 """Why lines do not serve a row."""
 
-STEPS = len(FAULTS) - 1
+_NO_GRADIENT, _NOT_FINITE, _FALLS, _STEPPED, _BENDS, STEPS = range(1, len(FAULTS))
 
 _PROBED = np.array([-2.0, -1.0, 1.0])
 """Nodes after which the model is looked at once more."""
 
-_ASIDE = 0.4
-"""How far after them, in steps; not halfway, where a wave of the nodes' own length would hide."""
+_ASIDE = (3 - 5**0.5) / 2
+"""How far after them, in steps; not halfway, where a wave of the nodes' own length would hide, nor at a round number,
+where steps of one would."""
 
 _CUBIC = np.array([
     -_ASIDE * (_ASIDE - 1) * (_ASIDE - 2) / 6,
@@ -67,8 +71,8 @@ _DIP = 1e-9
 _ROUGH = 0.05
 """A model that lies this part of a step off the cubic through its neighbours may have steps of its own."""
 
-_LONE = 4.0
-"""A step along a line is a jump if it is this much greater than both its neighbours."""
+_LONE, _LONE_PART = 1.5, 0.01
+"""A step along a line may be a jump if it is this much greater than both its neighbours, and this part of the range."""
 
 _FLAT, _HIGH = 1e-12, 0.05
 """A line is flat where it rises less than the one part of its range, and has an edge where two positions on it rises
@@ -76,6 +80,9 @@ more than the other: limits that are approached smoothly take longer."""
 
 _BEYOND = 2.0
 """How much further from the mean lines beyond an evenly spaced coordinate may be than its last."""
+
+_LOOKED_AT = 64
+"""Lines of a row that are looked at closely where its table is uneven."""
 
 _BLOCK = 1 << 15
 
@@ -114,26 +121,52 @@ class Lines:
     def _faults(self, vector: Array, table: Array, probes: Array) -> Indices:
         """Return what keeps line sampling from each row, by its index in `FAULTS`."""
         step = np.diff(table, axis=0)
-        faults = np.where((vector != 0).any(axis=0), 0, 1)
+        faults = np.where((vector != 0).any(axis=0), 0, _NO_GRADIENT)
         if not (step.min() >= 0 and np.isfinite(probes).all()):
             # The usual table rises outright; only others are looked at more closely.
             finite = np.isfinite(table).all(axis=0) & np.isfinite(probes).all(axis=0)
-            faults = np.where(self._all_lines(finite) | (faults > 0), faults, 2)
-            size = np.abs(table).max(axis=0)
-            slack = _DIP * (table.max(axis=0) - table.min(axis=0)) + 64 * np.finfo(float).eps * size
-            faults = np.where(self._all_lines((step >= -slack).all(axis=0)) | (faults > 0), faults, 3)
+            faults = np.where(self._all_lines(finite) | (faults > 0), faults, _NOT_FINITE)
+            rises = (step >= -_slack(table)).all(axis=0)
+            faults = np.where(self._all_lines(rises) | (faults > 0), faults, _FALLS)
         before = table[np.add.outer(np.arange(-1, 3), np.searchsorted(NODES, _PROBED))]
         between = sum(weight * values for weight, values in zip(_CUBIC, before, strict=True))
-        off = self.mean_over_lines(np.abs(probes - between)).sum(axis=0)
+        off = np.abs(probes - between)
         around = self.mean_over_lines(before[2] - before[1]).sum(axis=0)
-        self.roughness = off / np.where(around > 0, around, 1.0)
-        rough = (self.roughness > _ROUGH) | ~self._all_lines(self._even(step))
-        return np.where(rough & (faults == 0), STEPS, faults)
+        self.roughness = self.mean_over_lines(off).sum(axis=0) / np.where(around > 0, around, 1.0)
+        look = np.flatnonzero((self.roughness > ALMOST_STRAIGHT) & (faults == 0))
+        faults[look[self._stepped(look, table)]] = _STEPPED
+        even = self._even(step)
+        for row in np.flatnonzero(((self.roughness > _ROUGH) | ~self._all_lines(even)) & (faults == 0)):
+            own = slice(row * self.lines, (row + 1) * self.lines)
+            worst = np.argsort(-off[:, own].sum(axis=0) - np.where(even[own], 0.0, np.inf), kind="stable")
+            faults[row] = self._uneven(own.start + worst[:_LOOKED_AT], table)
+        return faults
+
+    def _stepped(self, rows: Indices, table: Array) -> npt.NDArray[np.bool_]:
+        """Return which of these rows rise in steps, by one line of each replicate."""
+        if not len(rows):
+            return np.zeros(0, dtype=bool)
+        lines = np.add.outer(rows * self.lines, np.arange(LINE_REPLICATES) * (self.lines // LINE_REPLICATES))
+        return is_stepped(self._outputs_on, lines, NODES, table[:, lines.ravel()])
+
+    def _uneven(self, lines: Indices, table: Array) -> int:
+        """Return what keeps a row from these lines of its, whose tables are uneven; steep ones may still be smooth."""
+        own = table[:, lines]
+        # A single input has a quadrature of its own, finer than the table.
+        integrated = own if len(self.inputs.names) > 1 else None
+        found = looked_closely(self._outputs_on, lines, NODES, integrated, _slack(own))
+        faults = {_FALLS: found.falls, _STEPPED: found.jumps, _BENDS: found.bends, STEPS: found.steep}
+        return next((fault for fault, is_found in faults.items() if is_found), 0)
+
+    def _outputs_on(self, lines: Indices, positions: Array) -> Array:
+        """Return the outputs (k, n) on some n lines at positions (k, 1) or (k, n)."""
+        arguments = {name: self._values(index, positions, lines) for index, name in enumerate(self.inputs.names)}
+        return self._model(arguments, self._row_of[lines])
 
     def _even(self, step: Array) -> npt.NDArray[np.bool_]:
         """Return which lines have neither a lone step, far above both its neighbours, nor an edge to a flat part."""
         inner = step[1:-1]
-        lone = (inner > _LONE * np.maximum(step[:-2], step[2:])) & (inner >= _HIGH * step.sum(axis=0))
+        lone = (inner > _LONE * np.maximum(step[:-2], step[2:])) & (inner >= _LONE_PART * step.sum(axis=0))
         apart = round(2 / STEP)
         flat = step <= _FLAT * step.sum(axis=0)
         high = step >= _HIGH * step.sum(axis=0)
@@ -156,7 +189,7 @@ class Lines:
             output[:, block] = self._model(arguments, self._row_of[block])
         return output
 
-    def _values(self, index: int, along: Array, block: slice) -> Array:
+    def _values(self, index: int, along: Array, block: slice | Indices) -> Array:
         """Return an input at positions along some lines; that of a normal is a straight line itself."""
         values = self._direction[index, block] * along
         values += self._origin[index, block]
@@ -236,6 +269,12 @@ class Lines:
         position = NODES[0] + STEP * (base + part)
         outside = np.where(passed == 0, -FAR, FAR)
         return np.where(inside, position, outside), slope
+
+
+def _slack(table: Array) -> Array:
+    """Return within what a fall along each line is rounding, (lines,)."""
+    size = np.abs(table).max(axis=0)
+    return np.asarray(_DIP * (table.max(axis=0) - table.min(axis=0)) + 64 * np.finfo(float).eps * size)
 
 
 def _slope(part: Array, rise: Array, bend: Array, twist: Array, secant: Array) -> Array:
