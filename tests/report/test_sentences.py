@@ -414,3 +414,12 @@ def test_long_names_that_were_not_computed_stay_apart(told):
     said = told({}, *({"variant": name, "torque_Nm": ""} for name in names))["Computed"]
     first, second = re.findall(r"“([^”]+)”", said)
     assert first != second
+
+
+UNCERTAIN = "Which of the first two causes more is not certain"
+
+
+def test_a_lead_within_the_error_is_told(told):
+    """Where the main cause leads by less than the error of few points it is said so, and by lines it is not."""
+    assert UNCERTAIN in told({}, method="random", samples=64)["Why"]
+    assert UNCERTAIN not in told({})["Why"]

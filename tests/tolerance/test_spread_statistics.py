@@ -242,7 +242,12 @@ def test_exact_and_scattering_variants_have_the_same_statistics(method):
     """Whether or not anything scatters the same statistics are reported, indices and number of points apart."""
     for limit in (None, 1.1e-3):
         exact, scattering = (spread(limits, limit=limit, method=method).numbers for limits in ({}, LIMITS))
-        assert set(scattering) - set(exact) <= {"ppk", "ppk_normal", "spread_points"}
+        assert set(scattering) - set(exact) <= {
+            "ppk",
+            "ppk_normal",
+            "spread_points",
+            "main_contributor_share_standard_error",
+        }
         assert set(exact) <= set(scattering)
 
 

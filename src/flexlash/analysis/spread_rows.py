@@ -28,7 +28,7 @@ class SpreadRows(RowRecords[SpreadStatistics]):
     """Statistics by row number, which rises.
 
     `frame` has the column `row`, one for each number and text, and for each dimension those of its shares and of its
-    swing; null is what a row has not.
+    swing; null is what a row has not. Of the errors of shares only that of the greatest is kept, among the numbers.
     """
 
     frame: pl.DataFrame

@@ -64,6 +64,9 @@ class SpreadStatistics:
     ) -> SpreadStatistics:
         """Return the statistics with the numbers that follow from others; NaN is none, `size` lines or points."""
         kept: dict[str, float | None] = {name: value for name, value in numbers.items() if not math.isnan(value)}
+        main = max(shares.first, key=lambda name: shares.first[name], default=None)
+        if main is not None:
+            kept["main_contributor_share_standard_error"] = shares.first_error[main]
         if limit is not None:
             kept["ppk"] = ppk_upper(limit, numbers["p50"], numbers["p99_865"])
             kept["ppk_normal"] = ppk_normal(limit, numbers["mean"], numbers["sd"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
@@ -16,7 +17,8 @@ from flexlash.report.wording.advice import stiffening, tightening
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows, rough, summary_facts
 from flexlash.report.wording.verdict_sentences import failing, sureness
 from flexlash.schema.findings import CATALOGUE, spelled_out
-from flexlash.schema.number_words import angle_words
+from flexlash.schema.number_words import INTERVAL, angle_words
+from flexlash.tolerance.spread_statistics import SpreadStatistics
 
 __all__ = ["FINDINGS", "cause_of", "sentences"]
 
@@ -126,6 +128,15 @@ def cause_of(facts: SummaryFacts, row: Row) -> Iterator[str]:
     named = ranked[:1] + [cause for cause in ranked[1:_CAUSES] if shares[cause] >= _LEAST_CAUSE]
     if named:
         yield f"The spread of {name} comes from {_parts(row, {cause: shares[cause] for cause in named})}."
+    if spread and named and _undecided(spread, ranked):
+        yield "Which of the first two causes more is not certain: they differ by less than the errors of their shares."
+
+
+def _undecided(spread: SpreadStatistics, ranked: Sequence[str]) -> bool:
+    """Whether the shares of the first two causes may change places within their 95 % errors, taken as alike."""
+    first, second, *_ = *(spread.shares[cause] for cause in ranked), 0.0, 0.0
+    error = spread.numbers.get("main_contributor_share_standard_error") or 0.0
+    return first - second < INTERVAL * math.sqrt(2) * error
 
 
 def _parts(row: Row, shares: dict[str, float]) -> str:
