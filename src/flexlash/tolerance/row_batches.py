@@ -21,6 +21,7 @@ from flexlash.tolerance.dimension_limits import distributions
 from flexlash.tolerance.engine.line_direction import Indices, Inputs
 from flexlash.tolerance.engine.line_statistics import line_statistics
 from flexlash.tolerance.propagate import NOT_LINES
+from flexlash.tolerance.row_lots import with_lots
 from flexlash.tolerance.sampled_spread import SampledSpread
 from flexlash.tolerance.sampling import SamplingPlan, UnitPoints
 from flexlash.tolerance.sensitivity import first_order_sd, first_order_valid, worst_case
@@ -35,13 +36,15 @@ _ROWS_PER_BATCH = 200
 class TolerancedRow:
     """A row to be spread [SI]: the model of its output, entered dimensions, their limits, the greatest output allowed.
 
-    `model` takes dimensions by name, floats or arrays of one shape. Dimensions without limits are exact.
+    `model` takes dimensions by name, floats or arrays of one shape. Dimensions without limits are exact. `between`
+    names the dimensions that are one value for a whole lot; without it nothing is told of lots.
     """
 
     model: Callable[[Mapping[str, Array | float]], Array]
     nominal: Mapping[str, float]
     limits: Mapping[str, Limits]
     upper_limit: float | None = None
+    between: frozenset[str] | None = None
 
 
 def batches_alike(rows: Sequence[TolerancedRow]) -> Iterator[list[int]]:
@@ -49,7 +52,7 @@ def batches_alike(rows: Sequence[TolerancedRow]) -> Iterator[list[int]]:
     alike: dict[tuple[Any, ...], list[int]] = {}
     for index, row in enumerate(rows):
         shapes = tuple((name, distribution.shape) for name, distribution in distributions(row.limits).items())
-        alike.setdefault((row.model, tuple(row.nominal), tuple(row.limits), shapes), []).append(index)
+        alike.setdefault((row.model, tuple(row.nominal), tuple(row.limits), shapes, row.between), []).append(index)
     for indices in alike.values():
         for start in range(0, len(indices), _ROWS_PER_BATCH):
             yield indices[start : start + _ROWS_PER_BATCH]
@@ -60,7 +63,8 @@ def batch_statistics(rows: Sequence[TolerancedRow], plan: SamplingPlan) -> list[
     batch = RowBatch(rows)
     if not batch.limits:
         outputs = np.broadcast_to(batch.output(batch.centre), len(rows))
-        return [exact_statistics(float(output), row.upper_limit) for output, row in zip(outputs, rows, strict=True)]
+        exact = [exact_statistics(float(output), row.upper_limit) for output, row in zip(outputs, rows, strict=True)]
+        return batch.with_lots(exact, plan)
     statistics: dict[int, SpreadStatistics] = {}
     notes = dict.fromkeys(range(len(rows)), "")
     if plan.method == "line":
@@ -79,7 +83,8 @@ def batch_statistics(rows: Sequence[TolerancedRow], plan: SamplingPlan) -> list[
         if plan.cross_check and plan.method != "random":
             plain = batch.sampled(index, plan.points("random"))
             statistics[index] = cross_checked(statistics[index], plain, limit_of_row)
-    return batch.with_first_order([statistics[index] for index in notes], plan.coverage)
+    told = batch.with_lots([statistics[index] for index in notes], plan)
+    return batch.with_first_order(told, plan.coverage)
 
 
 class RowBatch:
@@ -90,6 +95,8 @@ class RowBatch:
 
     def __init__(self, rows: Sequence[TolerancedRow]) -> None:
         self._model = rows[0].model
+        self._between = rows[0].between
+        self._upper_limits = [row.upper_limit for row in rows]
         self.inputs = [distributions(row.limits) for row in rows]
         limits = {name: [row.limits[name] for row in rows] for name in rows[0].limits}
         self.centre = {name: np.array([row.nominal[name] for row in rows]) for name in rows[0].nominal}
@@ -113,6 +120,12 @@ class RowBatch:
             return self.outputs_of(varied, np.array([row]))
 
         return SampledSpread(model=model, inputs=self.inputs[row], points=points)
+
+    def with_lots(self, statistics: list[SpreadStatistics], plan: SamplingPlan) -> list[SpreadStatistics]:
+        """Return the rows' statistics with what lots and parts have of them, where it is said what lots share."""
+        if self._between is None:
+            return statistics
+        return with_lots(self.outputs_of, self.inputs, self._between, statistics, self._upper_limits, plan=plan)
 
     def with_first_order(self, statistics: Sequence[SpreadStatistics], coverage: float) -> list[SpreadStatistics]:
         """Return the rows' statistics with what limits and first derivatives say beside them."""

@@ -41,8 +41,8 @@ class SamplingPlan:
     """How the spread of rows is sampled; two equal plans give every row the same numbers.
 
     `inputs` names all that may vary in any row; `samples` counts the lines or points in all, None for as many as the
-    method needs. `coverage` is the probability of the coverage interval. `cross_check` puts plain Monte Carlo beside
-    the method.
+    method needs. `coverage` is the probability of the coverage interval, `acceptable` the share of parts over the limit
+    from which a lot fails. `cross_check` puts plain Monte Carlo beside the method.
     """
 
     method: Method
@@ -50,6 +50,7 @@ class SamplingPlan:
     samples: int | None = None
     seed: int = 0
     coverage: float = 0.95
+    acceptable: float = 1350e-6
     cross_check: bool = False
 
     def points(self, method: PointMethod) -> UnitPoints:

@@ -146,7 +146,8 @@ class _Search:
     ) -> tuple[Indices, list[tuple[LineNumbers, Indices]]]:
         """Fill in what these lines find; return the rows that are lost, and those that want more, with how many."""
         lost, wanting = [np.empty(0, dtype=np.intp)], []
-        for block in _blocks(rows, max(numbers) * len(NODES)):
+        # Lots are corrected in rounds, of which a row beside others may see more: there each row is alone.
+        for block in _blocks(rows, _BLOCK if way == OTHERWISE else max(numbers) * len(NODES)):
             lines = self._lines(way, numbers, block)
             sound = np.flatnonzero(lines.faults == 0)
             own = block[sound]
