@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
 
-from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.engine.line_direction import Inputs, RowModel
 from flexlash.tolerance.engine.line_spread import LinesUnsuitable
 from flexlash.tolerance.engine.line_tables import FAULTS
@@ -17,7 +16,7 @@ from flexlash.tolerance.lots import AllLots, AllParts, Division, Lots, OverLimit
 from flexlash.tolerance.point_lots import PointLots, division_of
 from flexlash.tolerance.spread import Method
 
-__all__ = ["NOT_LINES", "lots_of"]
+__all__ = ["NOT_LINES", "lots_of", "require_lots_apart"]
 
 NOT_LINES = "Lots by points instead of lines"
 
@@ -27,7 +26,7 @@ _WANTED_FAILING = replace(_WANTED, sd=np.inf)
 
 def lots_of(
     model: RowModel,
-    inputs: Mapping[str, Distribution],
+    inputs: Inputs,
     between: Collection[str],
     method: Method,
     *,
@@ -41,9 +40,9 @@ def lots_of(
     """
     if not between:
         return AllParts(), ()
-    if len(between) == len(inputs):
+    if len(between) == len(inputs.names):
         return AllLots(), ()
-    split = LotsAndParts(model, Inputs.of([inputs]), between)
+    split = LotsAndParts(model, inputs, between)
     if method != "line":
         return PointLots(split, method, samples, seed), ()
     points = PointLots(split, "sobol", None, seed)
@@ -51,6 +50,18 @@ def lots_of(
         return LineLots(split, samples, seed, points), ()
     except LinesUnsuitable as reason:
         return points, (f"{NOT_LINES}: {reason}.",)
+
+
+def require_lots_apart(inputs: Inputs, between: Collection[str]) -> None:
+    """Raise ValueError where an input that is one value for a lot is correlated with one that is not."""
+    if inputs.factor is None:
+        return
+    for lot, part in np.argwhere(inputs.factor @ inputs.factor.T).tolist():
+        if inputs.names[lot] in between and inputs.names[part] not in between:
+            raise ValueError(
+                f"correlation ties {inputs.names[lot]}, which is one value for a lot, to {inputs.names[part]}, which "
+                "differs from part to part: inputs that both differ between lots or both do not are required"
+            )
 
 
 class LineLots(Lots):

@@ -15,7 +15,7 @@ from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.sampling import UnitPoints, standard_error
 from flexlash.tolerance.variance_shares import VarianceShares
 
-__all__ = ["Evaluate", "sampled_shares"]
+__all__ = ["FEWEST_POINTS", "MISSING", "MORE", "SHARE_PRECISION", "STOPPED", "Evaluate", "sampled_shares"]
 
 SHARE_PRECISION = 5e-3
 """Standard error wanted of every share."""
@@ -23,13 +23,13 @@ SHARE_PRECISION = 5e-3
 FEWEST_POINTS = 256
 """Points of each set in each replicate to begin with."""
 
-_MORE = 4
+MORE = 4
 """How many times more points are crossed where errors are too great."""
 
-_STOPPED = 0.3
+STOPPED = 0.3
 """Part by which errors are widened that stopped just at what was wanted, since some come out small by chance."""
 
-_MISSING = 4.0
+MISSING = 4.0
 """By how many standard errors total indices may fall short of 1 together, which exact ones never do."""
 
 Evaluate = Callable[[Mapping[str, Array]], Array]
@@ -62,12 +62,12 @@ def sampled_shares(
         shares = parts.mean(axis=2)
         # A share moves with the variance as well as with its part of it.
         errors = standard_error(parts - shares[:, :, None] * by_replicate)
-        missing = max(1 - shares[1].sum() - _MISSING * errors[1].sum(), 0.0)
+        missing = max(1 - shares[1].sum() - MISSING * errors[1].sum(), 0.0)
         excess = errors.max() / SHARE_PRECISION
-        errors = errors * (1 + _STOPPED * min(excess, 1) ** 2) + missing
+        errors = errors * (1 + STOPPED * min(excess, 1) ** 2) + missing
         if (missing == 0 and excess <= 1) or count == points.share_count:
             return VarianceShares.of(inputs, np.clip(np.concatenate([shares, errors]), 0, 1))
-        count = min(_MORE * count, points.share_count)
+        count = min(MORE * count, points.share_count)
 
 
 def _parts(evaluate: Evaluate, inputs: Mapping[str, Distribution], points: UnitPoints, base: Array) -> Array:

@@ -16,6 +16,7 @@ from scipy.special import ndtri
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.capability import clopper_pearson
+from flexlash.tolerance.correlated_sampled_shares import correlated_sampled_shares
 from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.sampled_shares import sampled_shares
 from flexlash.tolerance.sampling import UnitPoints, standard_error
@@ -35,7 +36,7 @@ class SampledSpread(Spread):
     `values` has the shape (replicates, points); quantiles are of type 7 (Excel's PERCENTILE.INC, numpy's default).
     Standard errors of Sobol' points come from the replicates, which are independent of one another; those of
     plain Monte Carlo from the theory of independent draws. Raises ValueError for a model that returns another shape or
-    a number that is not finite.
+    a number that is not finite. `factor` (inputs, inputs) makes the scores of correlated inputs.
     """
 
     def __init__(
@@ -45,13 +46,15 @@ class SampledSpread(Spread):
         inputs: Mapping[str, Distribution],
         points: UnitPoints,
         notes: tuple[str, ...] = (),
+        factor: Array | None = None,
     ) -> None:
         self._model = model
         self._inputs = inputs
         self._points = points
         self.method = points.method
         self.notes = notes
-        self.values = _evaluate(model, {name: points.standard(name, inputs[name]) for name in inputs}, inputs)
+        self._factor = factor
+        self.values = _evaluate(model, points.standards(inputs, factor), inputs)
         self.size = self.values.size
 
     @cached_property
@@ -188,6 +191,8 @@ class SampledSpread(Spread):
         def outputs(standard: Mapping[str, Array]) -> Array:
             return _evaluate(self._model, standard, self._inputs)
 
+        if self._factor is not None:
+            return correlated_sampled_shares(outputs, self._inputs, self._factor, self._points, self.values)
         return sampled_shares(outputs, self._inputs, self._points, self.values)
 
 

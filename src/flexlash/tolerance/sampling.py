@@ -6,7 +6,7 @@ wall thickness in the same draw. Points come in independent replicates, whose sc
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import Literal
@@ -15,6 +15,7 @@ import numpy as np
 from scipy.special import ndtri, stdtrit
 
 from flexlash.schema.arrays import Array
+from flexlash.tolerance.correlation import correlated_scores
 from flexlash.tolerance.digital_nets import scrambled_net
 from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.spread import Method
@@ -117,6 +118,26 @@ class UnitPoints:
     def size(self) -> int:
         """Points in all replicates together."""
         return REPLICATES * self.count
+
+    def standards(
+        self, inputs: Mapping[str, Distribution], factor: Array | None = None, points: PointSet = "all"
+    ) -> dict[str, Array]:
+        """Return the standard values of inputs, (replicates, points) each.
+
+        `factor` (inputs, inputs) makes the scores of correlated inputs; others have the values that they have alone.
+        """
+        if factor is None:
+            return {name: self.standard(name, distribution, points) for name, distribution in inputs.items()}
+        own = (factor == np.eye(len(factor))).all(axis=1)
+        scores = self.scores(list(inputs), factor, points)
+        return {
+            name: self.standard(name, inputs[name], points) if alone else inputs[name].standard_at(score)
+            for name, alone, score in zip(inputs, own, scores, strict=True)
+        }
+
+    def scores(self, names: Sequence[str], factor: Array, points: PointSet) -> Array:
+        """Return correlated scores (inputs, replicates, points)."""
+        return np.stack(correlated_scores(factor, [ndtri(self._sets[points][name]) for name in names]))
 
     def standard(self, name: str, distribution: Distribution, points: PointSet = "all") -> Array:
         """Return the standard values of a distribution at a name's points, (replicates, points)."""

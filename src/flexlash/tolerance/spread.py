@@ -90,7 +90,10 @@ class Spread(ABC):
 
     @property
     def shares(self) -> dict[str, float]:
-        """First-order Sobol' index of each input: the share of variance it causes by itself."""
+        """First-order Sobol' index of each input: the share of variance it causes by itself.
+
+        Correlated inputs share out the index of their cluster, by Shapley's value (`correlated_shares`).
+        """
         return self.variance_shares.first
 
     @property
@@ -100,7 +103,7 @@ class Spread(ABC):
 
     @property
     def total_shares(self) -> dict[str, float]:
-        """Total Sobol' index of each input: the share of variance it has any part in."""
+        """Total Sobol' index of each input: the share of variance it has any part in; as `shares` where correlated."""
         return self.variance_shares.total
 
     @property

@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import nnls
 
 from flexlash.schema.arrays import Array
+from flexlash.tolerance.correlation import correlated_scores
 from flexlash.tolerance.distributions import Distribution, Normal
 
 __all__ = ["Indices", "Inputs", "LineDirection", "RowModel", "direction_of", "scores_across"]
@@ -19,6 +21,13 @@ _SECANT = np.array([-1.5, -0.75, 0.75, 1.5])
 _SLANT = 0.1
 """The input that closes the plane has at least this part of the greatest squared component of the direction."""
 
+_FOLLOWS = 1 - 1e-9
+"""Correlation from which an input follows another."""
+
+_SINGULAR = 1e-6
+_GOES = 0.2
+"""The least part of its own rise by which an input goes along with others; tried from 0 to 1 on sums and products."""
+
 Indices = npt.NDArray[np.intp]
 RowModel = Callable[[Mapping[str, Array], Indices], Array]
 """The outputs (k, columns) at inputs (k, columns) by name; each column belongs to the row of that index."""
@@ -28,16 +37,18 @@ RowModel = Callable[[Mapping[str, Array], Indices], Array]
 class Inputs:
     """What varies in rows alike: distributions of the same shapes, each with a location and a scale per row.
 
-    `location` and `scale` are (inputs, rows).
+    `location` and `scale` are (inputs, rows). `factor` (inputs, inputs) makes the inputs' correlated scores out of
+    independent ones, where directions, nets and lines are; None where the inputs are independent.
     """
 
     names: tuple[str, ...]
     shapes: tuple[Distribution, ...]
     location: Array
     scale: Array
+    factor: Array | None = None
 
     @classmethod
-    def of(cls, rows: Sequence[Mapping[str, Distribution]]) -> Inputs:
+    def of(cls, rows: Sequence[Mapping[str, Distribution]], factor: Array | None = None) -> Inputs:
         """Return the inputs of rows whose distributions have the same names and shapes."""
         names = tuple(rows[0])
         return cls(
@@ -45,6 +56,7 @@ class Inputs:
             shapes=tuple(rows[0].values()),
             location=np.array([[row[name].location for row in rows] for name in names]),
             scale=np.array([[row[name].scale for row in rows] for name in names]),
+            factor=factor,
         )
 
     @property
@@ -54,8 +66,13 @@ class Inputs:
 
     @property
     def single_curved(self) -> bool:
-        """Whether all distributions but one are normal, so that the output curves with one score alone."""
-        return [shape.shape != Normal.shape for shape in self.shapes].count(True) == 1
+        """Whether all that is not normal follows one independent score, so that the output curves with it alone."""
+        curved = np.array([shape.shape != Normal.shape for shape in self.shapes])
+        return bool(np.count_nonzero(curved if self.factor is None else self.factor[curved].any(axis=0)) == 1)
+
+    def correlated(self, scores: Array) -> Array:
+        """Return the scores of the inputs (inputs, …) that independent scores (inputs, …) make."""
+        return scores if self.factor is None else np.stack(correlated_scores(self.factor, list(scores)))
 
     def take(self, rows: Indices) -> Inputs:
         """Return some of the rows."""
@@ -84,22 +101,19 @@ def direction_of(model: RowModel, inputs: Inputs) -> LineDirection:
     What lines do not even out is the curvature of the output in the single inputs: the more curved, the earlier an
     input comes in the order, so that the best coordinates of the net serve it.
 
-    Equation: αᵢ ∝ y(uᵢ = 1.5) − y(uᵢ = −1.5), the others at their medians
+    Equation: αᵢ ∝ y(zᵢ = 1.5) − y(zᵢ = −1.5), the other independent scores at 0
     Arguments: model and inputs of rows alike.
     Valid: any model; an output that changes by less than rounding has no direction.
     Source: Koutsourelakis, Pradlwarter and Schuëller 2004 take the gradient; secants see past small waves.
     """
-    count = len(inputs.names)
-    probes = len(_SECANT)
-    arguments = {}
-    for index, name in enumerate(inputs.names):
-        score = np.zeros((probes * count, 1))
-        score[probes * index : probes * (index + 1), 0] = _SECANT
-        standard = inputs.shapes[index].standard_at(score)
-        arguments[name] = inputs.location[index] + inputs.scale[index] * standard
-    output = model(arguments, np.arange(inputs.count)).reshape(count, probes, inputs.count)
-    low, inner_low, inner_high, high = (output[:, probe] for probe in range(probes))
+    output = _probed(model, inputs)
+    low, inner_low, inner_high, high = (output[:, probe] for probe in range(len(_SECANT)))
     rise = (high - low) / 2
+    if inputs.factor is not None and any(shape.shape != Normal.shape for shape in inputs.shapes):
+        correlations = inputs.factor @ inputs.factor.T
+        followers = np.where(np.abs(correlations) > _FOLLOWS, correlations, 0.0)
+        alone = _probed(model, replace(inputs, factor=followers))
+        rise = _with_every_input(rise, inputs.factor, alone[:, -1] - alone[:, 0])
     curvature = np.abs(high - low - 2 * (inner_high - inner_low)) + np.abs(high + low - inner_high - inner_low)
     length = np.sqrt(np.cumsum(rise * rise, axis=0)[-1])
     noise = 64 * np.finfo(float).eps * np.abs(output).max(axis=(0, 1))
@@ -109,6 +123,44 @@ def direction_of(model: RowModel, inputs: Inputs) -> LineDirection:
     last = np.argmin(np.where(slant >= _SLANT * slant.max(axis=0), curvature, np.inf), axis=0)
     curvature[last, np.arange(inputs.count)] = -1.0
     return LineDirection(vector=vector, order=np.argsort(-curvature, axis=0, kind="stable"))
+
+
+def _probed(model: RowModel, inputs: Inputs) -> Array:
+    """Return the outputs (inputs, secants, rows) with one independent score after the other at the secants."""
+    count, probes = len(inputs.names), len(_SECANT)
+    scores = np.zeros((count, probes * count, 1))
+    for index in range(count):
+        scores[index, probes * index : probes * (index + 1), 0] = _SECANT
+    scores = inputs.correlated(scores)
+    arguments = {
+        name: inputs.location[index] + inputs.scale[index] * inputs.shapes[index].standard_at(scores[index])
+        for index, name in enumerate(inputs.names)
+    }
+    return np.asarray(model(arguments, np.arange(inputs.count)).reshape(count, probes, inputs.count))
+
+
+def _with_every_input(rise: Array, factor: Array, alone: Array) -> Array:
+    """Return the nearest rise along which every input moves the way in which it raises the output by itself.
+
+    Where inputs are correlated the output may rise fastest while one of them goes the wrong way, pulled by the others;
+    near the limits of bounded inputs it would then fall. Any direction serves lines, if the output only rises along it.
+
+    Equation: the α nearest to d with sᵢ (L α)ᵢ ≥ κ |gᵢ|: α = d + Aᵀ λ with the λ ≥ 0 that makes ‖d − κ L⁻¹ g + Aᵀ λ‖
+        least, A = diag(s) L
+    Arguments: the rise d by independent scores, the rise g with the signs s by each input with those that follow it,
+        (inputs, rows) each; the factor L.
+    Valid: rows whose rise is finite; one along which no input goes the wrong way stays as it is.
+    Source: projection on a polyhedral cone by its dual (Moreau 1962), non-negative least squares (Lawson and Hanson).
+    """
+    nearest = rise.copy()
+    inverse = np.linalg.pinv(factor, rcond=_SINGULAR)
+    for row, (wanted, own) in enumerate(zip(rise.T, alone.T, strict=True)):
+        ways = np.sign(own)[:, None] * factor
+        if np.isfinite(wanted).all() and np.isfinite(own).all() and (ways @ wanted).min() < 0:
+            least = _GOES * (inverse @ own)
+            pull, _ = nnls(ways.T, least - wanted)
+            nearest[:, row] = wanted + ways.T @ pull
+    return nearest
 
 
 def scores_across(direction: LineDirection, net: Array) -> Array:

@@ -203,10 +203,10 @@ class EntangledLots(LotLines):
         Equation: y(l) = Y(l, p*) + q(l₀) − Y(l₀, p*), p* at the score Φ⁻¹(1 − a) α in the direction α of the parts
         """
         score = float(ndtri(np.clip(1 - acceptable, LEAST_PROBABILITY, 1 - LEAST_PROBABILITY)))
+        scores = self.split.parts.correlated(score * self._part_direction.vector)
         parts = {
             name: self.split.parts.location[index]
-            + self.split.parts.scale[index]
-            * self.split.parts.shapes[index].standard_at(score * self._part_direction.vector[index])
+            + self.split.parts.scale[index] * self.split.parts.shapes[index].standard_at(scores[index])
             for index, name in enumerate(self.split.parts.names)
         }
         fixed = holding(self.split.model, parts, self._every)

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from flexlash.schema.arrays import Array
+from flexlash.tolerance.engine.correlated_line_shares import correlated_line_shares
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, mirrored_net, normal_density
 from flexlash.tolerance.sampling import standard_error
@@ -44,10 +45,12 @@ def line_shares(model: RowModel, inputs: Inputs, variance: tuple[Array, Array], 
     Equation: Sᵢ = Var(E[y | xᵢ])/Var y, Sᵢᵀ = E[Var(y | all but xᵢ)]/Var y
     Arguments: model and inputs of rows alike; variance of the output and its standard error (rows,) in its squared
         unit; seed of the points.
-    Valid: independent inputs; an output smooth in the scores, or the difference to half as many nodes tells its error.
-        Where `MOST_POINTS` do not reach `SHARE_PRECISION`, the error is what it is.
+    Valid: an output smooth in the scores, or the difference to half as many nodes tells its error; correlated
+        inputs go to `correlated_line_shares`. Where `MOST_POINTS` do not reach `SHARE_PRECISION`, the error is large.
     Source: Sobol' 1993; Homma and Saltelli 1996.
     """
+    if inputs.factor is not None:
+        return correlated_line_shares(model, inputs, variance, seed)
     found = np.zeros((4, *inputs.location.shape))
     if len(inputs.names) == 1:
         found[:2] = variance[0] > 0

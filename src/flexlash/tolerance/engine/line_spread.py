@@ -44,9 +44,17 @@ class LineSpread(Spread):
 
     method = "line"
 
-    def __init__(self, model: RowModel, inputs: Mapping[str, Distribution], *, samples: int | None, seed: int) -> None:
+    def __init__(
+        self,
+        model: RowModel,
+        inputs: Mapping[str, Distribution],
+        *,
+        samples: int | None,
+        seed: int,
+        factor: Array | None = None,
+    ) -> None:
         self._model = model
-        self._inputs = Inputs.of([inputs])
+        self._inputs = Inputs.of([inputs], factor)
         self._seed = seed
         with np.errstate(all="ignore"):
             direction = direction_of(model, self._inputs)

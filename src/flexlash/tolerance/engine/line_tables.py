@@ -102,8 +102,9 @@ class Lines:
         self.lines = net.lines
         self._net = net
         self._row_of = np.repeat(np.arange(self.rows), self.lines)
-        self._origin = scores_across(direction, net.scores).reshape(len(inputs.names), -1)
-        self._direction = direction.vector[:, self._row_of]
+        # What is straight in independent scores is straight in correlated ones.
+        self._origin = inputs.correlated(scores_across(direction, net.scores).reshape(len(inputs.names), -1))
+        self._direction = inputs.correlated(direction.vector[:, self._row_of])
         self._location = inputs.location[:, self._row_of]
         self._scale = inputs.scale[:, self._row_of]
         self._far = np.abs(self._origin).max(axis=1) + FAR * np.abs(self._direction).max(axis=1) > REACH

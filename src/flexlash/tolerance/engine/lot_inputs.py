@@ -122,19 +122,21 @@ def of_rows(model: RowModel, rows: Indices) -> RowModel:
 
 
 def _chosen(inputs: Inputs, group: Indices) -> Inputs:
-    """Return some of the inputs."""
+    """Return some of the inputs, which none outside them is correlated with."""
     return replace(
         inputs,
         names=tuple(inputs.names[index] for index in group),
         shapes=tuple(inputs.shapes[index] for index in group),
         location=inputs.location[group],
         scale=inputs.scale[group],
+        factor=None if inputs.factor is None else inputs.factor[np.ix_(group, group)],
     )
 
 
 def values_at(inputs: Inputs, scores: Array, shape: tuple[int, ...] | None = None) -> dict[str, Array]:
-    """Return inputs by name at scores (inputs, k, 1), (k, rows) each, or in another shape."""
+    """Return inputs by name at independent scores (inputs, k, 1), (k, rows) each, or in another shape."""
     values = {}
+    scores = inputs.correlated(scores)
     for index, name in enumerate(inputs.names):
         value = inputs.location[index] + inputs.scale[index] * inputs.shapes[index].standard_at(scores[index])
         values[name] = value if shape is None else value.reshape(shape)

@@ -122,7 +122,7 @@ def _on_lines(inputs: Inputs, direction: LineDirection, seed: int, lines: int, s
     weight = normal_density(position) * net.weights.reshape(LINE_REPLICATES, -1, 1)
     weight = weight.reshape(LINE_REPLICATES, -1)
     origin = scores_across(direction, net.scores).reshape(*direction.vector.shape, LINE_REPLICATES, -1, 1)
-    scores = origin + direction.vector[:, :, None, None, None] * position
+    scores = inputs.correlated(origin + direction.vector[:, :, None, None, None] * position)
     values = {}
     for index, name in enumerate(inputs.names):
         standard = inputs.shapes[index].standard_at(scores[index].reshape(inputs.count, LINE_REPLICATES, -1))

@@ -1,0 +1,65 @@
+"""The B3-160 flexspline with wall and disk thickness correlated: references of 3e-9 rad.
+
+Source: the model of `test_tolerance_model.py` with Pearson's correlation 0, 0.5, 0.8 and 1 between the two uniform
+thicknesses, that of their normal scores being 2 sin(π ρ/6). Backlash 2U: sd in 1e-5 rad, percentiles in 1e-3 rad.
+"""
+
+import math
+
+import pytest
+
+from flexlash.mechanics.flexspline import backlash
+from flexlash.tolerance import Normal, Uniform, propagate
+
+SCATTER = {
+    "cylinder_length": Uniform(low=0.1598, high=0.1602),
+    "wall_thickness": Uniform(low=0.00155, high=0.00165),
+    "disk_thickness": Uniform(low=0.00155, high=0.00165),
+    "mean_radius": Normal(mean=0.080, sd=2e-5),
+    "disk_inner_radius": Uniform(low=0.03985, high=0.04015),
+    "youngs_modulus": Normal(mean=211e9, sd=2.11e9),
+    "poisson_ratio": Uniform(low=0.28, high=0.32),
+}
+PAIR = ("wall_thickness", "disk_thickness")
+REFERENCES = {
+    0.0: (2.01204, 1.112602, 1.131560),
+    0.5: (2.22863, 1.116400, 1.135383),
+    0.8: (2.34907, 1.118319, 1.137139),
+    1.0: (2.42602, 1.119490, 1.138189),
+}
+REFERENCE_ERROR = 3e-9
+
+
+def model(**dimensions):
+    """Return the backlash [rad] of the cup at 800 N·m."""
+    return backlash("cup", {"torque": 800.0, **dimensions})
+
+
+@pytest.mark.parametrize("method", ["line", "sobol"])
+@pytest.mark.parametrize("of", ["values", "scores", "ranks"])
+@pytest.mark.parametrize("correlation", REFERENCES)
+def test_published_spread_of_correlated_thicknesses(correlation, of, method):
+    """sd, P97.5 and P99.865 are the references' within four combined standard errors, however ρ is entered.
+
+    Uniform values are their own ranks, so both are one number.
+    """
+    entered = 2 * math.sin(math.pi * correlation / 6) if of == "scores" else correlation
+    spread = propagate(model, SCATTER, method=method, correlation={PAIR: min(entered, 1.0)}, correlation_of=of, seed=1)
+    sd, p97_5, p99_865 = REFERENCES[correlation]
+    assert spread.method == method
+    assert abs(spread.sd - sd * 1e-5) <= 4 * math.hypot(spread.sd_standard_error, REFERENCE_ERROR)
+    for probability, value in ((0.975, p97_5), (0.99865, p99_865)):
+        error = spread.standard_error(probability)
+        assert abs(spread.quantile(probability) - value * 1e-3) <= 4 * math.hypot(error, REFERENCE_ERROR)
+        assert error <= (1e-3 if method == "line" else 0.05) * spread.sd
+
+
+def test_one_thickness_is_the_limit_of_correlation_1():
+    """With ρ = 1 the spread is that of a part whose wall and disk are one dimension."""
+    tied = propagate(model, SCATTER, correlation={PAIR: 1.0}, seed=1)
+    rest = {name: values for name, values in SCATTER.items() if name != "disk_thickness"}
+    one = propagate(lambda **given: model(**given, disk_thickness=given["wall_thickness"]), rest, seed=2)
+    for probability in (0.00135, 0.025, 0.5, 0.975, 0.99865):
+        error = math.hypot(tied.standard_error(probability), one.standard_error(probability))
+        assert abs(tied.quantile(probability) - one.quantile(probability)) <= 4 * error
+    assert tied.shares["wall_thickness"] == pytest.approx(one.shares["wall_thickness"] / 2, abs=4e-3)
