@@ -114,9 +114,15 @@ def _halvings(one: Computed, settings: Settings) -> Iterable[Halving]:
 
 
 def _half(limits: Limits) -> Limits:
-    """Return limits half as far apart about the same middle."""
+    """Return limits half as far apart about the same middle, and a process that is as capable between them."""
     quarter = (limits.high - limits.low) / 4
-    return replace(limits, low=limits.middle - quarter, high=limits.middle + quarter)
+    return replace(
+        limits,
+        low=limits.middle - quarter,
+        high=limits.middle + quarter,
+        mean_shift=limits.mean_shift / 2,
+        sd=None if limits.sd is None else limits.sd / 2,
+    )
 
 
 def _levers(one: Computed) -> tuple[Lever, ...]:

@@ -273,13 +273,17 @@ def _entered(
 def _tolerance(row: ToleranceRow) -> Value:
     """Return a row of Tolerances as it is compared and shown."""
     column = DIMENSIONS[row.dimension]
-    scatter = row.limits_sigma if "normal" in row.distribution else None
+    scatter = row.limits_sigma if "normal" in row.distribution and row.sd is None else None
     limits = () if row.grade else (row.lower, row.upper)
     size, unit = (0.01, "%") if row.relative else (column.si_unit.si, column.unit)
     words = row.grade or _deviations(row.lower / size, row.upper / size, "" if unit == "-" else unit)
     words += "" if row.distribution == "normal" else f", {row.distribution}"
     words += f", limits at ± {scatter:g} sigma" if scatter not in {None, 3.0} else ""
-    value = (limits, row.relative and bool(limits), row.grade, row.distribution, scatter)
+    space = "" if unit == "-" else f" {unit}"
+    words += f", sd {row.sd / size:.10g}{space}" if row.sd is not None else ""
+    words += f", mean shifted by {row.mean_shift / size:+.10g}{space}".replace("-", "−") if row.mean_shift else ""
+    is_relative = row.relative and bool(limits)
+    value = (limits, is_relative, row.grade, row.distribution, scatter, row.mean_shift, row.sd)
     return Value(value=value, shown=words, label=column.plain_name)
 
 

@@ -47,7 +47,10 @@ class Variant:
 
 @dataclass(frozen=True, kw_only=True)
 class ToleranceRow:
-    """One row of Tolerances: deviations in SI (or a fraction when relative), or a grade."""
+    """One row of Tolerances: deviations in SI (or a fraction when relative), or a grade.
+
+    `mean_shift` and `sd` of a normal process are in the unit of the deviations, so that they are relative, too.
+    """
 
     row: int
     tolerance_class: str
@@ -58,17 +61,30 @@ class ToleranceRow:
     grade: str | None = None
     distribution: str = "normal"
     limits_sigma: float = 3.0
+    mean_shift: float = 0.0
+    sd: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Limits:
-    """Smallest and largest allowed value of a dimension [SI] and how parts scatter between them."""
+    """Smallest and largest allowed value of a dimension [SI] and how parts scatter between or around them.
+
+    `low` and `high` are the drawing's, whatever the process does. A normal or truncated normal process has its mean
+    `mean_shift` off the middle of the limits, and the standard deviation `sd`; without one the limits lie `sigma`
+    standard deviations from the middle. Raises ValueError for a shift or sd of what is not normal or does not scatter.
+    """
 
     low: float
     high: float
     distribution: str = "normal"
     sigma: float = 3.0
+    mean_shift: float = 0.0
+    sd: float | None = None
     cut: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        if (self.mean_shift or self.sd is not None) and not (self.low < self.high and "normal" in self.distribution):
+            raise ValueError("mean_shift and sd are those of a normal distribution between limits that differ")
 
     @property
     def middle(self) -> float:
@@ -76,16 +92,21 @@ class Limits:
         return (self.low + self.high) / 2
 
     @property
+    def mean(self) -> float:
+        """Mean of the process before any cut."""
+        return self.middle + self.mean_shift
+
+    @property
     def standard_deviation(self) -> float:
         """Standard deviation of the normal before any cut."""
-        return (self.high - self.low) / (2 * self.sigma)
+        return (self.high - self.low) / (2 * self.sigma) if self.sd is None else self.sd
 
     @property
     def reach(self) -> tuple[float, float]:
         """Smallest and largest value that the distribution can produce."""
         if self.distribution == "normal":
             far = FAR * self.standard_deviation
-            return self.middle - far, self.middle + far
+            return self.mean - far, self.mean + far
         return self.low, self.high
 
 

@@ -63,7 +63,7 @@ def limits_of(variant: Variant, rows: Iterable[ToleranceRow]) -> tuple[dict[str,
         nominal = variant.dimensions.get(row.dimension)
         if nominal is None:
             continue
-        found = _deviations(row, nominal)
+        found, unit = _deviations(row, nominal), nominal if row.relative else 1.0
         if found is None:
             problems.append(LimitsProblem(kind="untabulated", dimension=row.dimension, detail=row.grade or "", row=row))
         elif found[0] < found[1]:
@@ -72,6 +72,8 @@ def limits_of(variant: Variant, rows: Iterable[ToleranceRow]) -> tuple[dict[str,
                 high=nominal + found[1],
                 distribution=row.distribution,
                 sigma=row.limits_sigma,
+                mean_shift=row.mean_shift * unit,
+                sd=None if row.sd is None else row.sd * abs(unit),
             )
         elif found[0]:
             limits[row.dimension] = Limits(low=nominal + found[0], high=nominal + found[1])
@@ -88,13 +90,14 @@ def _turn(row: ToleranceRow) -> int:
 class LimitArrays(NamedTuple):
     """The limits of a dimension of many variants [SI], each of shape (variants,).
 
-    `tail` is how far parts may lie beyond them; `given` says where `limits_of` gives the dimension limits. What a grade
-    does not tabulate is NaN.
+    `least` and `most` are the ends of what the limits and the parts reach; `given` says where `limits_of` gives the
+    dimension limits. What a grade does not tabulate is NaN.
     """
 
     low: Array
     high: Array
-    tail: Array
+    least: Array
+    most: Array
     given: npt.NDArray[np.bool_]
 
 
@@ -112,9 +115,17 @@ def limits_alike(sizes: Mapping[str, Array], rows: Iterable[ToleranceRow]) -> di
                 side * nominal if row.relative else np.full(len(nominal), side) for side in (row.lower, row.upper)
             )
         low, high = nominal + lower, nominal + upper
-        beyond = (high - low) * (FAR / (2 * row.limits_sigma) - 0.5) if row.distribution == "normal" else 0.0
-        limits[row.dimension] = LimitArrays(low, high, np.maximum(beyond, 0.0), (lower < upper) | (abs(lower) > 0))
+        least, most = _reached(row, nominal, low, high) if row.distribution == "normal" else (low, high)
+        limits[row.dimension] = LimitArrays(low, high, least, most, (lower < upper) | (abs(lower) > 0))
     return limits
+
+
+def _reached(row: ToleranceRow, nominal: Array, low: Array, high: Array) -> tuple[Array, Array]:
+    """Return the least and greatest of the limits and of a normal's values."""
+    unit = nominal if row.relative else np.ones(1)
+    mean = (low + high) / 2 + row.mean_shift * unit
+    far = FAR * ((high - low) / (2 * row.limits_sigma) if row.sd is None else row.sd * abs(unit))
+    return np.minimum(low, mean - far), np.maximum(high, mean + far)
 
 
 def beyond_doubt(
@@ -124,7 +135,7 @@ def beyond_doubt(
 
     What comes near to a bound within a thousand times the rounding of numbers is in doubt.
     """
-    reach = {name: (one.low - one.tail, one.high + one.tail) for name, one in limits.items()}
+    reach = {name: (one.least, one.most) for name, one in limits.items()}
     sure = np.ones(len(sizes["torque"]), dtype=bool)
     for name, (low, high) in reach.items():
         least, most = _bounds(name)
@@ -241,16 +252,16 @@ def _overlaps(variant: Variant, limits: Mapping[str, Limits], overlapping: Itera
 
 
 def distribution_of(limits: Limits) -> Distribution:
-    """Return the distribution between, or around, limits."""
+    """Return the distribution between limits, or around the mean of the process."""
     if limits.distribution == "uniform":
         return Uniform(limits.low, limits.high)
     if limits.distribution == "triangular":
         return Triangular(limits.low, limits.high)
     if limits.distribution == "truncated normal":
-        return TruncatedNormal(limits.middle, limits.standard_deviation, limits.low, limits.high)
+        return TruncatedNormal(limits.mean, limits.standard_deviation, limits.low, limits.high)
     if limits.cut:
-        return TruncatedNormal(limits.middle, limits.standard_deviation, *limits.cut)
-    return Normal(limits.middle, limits.standard_deviation)
+        return TruncatedNormal(limits.mean, limits.standard_deviation, *limits.cut)
+    return Normal(limits.mean, limits.standard_deviation)
 
 
 def distributions(limits: Mapping[str, Limits]) -> dict[str, Distribution]:

@@ -127,6 +127,20 @@ class RowBatch:
             return statistics
         return with_lots(self.outputs_of, self.inputs, self._between, statistics, self._upper_limits, plan=plan)
 
+    @property
+    def _estimate(self) -> dict[str, Array]:
+        """The dimensions at mid-limits, those of a shifted process at its mean after any cut."""
+        means = {
+            name: np.array(
+                [
+                    inputs[name].expectation if limit.mean_shift else limit.middle
+                    for inputs, limit in zip(self.inputs, column, strict=True)
+                ]
+            )
+            for name, column in self.limits.items()
+        }
+        return self.centre | means
+
     def with_first_order(self, statistics: Sequence[SpreadStatistics], coverage: float) -> list[SpreadStatistics]:
         """Return the rows' statistics with what limits and first derivatives say beside them."""
 
@@ -144,7 +158,7 @@ class RowBatch:
             np.array([row.numbers[f"coverage_{end}"] for row in statistics], dtype=float) for end in ("low", "high")
         )
         interval = low / ARCMIN, high / ARCMIN
-        valid = first_order_valid(self.output(self.centre) / ARCMIN, first_order / ARCMIN, interval, coverage)
+        valid = first_order_valid(self.output(self._estimate) / ARCMIN, first_order / ARCMIN, interval, coverage)
         numbers = np.stack([worst.low, worst.high, first_order], axis=1).tolist()
         swings = {name: np.stack(pair, axis=1).tolist() for name, pair in worst.swings.items()}
         return [

@@ -169,10 +169,12 @@ def _used(column: Column, nominal: float, limits: Limits | None) -> UsedLimits:
         distribution="exact",
     )
     if limits is not None and limits.high > limits.low:
-        scatter = f", limits at ± {limits.sigma:g} sigma" if "normal" in limits.distribution else ""
+        is_by_sigma = "normal" in limits.distribution and limits.sd is None
+        scatter = f", limits at ± {limits.sigma:g} sigma" if is_by_sigma else ""
+        shift = f", mean {_entry(limits.mean, size)}" if limits.mean_shift else ""
         used["lower"], used["upper"] = _entry(limits.low, size), _entry(limits.high, size)
         used["sd"] = f"{distribution_of(limits).standard_deviation / size:.3g}"
-        used["distribution"] = f"{limits.distribution}{scatter}"
+        used["distribution"] = f"{limits.distribution}{scatter}{shift}"
     return used
 
 
