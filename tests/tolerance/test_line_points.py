@@ -6,6 +6,7 @@ from scipy.special import ndtr
 from scipy.stats import kstest
 
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, line_net, mirrored_net
+from flexlash.tolerance.sampling import standard_error
 
 each_kind = pytest.mark.parametrize("single_curved", [False, True])
 
@@ -108,6 +109,19 @@ def test_mirrored_net_has_replicates_of_its_own(points):
     half = scores.shape[2] // 2
     assert np.array_equal(scores[:, :, :half], -scores[:, :, half:])
     assert len(np.unique(scores[0])) == points
+
+
+def test_replicates_of_a_mirrored_net_see_interactions_from_different_sides():
+    """The mean of a product of two small coordinates is off by no more than its error lets expect, over 400 seeds."""
+    off, told = [], []
+    for seed in range(400):
+        points = ndtr(mirrored_net(seed, 3, 64).reshape(3, LINE_REPLICATES, -1)) - 0.5
+        products = (points[1] * points[2]).mean(axis=1)
+        off.append(abs(products.mean()))
+        told.append(standard_error(products))
+    ratio = np.array(off) / told
+    assert (ratio <= 1.96).mean() >= 0.9
+    assert ratio.max() <= 6
 
 
 def test_mirrored_net_is_standard_normal():

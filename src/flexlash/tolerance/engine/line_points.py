@@ -84,6 +84,9 @@ def line_net(seed: int, width: int, lines: int, *, single_curved: bool) -> Net:
 def mirrored_net(seed: int, width: int, points: int) -> Array:
     """Return scores (width, points), half of them mirrored so that linear effects cancel; replicate after replicate.
 
+    Some pairs of coordinates of a small net lie on one diagonal or the other, at random: each replicate takes the
+    coordinates in an order of its own, so that no interaction is seen from the same side by all.
+
     Equation: u = ± Φ⁻¹ of scrambled Sobol' points, LINE_REPLICATES independent ones
     Arguments: seed; points in all, 2 · LINE_REPLICATES times a power of two.
     Valid: any width; beyond 64 coordinates the points are independent.
@@ -95,4 +98,6 @@ def mirrored_net(seed: int, width: int, points: int) -> Array:
     """
     generator = np.random.default_rng([seed, points, width])
     half = ndtri(scrambled_net(width, LINE_REPLICATES, points // (2 * LINE_REPLICATES), generator))
+    order = generator.permuted(np.tile(np.arange(width)[:, None], LINE_REPLICATES), axis=0)
+    half = np.take_along_axis(half, order[:, :, None], axis=0)
     return np.concatenate([half, -half], axis=2).reshape(width, points)
