@@ -106,6 +106,63 @@ def test_a_constant_has_no_kurtosis():
         assert (spread.kurtosis, spread.kurtosis_standard_error) == (0.0, 0.0)
 
 
+LEVELS = np.array([0.01, 0.025, 0.25, 0.3085, 0.5, stats.norm.cdf(0.5), 0.75, 0.975, 0.99])
+NORMALS, UNIFORMS = {"a": Normal(0, 1), "b": Normal(0, 1)}, {"a": Uniform(0, 1), "b": Uniform(0, 1)}
+LOWER = stats.norm.cdf(0.5)
+KINDS = {
+    "smooth": (total, NORMALS, math.sqrt(2) * stats.norm.ppf(LEVELS)),
+    "a gap at the median": (lambda a, b: a + 10 * (b > 0.5), UNIFORMS, 2 * LEVELS + 9 * (LEVELS > 0.5)),
+    "a gap elsewhere": (
+        lambda a, b: a + 10 * (b > 0.5),
+        {"a": Uniform(0, 1), "b": Normal(0, 1)},
+        np.where(LEVELS <= LOWER, LEVELS / LOWER, 10 + (LEVELS - LOWER) / (1 - LOWER)),
+    ),
+    "steps": (lambda a, b: np.round(a + b, 1), NORMALS, np.round(math.sqrt(2) * stats.norm.ppf(LEVELS), 1)),
+    "two values": (lambda a, b: 1.0 * (a > 0.5) + 0 * b, UNIFORMS, 1.0 * (LEVELS > 0.5)),
+    "two values of a sum": (lambda a, b: 1.0 * (a + b > 0), NORMALS, 1.0 * (LEVELS > 0.5)),
+    "three values": (lambda a, b: 1.0 * (a > 0.25) + (b > 0.75), UNIFORMS, None),
+}
+
+
+@pytest.mark.slow
+@each_method
+@pytest.mark.parametrize("kind", KINDS)
+def test_quantile_errors_cover_at_gaps_and_steps(kind, method):
+    """Of 200 seeds 95 % hold each percentile within 1.96 errors, be the output smooth, with gaps, or of few values."""
+    model, inputs, exact = KINDS[kind]
+    if exact is None:
+        exact = np.searchsorted([0.25 * 0.75, 0.25 * 0.75 + 0.75 * 0.75 + 0.25 * 0.25], LEVELS).astype(float)
+    held = np.zeros(len(LEVELS))
+    for seed in range(200):
+        spread = spread_of(model, inputs, method=method, samples=4096, seed=seed)
+        held += np.abs(spread.quantile(LEVELS) - exact) <= 1.96 * spread.standard_error(LEVELS)
+    assert held.mean() >= 0.945 * 200
+    # 171 of 200 fail by chance once in 10⁶ where 95 % hold.
+    assert held.min() >= 172
+
+
+@pytest.mark.slow
+def test_errors_cover_where_a_step_is_wider_than_they_are():
+    """Far out, where steps are rare and points are many, an interval still reaches the next step in 190 of 200."""
+    model, inputs, _ = KINDS["steps"]
+    held = 0
+    for seed in range(200):
+        spread = spread_of(model, inputs, samples=2**14, seed=seed)
+        exact = np.round(math.sqrt(2) * stats.norm.ppf([0.00135, 0.99865]), 1)
+        errors = spread.standard_error([0.00135, 0.99865])
+        held += bool((np.abs(spread.quantile([0.00135, 0.99865]) - exact) <= 1.96 * errors).all())
+    assert held >= 190
+
+
+@each_method
+def test_a_median_on_a_gap_is_told_as_wide_as_the_gap(method):
+    """Where half of the values lie on either side of a gap, the median's interval spans it; elsewhere it is narrow."""
+    spread = spread_of(*KINDS["a gap at the median"][:2], method=method)
+    assert 4.5 / 1.96 <= spread.standard_error(0.5) <= 10 / 1.96
+    assert spread.standard_error(0.25) < 0.02
+    assert spread.standard_error(0.75) < 0.02
+
+
 @each_method
 def test_large_offsets_keep_the_spread(method):
     """A constant a billion times the spread costs the standard deviation no more than its rounding."""

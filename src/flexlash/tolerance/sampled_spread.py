@@ -29,6 +29,12 @@ Model = Callable[..., npt.ArrayLike]
 
 _BLOCK = 8192
 
+_NORMAL_95 = float(ndtri(0.975))
+"""Standard errors to both sides of a 95 % interval."""
+
+_SCATTER, _MOST_SCATTER = 2.0, 0.5
+"""How much further apart than their density says some values may lie by chance: over the root of how many they are."""
+
 
 class SampledSpread(Spread):
     """The spread of a model's output at points.
@@ -157,22 +163,46 @@ class SampledSpread(Spread):
         return np.asarray(low + (high - low) * (rank - below))
 
     def _quantile_errors(self, probability: Array) -> Array:
-        """Return the standard errors of quantiles: the error of the probability below, over the density (Woodruff)."""
-        if self._independent:
-            error = np.sqrt(probability * (1 - probability) / self.size)
-        else:
-            quantiles = self._quantiles(probability)
-            below = [(self.values <= quantile).mean(axis=1) for quantile in quantiles]
-            error = standard_error(np.reshape(below, (len(quantiles), len(self.values))))
-        error = np.maximum(error, 0.5 / self.size)
+        """Return the standard errors of quantiles: that of the probability below over the density, more at a gap.
+
+        Equation: e/f; where values at the probabilities p ± z e lie much further apart than f says, the greater of
+            their distances over z, so that ± 1.96 of it holds both (Woodruff's interval)
+        Arguments: p (n,), e the standard error of the share of values below the quantile, f the density around it.
+        Valid: any output, also one with gaps or few values; some points in all beyond the quantile.
+        Source: Woodruff 1952.
+        """
+        quantiles = self._quantiles(probability)
+        error = np.maximum(self._share_errors(probability, quantiles), 0.5 / self.size)
         reach = np.maximum(0.5 * np.minimum(probability, 1 - probability), error)
         low, high = np.maximum(probability - reach, 0.0), np.minimum(probability + reach, 1.0)
-        ends = self._quantiles(np.concatenate([low, high]))
-        inside = error * (ends[len(low) :] - ends[: len(low)]) / (high - low)
+        inside = error * (self._quantiles(high) - self._quantiles(low)) / (high - low)
+        side = self._farther_side(probability, quantiles, _NORMAL_95 * error) / _NORMAL_95
+        alike = np.array([np.count_nonzero(self._selected == quantile) > 1 for quantile in quantiles])
+        by_chance = np.minimum(_SCATTER / np.sqrt(_NORMAL_95 * error * self.size), _MOST_SCATTER)
+        inside = np.where(side > (1 + np.where(alike, 0.0, by_chance)) * inside, side, inside)
         # A quantile rarer than one point in all lies beyond the points, by a normal tail as far as this.
         rarer = np.clip(np.minimum(probability, 1 - probability), np.finfo(float).tiny, 0.5)
         beyond = np.maximum(ndtri(min(1 / self.size, 0.5)) - ndtri(rarer), 0.0)
         return np.asarray(inside + beyond * self.sd)
+
+    def _share_errors(self, probability: Array, quantiles: Array) -> Array:
+        """Return the standard errors of the shares of values below quantiles."""
+        if self._independent:
+            return np.asarray(np.sqrt(probability * (1 - probability) / self.size))
+        # Where many values are alike the share jumps at the quantile, and is known less well on one side.
+        shares = [
+            [(self.values <= quantile).mean(axis=1), (self.values < quantile).mean(axis=1)] for quantile in quantiles
+        ]
+        both = standard_error(np.reshape(shares, (len(quantiles), 2, len(self.values))))
+        return np.asarray(both.max(axis=1))
+
+    def _farther_side(self, probability: Array, quantiles: Array, reach: Array) -> Array:
+        """Return how far the values at these probabilities ∓ reach are from the quantiles, the farther of the two."""
+        last = self.size - 1
+        low = np.floor(np.maximum(probability - reach, 0.0) * last).astype(int)
+        high = np.ceil(np.minimum(probability + reach, 1.0) * last).astype(int)
+        self._selected.partition(np.unique(np.concatenate([low, high])))
+        return np.asarray(np.maximum(quantiles - self._selected[low], self._selected[high] - quantiles))
 
     def _probabilities_above(self, value: Array) -> Array:
         return np.array([self._count_above(limit) for limit in value]) / self.size
