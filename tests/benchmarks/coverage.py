@@ -1,12 +1,15 @@
 """How often 1.96 standard errors to both sides cover the truth.
 
-    python tests/benchmarks/coverage.py [--seeds SEEDS] [--jobs JOBS] [CASE ...]
+    python tests/benchmarks/coverage.py [--seeds SEEDS] [--lines LINES ...] [--jobs JOBS] [CASE ...]
 
-Every case is a model with its inputs, spread with each of many seeds by 64 lines, by 256 lines, and by as many as
-the engine takes of itself. Covered should be 95 %: of the mean, the standard deviation, five percentiles, and the
-probability over P99.865, which comes with its interval. The truth of a sum is exact, from the characteristic
-function, as are mean and standard deviation of a product; other truths are the means of several runs with very many
-lines, and their own error is combined with the one tested.
+Every case of `coverage_cases` is spread with each of many seeds by 64 lines, by 256 lines, and by as many as the engine
+takes of itself (0). Covered should be 95 %: of percentiles, mean, standard deviation, skewness, kurtosis, the
+probability over P99.865 and over the value that one in 100,000 exceeds, the shares of variance, and what is said of
+lots. Truths come from closed forms, characteristic functions and quadrature, none from the engine; what they are
+uncertain by is combined with the error tested. A probability is compared on the normal scale, as its interval is made.
+
+Listed at the end is what lies below 91 % or above 99 %, and every mean over the seeds that lies off the truth by more
+than chance does once in a thousand tests.
 """
 
 from __future__ import annotations
@@ -14,192 +17,198 @@ from __future__ import annotations
 import argparse
 import math
 import os
+import time
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import ndtr, ndtri, wofz
+from coverage_cases import cases
+from scipy.special import ndtri
 
-from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform, propagate
+from flexlash.tolerance import propagate
 
 PROBABILITIES = np.array([0.00135, 0.025, 0.5, 0.975, 0.99865])
-TESTED = ("P0.135", "P2.5", "P50", "P97.5", "P99.865", "mean", "sd", "prob.")
-SAMPLES = (64, 256, None)
-TRUE_LINES, TRUE_RUNS = 1 << 15, 4
-LOW = 0.91
-"""Shares covered below this are listed."""
-ROUNDING = 1e-10
-"""Error of an exact truth, in standard deviations."""
-
-_TERMS = 1 << 17
-_FIRST_SEED = 10_000_000
-"""Of the runs for the truth; those tested count from 0."""
-
-
-def total(**inputs):
-    """Return the sum."""
-    first, *others = inputs.values()
-    return sum(others, first)
-
-
-def product(**inputs):
-    """Return the product of 1 + 0.02 x."""
-    return math.prod(1 + 0.02 * one for one in inputs.values())
+RARE = (0.00135, 1e-5)
+"""Probabilities to be found over the values that have them."""
+ACCEPTABLE = 1350.0
+"""Parts per million over the limit that a lot may have."""
+LINES = (64, 256, 0)
+LOW, HIGH = 0.91, 0.99
+BIASED = 3.3
+"""Standard errors of a mean over seeds beyond which it is listed."""
+WIDE = 0.7
+"""Errors found over errors told: below this the told ones are too large."""
+MANY = 100
+"""Seeds that it takes to say so."""
+SHARP = 1e-6
+"""A told error below this, in standard deviations, is not blamed for being too large."""
+COLUMNS = ("P0.135", "P2.5", "P50", "P97.5", "P99.865", "mean", "sd", "skew", "kurt", "p 1e-3", "p 1e-5")
+GROUPS = (*COLUMNS, "shares", "total", "within", "between", "lots")
 
 
-def wind_up(l, wall, disk, r_m, r_ci, E, nu):  # noqa: E741, N803, PLR0917
-    """Return twice the wind-up [rad] of a cup at 800 N·m."""
-    square = r_m * r_m
-    shape = l / (square * r_m * wall) + (1 / (r_ci * r_ci) - 1 / square) / (2 * disk)
-    return 1600 / math.pi * (1 + nu) / E * shape
+@dataclass(frozen=True, kw_only=True)
+class Found:
+    """What was found of a case: by statistic the deviations and told errors of all seeds (seeds, statistics)."""
+
+    case: str
+    lines: int
+    names: list[str]
+    groups: list[str]
+    deviations: np.ndarray
+    errors: np.ndarray
+    sizes: list[int]
+    methods: list[str]
+    seconds: list[float]
+
+    @property
+    def covered(self):
+        """The share of seeds that cover the truth, by statistic."""
+        return (abs(self.deviations) <= 1.96 * self.errors).mean(axis=0)
+
+    @property
+    def bias(self):
+        """The mean deviation and its standard error, by statistic."""
+        count = len(self.deviations)
+        return self.deviations.mean(axis=0), self.deviations.std(axis=0, ddof=1) / math.sqrt(count)
+
+    def by_group(self):
+        """Return the mean share covered of each group of statistics, NaN where there are none."""
+        groups, covered = np.array(self.groups), self.covered
+        return np.array([covered[groups == group].mean() if group in groups else np.nan for group in GROUPS])
+
+    def line(self):
+        """Return the line to print."""
+        shares = "".join("      ·" if math.isnan(share) else f"{share:7.1%}" for share in self.by_group())
+        mean, _ = self.bias
+        percentiles = slice(0, len(PROBABILITIES))
+        told = self.errors[:, percentiles].max(axis=1).mean()
+        off = abs(mean[percentiles]).max()
+        kinds = max(set(self.methods), key=self.methods.count)
+        numbers = f"{np.median(self.sizes):7,.0f}{np.median(self.seconds) * 1e3:7.1f}{told:9.1e}{off:9.1e}"
+        return f"{self.case:34}{self.lines or 'auto':>5} {kinds:6}{numbers}{shares}"
+
+    def doubtful(self):
+        """Yield what is to be listed."""
+        mean, error = self.bias
+        for place, name in enumerate(self.names):
+            share, told = self.covered[place], self.errors[:, place].mean()
+            off = min(abs(mean[place]) / max(error[place], 1e-300), 999)
+            ratio = min(math.sqrt((self.deviations[:, place] ** 2).mean()) / max(told, 1e-300), 999)
+            low = share < min(LOW, 0.95 - 2.5 * chance(len(self.deviations)))
+            high = share > HIGH and told > SHARP and ratio < WIDE and len(self.deviations) >= MANY
+            biased = off > BIASED and abs(mean[place]) > 0.1 * told
+            if low or high or biased:
+                signs = [sign for sign, wanted in (("LOW", low), ("HIGH", high), ("BIAS", biased)) if wanted]
+                yield (
+                    f"{'+'.join(signs):10}{self.case:34}{self.lines or 'auto':>5} {name:18}covered {share:6.1%}, "
+                    f"told {told:.1e}, rms error / told {ratio:.2f}, bias {mean[place]:+.1e} ({off:.1f} of its errors)"
+                )
 
 
-def alike(count, one):
-    """Return inputs of one kind, `one` of them by its place."""
-    return {f"x{place}": one(place) for place in range(count)}
+def chance(seeds):
+    """Return the standard error of a share covered."""
+    return math.sqrt(0.05 * 0.95 / seeds)
 
 
-def normal(_):
-    """Return a standard normal."""
-    return Normal(0, 1)
+def expected(truth):
+    """Return names, groups, true values, scales and the truth's own errors of the statistics known of a case."""
+    own = truth.error
+    rows = [
+        (name, name, value, truth.sd, own) for name, value in zip(COLUMNS, truth.quantile(PROBABILITIES), strict=False)
+    ]
+    rows += [("mean", "mean", truth.mean, truth.sd, own), ("sd", "sd", truth.sd, truth.sd, own)]
+    for name, value in (("skew", truth.skewness), ("kurt", truth.kurtosis)):
+        rows += [(name, name, value, 1.0, 10 * own)] if value is not None else []
+    rows += [(name, name, ndtri(share), 1.0, 10 * own) for name, share in zip(("p 1e-3", "p 1e-5"), RARE, strict=True)]
+    for group, shares in (("shares", truth.shares), ("total", truth.total_shares)):
+        rows += [(f"{group} {name}", group, share, 1.0, 10 * own) for name, share in shares.items()]
+    if truth.between_lots_sd is not None:
+        rows += [("within", "within", truth.within_lot_sd, truth.sd, own)]
+        rows += [("between", "between", truth.between_lots_sd, truth.sd, own)]
+        limit = float(truth.quantile(PROBABILITIES)[-1])
+        rows += [("lots", "lots", truth.lots_failing(limit, ACCEPTABLE), 1.0, 10 * own)]
+    return [list(column) for column in zip(*rows, strict=True)]
 
 
-def uniform(_):
-    """Return a uniform distribution of half width 1."""
-    return Uniform(-1, 1)
+def told(spread, truth, limits):
+    """Return what a spread says of the statistics that `expected` knows, and its standard errors."""
+    pairs = list(zip(spread.quantile(PROBABILITIES), spread.standard_error(PROBABILITIES), strict=True))
+    pairs += [(spread.mean, spread.mean_standard_error), (spread.sd, spread.sd_standard_error)]
+    if truth.skewness is not None:
+        pairs.append((spread.skewness, spread.skewness_standard_error))
+    if truth.kurtosis is not None:
+        pairs.append((spread.kurtosis, spread.kurtosis_standard_error))
+    for limit in limits:
+        low, high = ndtri(np.maximum(spread.probability_interval(limit), 1e-300))
+        pairs.append(((low + high) / 2, (high - low) / (2 * 1.96)))
+    pairs += [(spread.shares[name], spread.shares_standard_error[name]) for name in truth.shares]
+    pairs += [(spread.total_shares[name], spread.total_shares_standard_error[name]) for name in truth.total_shares]
+    if truth.between_lots_sd is not None:
+        pairs += [(spread.within_lot_sd, spread.within_lot_sd_standard_error)]
+        pairs += [(spread.between_lots_sd, spread.between_lots_sd_standard_error)]
+        at = limits[0], ACCEPTABLE
+        pairs += [(spread.lots_failing(*at), spread.lots_failing_standard_error(*at))]
+    return np.array(pairs, dtype=float).T
 
 
-def triangular(_):
-    """Return a triangle of half width 1."""
-    return Triangular(-1, 1)
+def spread_of(case, samples, seed):
+    """Return the spread of a case."""
+    more = {"correlation": case.correlation, "correlation_of": case.correlation_of} if case.correlation else {}
+    if case.between:
+        more["between"] = case.between
+    return propagate(case.model, case.inputs, samples=samples or None, seed=seed, **more)
 
 
-def truncated(_):
-    """Return a normal cut at two standard deviations."""
-    return TruncatedNormal(0, 1, -2, 2)
-
-
-MIXED = {
-    "x0": Normal(0, 1),
-    "x1": Uniform(-2, 2),
-    "x2": Triangular(-2, 2),
-    "x3": TruncatedNormal(0, 1, -1, 1),
-    "x4": Normal(0, 0.5),
-}
-REFERENCE = {
-    "l": Uniform(0.1598, 0.1602),
-    "wall": Uniform(0.00155, 0.00165),
-    "disk": Uniform(0.00155, 0.00165),
-    "r_m": Normal(0.08, 2e-5),
-    "r_ci": Uniform(0.03985, 0.04015),
-    "E": Normal(211e9, 2.11e9),
-    "nu": Uniform(0.28, 0.32),
-}
-CASES = {
-    "product of 2 normal": (product, alike(2, normal)),
-    "product of 7 normal": (product, alike(7, normal)),
-    "product of 14 normal": (product, alike(14, normal)),
-    "sum of 2 uniform": (total, alike(2, uniform)),
-    "sum of 4 uniform": (total, alike(4, uniform)),
-    "sum of 14 uniform": (total, alike(14, uniform)),
-    "sum of 3 triangular": (total, alike(3, triangular)),
-    "product of 8 triangular": (product, alike(8, triangular)),
-    "sum of 5 truncated": (total, alike(5, truncated)),
-    "sum, mixed": (total, MIXED),
-    "product, mixed": (product, MIXED),
-    "uniform 100:1 to 4 uniform": (total, {"y": Uniform(-100, 100), **alike(4, uniform)}),
-    "triangular 100:1 to 4": (total, {"y": Triangular(-100, 100), **alike(4, triangular)}),
-    "uniform 100:1 to 4 normal": (total, {"y": Uniform(-100, 100), **alike(4, normal)}),
-    "normal 100:1 to 4 uniform": (total, {"y": Normal(0, 100), **alike(4, uniform)}),
-    "product, 1 uniform of 6": (product, {"y": Uniform(-2, 2), **alike(5, normal)}),
-    "product, 1 triangular of 4": (product, {"y": Triangular(-4, 4), **alike(3, normal)}),
-    "sum, 1 skew truncated of 3": (total, {"y": TruncatedNormal(0, 1, -0.5, 3), **alike(2, normal)}),
-    "wind-up, 5 uniform of 7": (wind_up, REFERENCE),
-}
-
-
-def characteristic(one, at):
-    """Return the characteristic function of a distribution about its expectation."""
-    if isinstance(one, Normal):
-        return np.exp(-((one.sd * at) ** 2) / 2)
-    if isinstance(one, Uniform):
-        return np.sinc((one.high - one.low) / (2 * np.pi) * at)
-    if isinstance(one, Triangular):
-        return np.sinc((one.high - one.low) / (4 * np.pi) * at) ** 2
-    tail = np.exp(-((one.sd * at) ** 2) / 2)
-    cuts = [(end - one.mean) / one.sd for end in (one.low, one.high)]
-    below = []
-    for cut in cuts:
-        # exp(−s²/2)·Φ(cut − i·s), by the Faddeeva function of the upper half plane.
-        turned = np.exp(-cut * cut / 2 + 1j * cut * one.sd * at) / 2
-        root = (one.sd * at + 1j * abs(cut)) / math.sqrt(2)
-        below.append(turned * wofz(-root.conj()) if cut < 0 else tail - turned * wofz(root))
-    share = ndtr(cuts[1]) - ndtr(cuts[0])
-    return (below[1] - below[0]) / share * np.exp(1j * (one.mean - one.expectation) * at)
-
-
-def exact_quantiles(inputs):
-    """Return quantiles of a sum: its distribution function as a Fourier series over a range that holds it all."""
-    mean, sd = exact_moments(total, inputs)
-    reach = sum(9 * one.sd if isinstance(one, Normal) else one.high - one.low for one in inputs.values())
-    at = np.arange(1, _TERMS) * (np.pi / reach)
-    factor = math.prod((characteristic(one, at) for one in inputs.values()), start=1 / (at * reach))
-
-    def above_share(output, share):
-        return 0.5 + output / (2 * reach) - (factor * np.exp(-1j * at * output)).imag.sum() - share
-
-    return [mean + brentq(above_share, -reach, reach, args=(share,), xtol=1e-13 * sd) for share in PROBABILITIES]
-
-
-def exact_moments(model, inputs):
-    """Return mean and standard deviation of a sum or product."""
-    moments = [(one.expectation, one.standard_deviation) for one in inputs.values()]
-    if model is total:
-        return sum(mean for mean, _ in moments), math.hypot(*(sd for _, sd in moments))
-    mean = math.prod(1 + 0.02 * one for one, _ in moments)
-    return mean, mean * math.sqrt(math.prod(1 + (0.02 * sd / (1 + 0.02 * one)) ** 2 for one, sd in moments) - 1)
-
-
-def statistics_of(spread, limit):
-    """Return what is tested and its standard errors; the probability on the normal scale, as its interval is."""
-    low, high = ndtri(np.maximum(spread.probability_interval(limit), 1e-300))
-    values = [*spread.quantile(PROBABILITIES), spread.mean, spread.sd, (low + high) / 2]
-    errors = [*spread.standard_error(PROBABILITIES), spread.mean_standard_error, spread.sd_standard_error]
-    return np.array(values), np.array([*errors, (high - low) / (2 * 1.96)])
-
-
-def truth_of(model, inputs):
-    """Return limit, true values of what is tested, their standard errors, and the standard deviation."""
-    runs = [propagate(model, inputs, samples=TRUE_LINES, seed=_FIRST_SEED + run) for run in range(TRUE_RUNS)]
-    limit = float(exact_quantiles(inputs)[-1] if model is total else np.mean([run.quantile(0.99865) for run in runs]))
-    values, errors = (np.array(found) for found in zip(*(statistics_of(run, limit) for run in runs), strict=True))
-    value, error = values.mean(axis=0), np.sqrt((errors**2).sum(axis=0)) / TRUE_RUNS
-    sd = value[6]
-    rounding = ROUNDING * np.array([*(7 * [sd]), 1.0])
-    if model is not wind_up:
-        value[5:7], error[5:7] = exact_moments(model, inputs), 0
-    if model is total:
-        value[:5], value[7], error[:] = exact_quantiles(inputs), ndtri(1 - PROBABILITIES[-1]), 0
-    return limit, value, np.maximum(error, rounding), sd
-
-
-def covered(name, seeds):
-    """Return the lines to print of a case and, for each number of lines, the shares covered."""
-    model, inputs = CASES[name]
-    limit, truth, own, sd = truth_of(model, inputs)
-    told, shares = [], []
-    for samples in SAMPLES:
-        hits, sizes, precision = np.zeros(len(TESTED)), [], []
+def tested(name, lines, seeds):
+    """Return what was found of a case."""
+    case = cases()[name]
+    truth = case.truth()
+    names, groups, values, scales, own = expected(truth)
+    limits = truth.quantile(1 - np.array(RARE)).tolist()
+    found = []
+    for samples in lines:
+        deviations, errors, spreads, seconds = [], [], [], []
         for seed in range(seeds):
-            spread = propagate(model, inputs, samples=samples, seed=seed)
-            values, errors = statistics_of(spread, limit)
-            hits += np.abs(values - truth) <= 1.96 * np.hypot(errors, own)
-            sizes.append(spread.size)
-            precision.append(errors[:5].max() / sd)
-        shares.append(hits / seeds)
-        numbers = "".join(f"{share:8.1%}" for share in shares[-1])
-        told.append(f"{name:28}{samples or 'auto':>5}{np.median(sizes):7,.0f}{np.mean(precision):9.1e}{numbers}")
-    return told, np.array(shares)
+            start = time.process_time()
+            spread = spread_of(case, samples, seed)
+            spread.quantile(PROBABILITIES)
+            seconds.append(time.process_time() - start)
+            value, error = told(spread, truth, limits)
+            deviations.append((value - values) / scales)
+            errors.append(np.hypot(error / scales, own))
+            spreads.append((spread.size, spread.method))
+        sizes, methods = (list(column) for column in zip(*spreads, strict=True))
+        found.append(
+            Found(
+                case=name,
+                lines=samples,
+                names=names,
+                groups=groups,
+                deviations=np.array(deviations),
+                errors=np.array(errors),
+                sizes=sizes,
+                methods=methods,
+                seconds=seconds,
+            )
+        )
+    return found
+
+
+def summary(found, lines):
+    """Print the shares covered of all cases by each number of lines, and what is doubtful."""
+    for samples in lines:
+        chosen = [one for one in found if one.lines == samples]
+        shares = np.array([one.by_group() for one in chosen])
+        pooled = "".join("      ·" if math.isnan(share) else f"{share:7.1%}" for share in np.nanmean(shares, axis=0))
+        every = np.concatenate([one.covered for one in chosen])
+        print(f"{'all cases':34}{samples or 'auto':>5}{'':39}{pooled}")
+        print(f"{'':34}{every.mean():.2%} of {len(every)} statistics, {every.min():.1%} of the least")
+    doubtful = [line for one in found for line in one.doubtful()]
+    print(*doubtful, sep="\n")
+    tests = sum(len(one.names) for one in found)
+    seeds = len(found[0].deviations)
+    print(f"{len(doubtful)} of {tests} are doubtful; by chance {tests / 1000:.0f} of the biases would be.")
+    print(f"A share of one statistic is uncertain by {chance(seeds):.1%} (one standard error).")
 
 
 def main():
@@ -207,25 +216,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", metavar="CASE", help="all of them unless named")
     parser.add_argument("--seeds", type=int, default=400, help="seeds of each case")
+    parser.add_argument("--lines", type=int, nargs="+", default=LINES, help="lines, 0 as many as the engine takes")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes")
     options = parser.parse_args()
-    print(f"{'case':28}{'lines':>12}{'s.e./sd':>9}" + "".join(f"{name:>8}" for name in TESTED))
-    every = []
-    names = options.cases or list(CASES)
+    heading = f"{'case':34}{'lines':>5} {'method':6}{'taken':>7}{'ms':>7}{'told/sd':>9}{'bias/sd':>9}"
+    print(heading + "".join(f"{name:>7}" for name in GROUPS))
+    names, found = options.cases or list(cases()), []
     with ProcessPoolExecutor(options.jobs) as pool:
-        for told, shares in pool.map(covered, names, [options.seeds] * len(names)):
-            print(*told, sep="\n", flush=True)
-            every.append(shares)
-    for place, samples in enumerate(SAMPLES):
-        found = np.array(every)[:, place]
-        numbers = "".join(f"{share:8.1%}" for share in found.mean(axis=0))
-        print(f"{'all cases':28}{samples or 'auto':>5}{'':16}{numbers}")
-        print(f"{'':28}{found.mean():.2%} of all, {found.min():.1%} of the least")
-    low = np.argwhere(np.array(every) < LOW)
-    for case, place, tested in low:
-        share = every[case][place, tested]
-        print(f"below {LOW:.0%}: {TESTED[tested]} of {names[case]} by {SAMPLES[place] or 'auto'} lines, {share:.1%}")
-    print(f"A share found is uncertain by {math.sqrt(0.05 * 0.95 / options.seeds):.1%} (one standard error).")
+        for one in pool.map(tested, names, [options.lines] * len(names), [options.seeds] * len(names)):
+            print(*(each.line() for each in one), sep="\n", flush=True)
+            found += one
+    summary(found, options.lines)
 
 
 if __name__ == "__main__":
