@@ -118,6 +118,7 @@ def test_cut_at_an_impossible_size_depends_on_the_shift(shift, cut):
 shifts = st.floats(-1.5, 1.5)
 
 
+@pytest.mark.slow
 @thorough
 @given(shifts, shifts, st.floats(0.05, 1.2), st.floats(0.05, 1.2))
 def test_shifted_tails_never_close_the_disk(inner_shift, outer_shift, inner_sd, outer_sd):
@@ -141,6 +142,7 @@ def test_shifted_tails_never_close_the_disk(inner_shift, outer_shift, inner_sd, 
     assert bool(problems) is (sum(beyond) >= 0.0001 * (1 - 1e-9) and sum(beyond) > 0)
 
 
+@pytest.mark.slow
 @thorough
 @given(shifts, st.floats(0.01, 1.2), st.sampled_from(["normal", "truncated normal"]), st.booleans())
 def test_what_is_beyond_doubt_has_no_problem(shift, sd, distribution, relative):
