@@ -50,8 +50,8 @@ class Measured:
     A smooth curve through the values in order over their normal scores, drawn a little towards the straight line of a
     normal distribution. Beyond the least and the greatest of n values nothing was measured: the curve goes on with its
     last slope, as a normal tail does, and ends where 95 of 100 samples of n values would lie wholly inside. For 60
-    values the ends are at 0.043 % and 99.957 %. No value beyond the ends is ever drawn, so that what is rarer than
-    about 1 in 40 n says nothing of the part; a normal distribution of the same mean and sd claims to know it.
+    values the ends are at 0.043 % and 99.957 % of the uncut curve. Nothing rarer than about 1 in 40 n is invented: what
+    hangs on this input alone has the probability 0 beyond its ends, where a normal of the same mean and sd would go on.
 
     Equation: x = x̄ + s (q(u) − E q)/sd q, where q minimises Σ wᵢ² (zᵢ − q(uᵢ))² + λ ∫ q″² du among cubic splines that
         rise everywhere; zᵢ values in order less their mean, over their sd, uᵢ = Φ⁻¹((i − 3/8)/(n + 1/4)),
@@ -61,8 +61,8 @@ class Measured:
     Valid: values of independent parts of one process. Doubled values, as a gauge rounds them, do no harm. Sixty values
         of a normal process give P97.5 to 0.27 sd and P99.865 to 0.48 (a normal of their mean and sd: 0.23 and 0.32),
         those of a uniform one to 0.15 and 0.56 (0.34 and 1.28).
-    Source: Blom 1958 (plotting positions); Ramsay 1988 (monotone regression splines); the ends are distribution-free
-        tolerance limits, Wilks 1941.
+    Source: Blom 1958 (plotting positions); Ramsay 1988 (monotone regression splines); at the ends the binomial
+        probability that none of n values lies beyond.
 
     >>> sample = Measured([1.61, 1.60, 1.62, 1.60, 1.59, 1.63])
     >>> round(sample.expectation, 12), round(sample.standard_deviation, 9)
