@@ -50,7 +50,7 @@ def test_other_kinds_of_arguments_are_refused(given, message):
         (
             {("a", "b"): 0.9, ("b", "c"): 0.9, ("a", "c"): 0.5},
             "scores",
-            r"correlation\[\('a', 'b'\)\] = 0.9 contradicts the other correlations; the nearest admissible .* 0.8274",
+            r"correlation\[\('a', 'b'\)\] = 0.9 contradicts the other correlations; the nearest admissible .* 0.8274$",
         ),
         (
             {("a", "b"): 1, ("b", "c"): 0.123456789, ("a", "c"): 0.9},

@@ -121,6 +121,37 @@ def test_product_of_correlated_lognormals():
     held(spread, {"a": together / 2, "b": together / 2, "c": alone * (1 + cluster) / both}, of=["total_shares"])
 
 
+@each_method
+def test_curved_effects_of_a_single_cluster(method):
+    """In exp(a/2) + b² both shares are those of the Hermite series, and the total ones the same: all is one cluster.
+
+    exp(a/2) is e^(1/8) Σ 2⁻ⁿ/√n! hₙ, b² is 1 + √2 h₂, and what is expected of h₂ of the other input is ρ² h₂.
+    """
+    rho = 0.6
+    spread = propagate(
+        lambda a, b: np.exp(0.5 * a) + b**2,
+        {"a": Normal(0, 1), "b": Normal(0, 1)},
+        method=method,
+        correlation={("a", "b"): rho},
+        samples=2**15,
+    )
+    common = math.exp(0.125) / 4 * 2 * rho**2
+    of_a = math.exp(0.25) * math.expm1(0.25) + 2 * rho**4 + common
+    of_b = math.exp(0.25) * math.expm1(0.25 * rho**2) + 2 + common
+    both = math.exp(0.25) * math.expm1(0.25) + 2 + common
+    first = (of_a + both - of_b) / 2 / both
+    held(spread, {"a": first, "b": 1 - first})
+
+
+def test_an_event_that_no_point_of_the_shares_meets_has_unknown_shares():
+    """Where the points behind shares see nothing of what varies, the told errors say that nothing is known."""
+    inputs = {"a": Normal(0, 1), "b": Normal(0, 1)}
+    rare = lambda a, b: np.where(a + b > 6.5, 1.0, 0.0)  # noqa: E731
+    spread = propagate(rare, inputs, method="random", samples=2**20, correlation={("a", "b"): 0.2})
+    assert spread.sd > 0
+    assert spread.total_shares_standard_error == {"a": 1.0, "b": 1.0}
+
+
 @pytest.mark.slow
 def test_large_clusters_by_orders_drawn():
     """A cluster too large for all its coalitions has the closed form's shares within their told errors."""

@@ -91,7 +91,7 @@ def test_clusters_are_tied_through_others():
 @thorough
 @given(draw=st.integers(0, 10**6), size=st.integers(2, 7), rank=st.integers(1, 7))
 def test_factor_makes_the_matrix(draw, size, rank):
-    """L Lᵀ is the matrix, of full rank or not, and L is triangular in the order given."""
+    """L Lᵀ is the matrix, L is triangular in the order given, and has as many columns as the matrix's rank."""
     generator = np.random.default_rng(draw)
     root = generator.normal(size=(size, min(rank, size)))
     matrix = root @ root.T
@@ -101,6 +101,7 @@ def test_factor_makes_the_matrix(draw, size, rank):
     order = generator.permutation(size).tolist()
     factor = score_factor(matrix, order)
     assert factor @ factor.T == pytest.approx(matrix, abs=1e-7)
+    assert np.count_nonzero(factor.any(axis=0)) == min(rank, size)
     assert np.array_equal(np.tril(factor[np.ix_(order, order)]), factor[np.ix_(order, order)])
     assert (factor**2).sum(axis=1) == pytest.approx(1, abs=1e-15)
 

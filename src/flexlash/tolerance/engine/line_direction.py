@@ -21,9 +21,6 @@ _SECANT = np.array([-1.5, -0.75, 0.75, 1.5])
 _SLANT = 0.1
 """The input that closes the plane has at least this part of the greatest squared component of the direction."""
 
-_FOLLOWS = 1 - 1e-9
-"""Correlation from which an input follows another."""
-
 _SINGULAR = 1e-6
 _GOES = 0.2
 """The least part of its own rise by which an input goes along with others; tried from 0 to 1 on sums and products."""
@@ -110,9 +107,7 @@ def direction_of(model: RowModel, inputs: Inputs) -> LineDirection:
     low, inner_low, inner_high, high = (output[:, probe] for probe in range(len(_SECANT)))
     rise = (high - low) / 2
     if inputs.factor is not None and any(shape.shape != Normal.shape for shape in inputs.shapes):
-        correlations = inputs.factor @ inputs.factor.T
-        followers = np.where(np.abs(correlations) > _FOLLOWS, correlations, 0.0)
-        alone = _probed(model, replace(inputs, factor=followers))
+        alone = _probed(model, replace(inputs, factor=None))
         rise = _with_every_input(rise, inputs.factor, alone[:, -1] - alone[:, 0])
     curvature = np.abs(high - low - 2 * (inner_high - inner_low)) + np.abs(high + low - inner_high - inner_low)
     length = np.sqrt(np.cumsum(rise * rise, axis=0)[-1])
@@ -147,8 +142,8 @@ def _with_every_input(rise: Array, factor: Array, alone: Array) -> Array:
 
     Equation: the α nearest to d with sᵢ (L α)ᵢ ≥ κ |gᵢ|: α = d + Aᵀ λ with the λ ≥ 0 that makes ‖d − κ L⁻¹ g + Aᵀ λ‖
         least, A = diag(s) L
-    Arguments: the rise d by independent scores, the rise g with the signs s by each input with those that follow it,
-        (inputs, rows) each; the factor L.
+    Arguments: the rise d by independent scores, the rise g with the signs s by each input alone, (inputs, rows) each;
+        the factor L, whose pseudo-inverse serves where inputs follow others.
     Valid: rows whose rise is finite; one along which no input goes the wrong way stays as it is.
     Source: projection on a polyhedral cone by its dual (Moreau 1962), non-negative least squares (Lawson and Hanson).
     """
