@@ -71,7 +71,46 @@ def corner_failing(limit):
     return quad(part, 0.5, 1.5, epsabs=1e-13)[0]
 
 
+THREE = {name: Uniform(0, 1) for name in ("b", "c", "d")}
+"""Parts whose sum S lies over 3 − x with the probability x³/6 for x up to 1."""
+
+TOP = 3 - (6 * PPM / 1e6) ** (1 / 3)
+
+
+def shifted(e, b, c, d):
+    """Return a lot's shift of three uniform parts."""
+    return e + b + c + d
+
+
+def scaled(a, e, b, c, d):
+    """Return a lot's scale and shift of three uniform parts."""
+    return e + a * (b + c + d)
+
+
+def scaled_failing(limit):
+    """Return the share of lots that fail whose scale is uniform about 1 and whose shift is normal."""
+    return quad(lambda a: stats.norm.sf((limit - a * TOP) / 0.1) / 0.1, 0.95, 1.05, epsabs=1e-13)[0]
+
+
 SPREAD = {
+    "shifted": (
+        shifted,
+        {"e": Normal(0, 0.1), **THREE},
+        {"e"},
+        2.9,
+        stats.norm.sf((2.9 - TOP) / 0.1),
+        0.5,
+        0.1,
+    ),
+    "scaled": (
+        scaled,
+        {"a": Uniform(0.95, 1.05), "e": Normal(0, 0.1), **THREE},
+        {"a", "e"},
+        2.9,
+        scaled_failing(2.9),
+        math.sqrt((1 + 0.01 / 12) / 4),
+        math.sqrt(0.01 + 2.25 * 0.01 / 12),
+    ),
     "sum": (total, SUM, {"a"}, 7.0, stats.norm.sf((7 - SCORE * math.sqrt(1.25)) / 2), math.sqrt(1.25), 2.0),
     "product": (
         product,
@@ -131,7 +170,7 @@ def test_a_sum_is_known_far_into_the_tail():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", ["crossed", "corner"])
+@pytest.mark.parametrize("case", ["crossed", "corner", "shifted", "scaled"])
 def test_told_errors_hold_the_truth(case):
     """± 1.96 of the told errors hold the exact share of failing lots, and sds, in at least 115 of 128 seeds."""
     model, inputs, between, limit, *exact = SPREAD[case]
@@ -291,13 +330,16 @@ def test_points_answer_where_lines_do_not_serve():
 @pytest.mark.parametrize("method", ["sobol", "random"])
 def test_points_answer_within_lots_where_lines_do_not_serve(method):
     """Where the output waves with the part inputs the parts of a lot are points too."""
-    spread = propagate(
-        lambda a, b: a + np.sin(5 * b), {"a": Normal(0, 1), "b": Uniform(-3, 3)}, method=method, between={"a"}
-    )
-    # Over the limit lies the part of a lot in which sin(5 b) > limit − a; at 10 % that is cos(π/10) of 30 rad.
     inner = np.sort(np.sin(5 * np.linspace(-3, 3, 2_000_001)))
-    exact = stats.norm.sf(1.5 - inner[int(0.9 * len(inner))])
-    assert abs(spread.lots_failing(1.5, 1e5) - exact) <= 4 * spread.lots_failing_standard_error(1.5, 1e5)
+    quantile = inner[int(0.9 * len(inner))]
+    # Lots that hardly differ are as unsure as their parts are few.
+    for seed, sd in ((0, 1.0), (0, 0.005), (1, 0.005), (2, 0.005), (3, 0.005)):
+        inputs = {"a": Normal(0, sd), "b": Uniform(-3, 3)}
+        spread = propagate(lambda a, b: a + np.sin(5 * b), inputs, method=method, between={"a"}, seed=seed)
+        limit = quantile + 0.5 * sd
+        assert abs(spread.lots_failing(limit, 1e5) - stats.norm.sf(0.5)) <= 4 * spread.lots_failing_standard_error(
+            limit, 1e5
+        )
 
 
 @pytest.mark.parametrize(

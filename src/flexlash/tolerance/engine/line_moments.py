@@ -107,9 +107,16 @@ def _trapezoid(every: int) -> Array:
     return np.asarray(weights / weights.sum())
 
 
+@cache
+def _legendre(count: int) -> tuple[Array, Array]:
+    """Return the nodes and weights of a Gauss–Legendre rule, whose eigenvalues take longer than all lines of a row."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return nodes, weights
+
+
 def _fine_rule(breaks: tuple[float, ...], count: int) -> tuple[Array, Array]:
     """Return positions and weights (k, 1) that integrate under the normal density between breaks."""
-    nodes, weights = np.polynomial.legendre.leggauss(count)
+    nodes, weights = _legendre(count)
     # A line may run either way through its one input.
     ends = np.unique([-REACH, *breaks, *(-score for score in breaks), REACH])
     half = np.diff(ends)[:, None] / 2

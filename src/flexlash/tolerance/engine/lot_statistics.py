@@ -43,6 +43,8 @@ _BLOCK = 1 << 16
 class LotPrecision:
     """The standard errors wanted: of sds as a part of the whole sd, of the failing share as a part of itself.
 
+    With an endless error of sds they are not asked for.
+
     Where every line through the lots meets all those through the parts, `most_pairs` bounds their product.
     """
 
@@ -154,7 +156,7 @@ class _Search:
             faults = lines.faults.copy()
             if len(own):
                 lines = lines if len(own) == len(block) else self._lines(way, numbers, own)
-                variance, failing = lines.variance(), self._failing(lines, own)
+                variance, failing = self._divided(lines, own), self._failing(lines, own)
                 faults[sound] = failing.faults
                 wanting += self._judged(way, numbers, own, variance, failing)
             self.found.faults[block] = faults
@@ -188,6 +190,13 @@ class _Search:
         if way == OTHERWISE:
             return EntangledLots(split, self._seed, numbers)
         return SeparableLots(split, way, self._seed, numbers)
+
+    def _divided(self, lines: LotLines, rows: Indices) -> VarianceSplit:
+        """Return how the variance is divided, NaN where that is not wanted."""
+        if np.isfinite(self._precision.sd):
+            return lines.variance()
+        nothing = np.full(len(rows), np.nan)
+        return VarianceSplit(within=nothing, between=nothing, within_error=nothing, between_error=nothing)
 
     def _failing(self, lines: LotLines, rows: Indices) -> FailingLots:
         """Return the share of lots that fail, NaN for rows without a limit."""
