@@ -7,6 +7,7 @@ import pytest
 from scipy import stats
 
 from flexlash.tolerance import Normal, Uniform, propagate
+from flexlash.tolerance.capability import clopper_pearson
 from flexlash.tolerance.sampled_spread import SampledSpread
 from flexlash.tolerance.sampling import REPLICATES, UnitPoints, standard_error
 
@@ -161,6 +162,58 @@ def test_a_median_on_a_gap_is_told_as_wide_as_the_gap(method):
     assert 4.5 / 1.96 <= spread.standard_error(0.5) <= 10 / 1.96
     assert spread.standard_error(0.25) < 0.02
     assert spread.standard_error(0.75) < 0.02
+
+
+SHARES = np.array([0.5, 0.1, 0.025, 0.01, 0.00135, 1e-4])
+INTERVALS = {
+    "one input": (lambda a: a, {"a": Normal(0, 1)}, stats.norm.isf(SHARES)),
+    "a sum": (total, NORMALS, math.sqrt(2) * stats.norm.isf(SHARES)),
+    "the greater": (lambda a, b: np.where(a > b, a, b), UNIFORMS, np.sqrt(1 - SHARES)),
+    "squares": (lambda a, b: a * a + b * b, NORMALS, -2 * np.log(SHARES)),
+}
+
+
+@pytest.mark.slow
+@each_method
+@pytest.mark.parametrize(("kind", "samples"), [("one input", 2**15), *((kind, 4096) for kind in INTERVALS)])
+def test_the_interval_of_a_share_covers(kind, samples, method):
+    """Of 200 seeds 95 % hold the share above a value, be it half or one in ten thousand; narrower by Sobol' points."""
+    model, inputs, values = INTERVALS[kind]
+    held, widths = np.zeros(len(SHARES)), np.zeros(len(SHARES))
+    for seed in range(200):
+        spread = spread_of(model, inputs, method=method, samples=samples, seed=seed)
+        low, high = np.transpose([spread.probability_interval(value) for value in values])
+        held += (low <= SHARES) & (high >= SHARES)
+        widths += (high - low) / 200
+    assert held.mean() >= 0.945 * 200
+    assert held.min() >= 172
+    plain = 2 * 1.96 * np.sqrt(SHARES * (1 - SHARES) / samples)
+    if method == "sobol":
+        assert (widths[:3] <= 0.7 * plain[:3]).all()
+    assert (widths[:5] <= 1.5 * plain[:5]).all()
+
+
+def test_the_interval_of_a_share_widens_with_confidence():
+    """A surer interval holds the less sure one, also beyond 95 %, where Student's is wider still."""
+    spread = spread_of(total, NORMALS)
+    ends = [spread.probability_interval(2.0, confidence) for confidence in (0.5, 0.683, 0.95, 0.99, 0.999)]
+    lows, highs = zip(*ends, strict=True)
+    assert lows == tuple(sorted(lows, reverse=True))
+    assert highs == tuple(sorted(highs))
+    # Student's factor of 15 degrees of freedom at 99 % over the normal one at 95 %.
+    assert (highs[3] - lows[3]) / (highs[2] - lows[2]) == pytest.approx(2.947 / 2.131, rel=0.02)
+
+
+def test_shares_that_no_replicate_disputes_are_not_taken_for_certain():
+    """Where each replicate counts as many points above a value, a few points stay open; none or all, as counted."""
+    spread = spread_of(lambda a: a, {"a": Uniform(0, 1)})
+    assert np.unique((spread.values > 0.5).mean(axis=1)).tolist() == [0.5]
+    low, high = spread.probability_interval(0.5)
+    assert (high - low) / 2 == pytest.approx(3 / 4096, rel=0.05)
+    second, last = np.sort(spread.values, axis=None)[-2:]
+    assert spread.probability_interval((second + last) / 2) == pytest.approx(clopper_pearson(1, 4096), rel=1e-12)
+    assert spread.probability_interval(2.0) == clopper_pearson(0, 4096)
+    assert spread.probability_interval(-1.0) == clopper_pearson(4096, 4096)
 
 
 @each_method

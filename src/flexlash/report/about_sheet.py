@@ -109,14 +109,14 @@ _SAMPLING = {
         "Unless Settings name a number, lines are added until P0.135, P2.5, P50, P97.5 and P99.865 have standard "
         f"errors of {SD_PRECISION:g} sd and the probability over the limit of {100 * PROBABILITY_PRECISION:g} % of "
         f"itself, or there are {MOST_LINES:,}: then the note on the spread says what was reached.",
-        "A row whose backlash does not rise along its lines is answered by Sobol' points; its note says so.",
+        "A row whose backlash does not rise smoothly along its lines is answered by Sobol' points; its note says so.",
     ),
     "sobol": (
         f"Scrambled Sobol' points in {REPLICATES} independent replicates, whose scatter gives the standard errors "
         "(widened as Student's t asks).",
         "All variants meet the same points, so that they differ by their dimensions and not by chance.",
         "Percentiles are quantiles of type 7 (Excel's PERCENTILE.INC). The interval of the probability over the limit "
-        "is Clopper and Pearson's for a plain count, wider than needed.",
+        "is Clopper and Pearson's of so many independent points as know it as well.",
     ),
     "random": (
         "Plain Monte Carlo: independent draws, standard errors by theory.",

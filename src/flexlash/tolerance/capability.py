@@ -9,11 +9,12 @@ from scipy.special import betaincinv
 __all__ = ["clopper_pearson", "ppk_normal", "ppk_upper"]
 
 
-def clopper_pearson(count: int, total: int, confidence: float = 0.95) -> tuple[float, float]:
+def clopper_pearson(count: float, total: float, confidence: float = 0.95) -> tuple[float, float]:
     """Return the ends of the exact two-sided interval of a probability of which `count` in `total` were seen.
 
     Equation: the ends p with P(X ≥ count | p) = P(X ≤ count | p) = (1 − confidence)/2, by the inverse beta function
-    Arguments: 0 ≤ count ≤ total, total ≥ 1; confidence between 0 and 1.
+    Arguments: 0 ≤ count ≤ total, total ≥ 1, of draws that are worth so many where they are no whole numbers; confidence
+        between 0 and 1.
     Valid: independent draws; it holds the probability at least as often as `confidence` says.
     Source: Clopper and Pearson 1934.
 

@@ -20,7 +20,7 @@ from flexlash.tolerance.digital_nets import scrambled_net
 from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.spread import Method
 
-__all__ = ["DEFAULT_SAMPLES", "REPLICATES", "PointMethod", "SamplingPlan", "UnitPoints", "standard_error"]
+__all__ = ["DEFAULT_SAMPLES", "REPLICATES", "PointMethod", "SamplingPlan", "UnitPoints", "standard_error", "widening"]
 
 REPLICATES = 16
 """Independent replicates behind every standard error: 15 degrees of freedom."""
@@ -80,13 +80,18 @@ def standard_error(replicates: Array) -> Array:
     count = replicates.shape[-1]
     deviation = replicates - np.add.reduce(replicates, axis=-1, keepdims=True) / count
     squares = np.add.reduce(deviation * deviation, axis=-1)
-    return np.asarray(np.sqrt(squares / ((count - 1) * count)) * _widening(count))
+    return np.asarray(np.sqrt(squares / ((count - 1) * count)) * widening(count))
 
 
 @cache
-def _widening(count: int) -> float:
-    """Return how much wider Student's 95 % interval is than the normal one."""
-    return float(stdtrit(count - 1, 0.975) / ndtri(0.975))
+def widening(count: int, confidence: float = 0.95) -> float:
+    """Return how much wider than the normal one Student's interval of the mean of so many replicates is.
+
+    >>> round(widening(16), 4), round(widening(16, 0.99), 4)
+    (1.0875, 1.144)
+    """
+    upper = (1 + confidence) / 2
+    return float(stdtrit(count - 1, upper) / ndtri(upper))
 
 
 class UnitPoints:
