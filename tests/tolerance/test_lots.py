@@ -6,11 +6,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from line_models import row_model
 from scipy import stats
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform, propagate
+from flexlash.tolerance.engine.line_direction import Inputs
+from flexlash.tolerance.engine.line_lots import LineNumbers, SeparableLots
+from flexlash.tolerance.engine.line_tables import FAULTS
+from flexlash.tolerance.engine.lot_inputs import PRODUCT, LotsAndParts
 from flexlash.tolerance.nested_lots import NOT_LINES
 
 thorough = settings(deadline=None, max_examples=25, derandomize=True)
@@ -295,6 +300,31 @@ def test_limits_out_of_reach_fail_all_lots_or_none(method):
     assert spread.lots_failing(-1000.0, 1e6) == 0.0
 
 
+def test_a_factor_may_change_its_sign():
+    """A product whose lot factor is negative once in three million lots is told as surely as another one."""
+    spread = propagate(lambda a, b: a * b, {"a": Normal(10, 2), "b": Normal(5, 0.1)}, between={"a"})
+    assert spread.notes == ()
+    exact = stats.norm.sf((80 / (5 + 0.1 * SCORE) - 10) / 2)
+    assert spread.lots_failing(80.0, PPM) == pytest.approx(exact, rel=1e-4)
+    for sd, fault in ((1.0, ""), (3.0, "the output does not rise everywhere along its gradient at the median")):
+        split = LotsAndParts(
+            row_model(lambda a, b: a * b), Inputs.of([{"a": Normal(10, sd), "b": Normal(5, 0.1)}]), "a"
+        )
+        assert FAULTS[SeparableLots(split, PRODUCT, 0, LineNumbers(64, 64)).faults[0]] == fault
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["sobol", "random"])
+def test_points_of_a_factor_that_changes_its_sign_are_nested(method):
+    """In a lot with a negative factor the greatest outputs are those of the least parts."""
+    inputs = {"a": Normal(-1, 1), "b": TruncatedNormal(5, 1, 1, 9)}
+    spread = propagate(lambda a, b: a * b, inputs, method=method, between={"a"})
+    parts = stats.truncnorm(-4, 4, 5, 1)
+    for limit, quantile in ((-4.0, parts.ppf(0.2)), (4.0, parts.ppf(0.8))):
+        exact = stats.norm.sf(limit / quantile + 1)
+        assert abs(spread.lots_failing(limit, 2e5) - exact) <= 4 * spread.lots_failing_standard_error(limit, 2e5)
+
+
 def test_fewer_lots_fail_where_more_is_acceptable():
     """The share of failing lots falls as the acceptable share or the limit rises."""
     spread = propagate(crossed, CROSSED, between={"a", "c"})
@@ -319,6 +349,13 @@ def test_points_answer_where_lines_do_not_serve():
     exact = stats.norm.sf(2 + math.sqrt(1.0 - SCORE * 0.2))
     assert abs(spread.lots_failing(1.0, PPM) - exact) <= 4 * spread.lots_failing_standard_error(1.0, PPM)
     assert spread.within_lot_sd == pytest.approx(0.2, rel=0.02)
+
+    hidden = propagate(lambda a, b: 3 * b + 0.3 * np.sin(6 * a), {"a": Normal(0, 1), "b": Normal(0, 1)}, between={"a"})
+    assert hidden.method == "line"
+    assert hidden.notes == (f"{NOT_LINES}: the output does not rise everywhere along its gradient at the median.",)
+    found, error = (ask(3 * SCORE + 0.2, PPM) for ask in (hidden.lots_failing, hidden.lots_failing_standard_error))
+    assert abs(found - (math.pi - 2 * math.asin(2 / 3)) / (2 * math.pi)) <= 4 * error
+    assert abs(hidden.between_lots_sd - 0.3 / math.sqrt(2)) <= 4 * hidden.between_lots_sd_standard_error
 
     wave = propagate(lambda a, b: np.sin(a) + b, {"a": Uniform(-3, 3), "b": Normal(0, 0.1)}, between={"a"})
     assert wave.method == "sobol"

@@ -13,7 +13,7 @@ from toleranced import SUM, every_number, plan, row, statistics_of_row
 from flexlash.schema.units import ARCMIN
 from flexlash.tolerance import propagate
 from flexlash.tolerance.dimension_limits import Limits, distributions
-from flexlash.tolerance.row_batches import batch_statistics
+from flexlash.tolerance.row_batches import batch_statistics, batches_alike
 
 LOTS = frozenset({"youngs_modulus", "poisson_ratio", "shear_modulus", "cylinder_calibration", "disk_calibration"})
 
@@ -153,6 +153,12 @@ def test_a_row_without_any_scatter_has_lots_alike():
         numbers = statistics_of_row(replace(STUDY, limits={}, upper_limit=upper), plan()).numbers
         assert (numbers["within_lot_sd"], numbers["between_lots_sd"]) == (0.0, 0.0)
         assert numbers.get("lots_failing") == fails
+
+
+def test_rows_that_differ_in_what_lots_share_are_not_alike():
+    """Rows are spread together only if they share the same names between lots; each is told its own."""
+    rows = [replace(STUDY, between=between) for between in (LOTS, frozenset({"wall_thickness"}), None, LOTS)]
+    assert sorted(map(sorted, batches_alike(rows))) == [[0, 3], [1], [2]]
 
 
 @pytest.mark.parametrize("acceptable", [1e-5, 1350e-6, 0.2])

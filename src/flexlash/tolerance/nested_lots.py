@@ -20,8 +20,8 @@ __all__ = ["NOT_LINES", "lots_of", "require_lots_apart"]
 
 NOT_LINES = "Lots by points instead of lines"
 
-_WANTED = LotPrecision(sd=2e-4, failing=0.01, most_pairs=1 << 16)
-_WANTED_FAILING = replace(_WANTED, sd=np.inf)
+_WANTED_DIVISION = LotPrecision(sd=2e-4, failing=np.inf, most_pairs=1 << 16)
+_WANTED_FAILING = replace(_WANTED_DIVISION, sd=np.inf, failing=0.01)
 
 
 def lots_of(
@@ -75,7 +75,10 @@ class LineLots(Lots):
         self._samples = samples
         self._seed = seed
         self._points = points
-        found = self._statistics(np.nan, 0.0, _WANTED)
+        with np.errstate(all="ignore"):
+            middle = float(split.at_medians()[0])
+        # Half of the parts over the middle: a question that any lines which serve can answer.
+        found = self._statistics(middle, 0.5, _WANTED_DIVISION)
         if found.faults[0]:
             raise LinesUnsuitable(FAULTS[found.faults[0]])
         self._division = division_of(found)

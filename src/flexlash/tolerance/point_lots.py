@@ -152,7 +152,7 @@ class PointLots(Lots):
         return float(fails.mean()), math.hypot(error, float(ndtr(-np.abs(score)).mean()))
 
     def _separate_scores(self, limit: float, acceptable: float) -> Array | None:
-        """Return how far beyond the limit each lot's quantile is, in standard errors; None where no line tells it.
+        """Return how far beyond the limit each lot's quantile is, in standard errors; None where they tell no quantile.
 
         Equation: q(l) = g(l) + q(l₀) − g(l₀) for a sum, g(l) q(l₀)/g(l₀) for a product, l₀ the lot at the medians
         """
@@ -166,6 +166,9 @@ class PointLots(Lots):
         lots = self._alone(self._split.lots, _each(self._samples))
         if self._relation != PRODUCT:
             return _scores(lots + (quantile - centre) - limit, error)
+        if min((lots / centre).min(), quantile[0] / centre) <= 0:
+            # Where a factor is negative the greatest outputs are those of the other's least values.
+            return None
         return _scores(lots * (quantile / centre) - limit, np.abs(lots / centre) * error)
 
     def _nested_scores(self, limit: float, acceptable: float) -> Array:

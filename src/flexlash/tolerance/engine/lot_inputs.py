@@ -145,7 +145,9 @@ def values_at(inputs: Inputs, scores: Array, shape: tuple[int, ...] | None = Non
 
 def _scattered(inputs: Inputs, seed: int) -> dict[str, Array]:
     """Return inputs at points near and far that have nothing in common, (probes, rows) by name."""
-    scores = np.random.default_rng(seed).uniform(-1, 1, (len(inputs.names), _PROBES, 1))
+    generator = np.random.default_rng(seed)
+    shape = len(inputs.names), _PROBES, 1
+    scores = generator.choice([-1.0, 1.0], shape) * generator.uniform(0.6, 1, shape)
     return values_at(inputs, scores * np.linspace(_REACH, _REACH / _PROBES, _PROBES)[:, None])
 
 
