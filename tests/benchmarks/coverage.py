@@ -36,6 +36,8 @@ LINES = (64, 256, 0)
 LOW, HIGH = 0.91, 0.99
 BIASED = 3.3
 """Standard errors of a mean over seeds beyond which it is listed."""
+NOTABLE = 0.3
+"""And the part of the told error that it must reach, since that covers it anyway."""
 WIDE = 0.7
 """Errors found over errors told: below this the told ones are too large."""
 MANY = 100
@@ -78,14 +80,13 @@ class Found:
 
     def line(self):
         """Return the line to print."""
-        shares = "".join("      ·" if math.isnan(share) else f"{share:7.1%}" for share in self.by_group())
         mean, _ = self.bias
         percentiles = slice(0, len(PROBABILITIES))
         told = self.errors[:, percentiles].max(axis=1).mean()
         off = abs(mean[percentiles]).max()
         kinds = max(set(self.methods), key=self.methods.count)
         numbers = f"{np.median(self.sizes):7,.0f}{np.median(self.seconds) * 1e3:7.1f}{told:9.1e}{off:9.1e}"
-        return f"{self.case:34}{self.lines or 'auto':>5} {kinds:6}{numbers}{shares}"
+        return f"{self.case:34}{self.lines or 'auto':>5} {kinds:6}{numbers}{cells(self.by_group())}"
 
     def doubtful(self):
         """Yield what is to be listed."""
@@ -96,13 +97,18 @@ class Found:
             ratio = min(math.sqrt((self.deviations[:, place] ** 2).mean()) / max(told, 1e-300), 999)
             low = share < min(LOW, 0.95 - 2.5 * chance(len(self.deviations)))
             high = share > HIGH and told > SHARP and ratio < WIDE and len(self.deviations) >= MANY
-            biased = off > BIASED and abs(mean[place]) > 0.1 * told
+            biased = off > BIASED and abs(mean[place]) > NOTABLE * told
             if low or high or biased:
                 signs = [sign for sign, wanted in (("LOW", low), ("HIGH", high), ("BIAS", biased)) if wanted]
                 yield (
                     f"{'+'.join(signs):10}{self.case:34}{self.lines or 'auto':>5} {name:18}covered {share:6.1%}, "
                     f"told {told:.1e}, rms error / told {ratio:.2f}, bias {mean[place]:+.1e} ({off:.1f} of its errors)"
                 )
+
+
+def cells(shares):
+    """Return the cells of shares covered, a dot where nothing is known."""
+    return "".join("      ·" if math.isnan(share) else f"{share:7.1%}" for share in shares)
 
 
 def chance(seeds):
@@ -118,7 +124,7 @@ def expected(truth):
     ]
     rows += [("mean", "mean", truth.mean, truth.sd, own), ("sd", "sd", truth.sd, truth.sd, own)]
     for name, value in (("skew", truth.skewness), ("kurt", truth.kurtosis)):
-        rows += [(name, name, value, 1.0, 10 * own)] if value is not None else []
+        rows += [(name, name, value, 1.0, 10 * own * max(1.0, abs(value)))] if value is not None else []
     rows += [(name, name, ndtri(share), 1.0, 10 * own) for name, share in zip(("p 1e-3", "p 1e-5"), RARE, strict=True)]
     for group, shares in (("shares", truth.shares), ("total", truth.total_shares)):
         rows += [(f"{group} {name}", group, share, 1.0, 10 * own) for name, share in shares.items()]
@@ -199,7 +205,9 @@ def summary(found, lines):
     for samples in lines:
         chosen = [one for one in found if one.lines == samples]
         shares = np.array([one.by_group() for one in chosen])
-        pooled = "".join("      ·" if math.isnan(share) else f"{share:7.1%}" for share in np.nanmean(shares, axis=0))
+        known = ~np.isnan(shares)
+        means = [column[used].mean() if used.any() else np.nan for column, used in zip(shares.T, known.T, strict=True)]
+        pooled = cells(means)
         every = np.concatenate([one.covered for one in chosen])
         print(f"{'all cases':34}{samples or 'auto':>5}{'':39}{pooled}")
         print(f"{'':34}{every.mean():.2%} of {len(every)} statistics, {every.min():.1%} of the least")

@@ -10,11 +10,13 @@ import numpy as np
 from coverage_truths import (
     CHAIN,
     GAUGE_BLOCK,
+    HEAVY,
     SDS,
     UNIFORM,
     WIDE,
     gauge_block,
     gauge_block_truth,
+    heavy_truth,
     lognormal_truth,
     normal_sum_truth,
     pair_truth,
@@ -27,7 +29,7 @@ from coverage_truths import (
 from exact_laws import Truth, additive, identity
 from wind_up_law import WindUpLaw, inputs_of, wind_up
 
-from flexlash.tolerance import Lognormal, Measured, Normal, Student, Triangular, TruncatedNormal, Uniform
+from flexlash.tolerance import Lognormal, Measured, Normal, Triangular, TruncatedNormal, Uniform
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,7 +145,6 @@ def cases():
     soft = alike(4, NORMAL)
     lognormals = {"a": Lognormal(2.0, 0.4), "b": Lognormal(1.0, 0.1), "c": Lognormal(3.0, 0.9)}
     measured_inputs = {"a": measured(60, 1), "b": measured(25, 2), "c": measured(200, 3), **alike(2, NORMAL)}
-    heavy = {"a": Student(0, 2, 5), "b": Student(0, 1, 5)}
     return {
         "product of 2 normal": multiplied(alike(2, NORMAL), between=("x0",)),
         "product of 7 normal": multiplied(alike(7, NORMAL), between=("x0", "x1")),
@@ -200,7 +201,7 @@ def cases():
             between=("c",),
         ),
         "sum, 3 measured of 5": summed(measured_inputs, between=("a",)),
-        "sum of 2 Student 5": summed(heavy, known=(0.0, 5 / math.sqrt(3), 0.0, 6 * 17 / 25), error=1e-5),
+        "sum of 2 Student 5": Case(model=total, inputs=HEAVY, truth=heavy_truth),
         "steep: exp of 2 normal of sd 2": Case(
             model=exponential,
             inputs=steep,

@@ -123,6 +123,27 @@ def rounded_truth():
     )
 
 
+HEAVY = {"a": Student(0, 2, 5), "b": Student(0, 1, 5)}
+
+
+def heavy_truth():
+    """Return the truth of a sum of two Student's t of five degrees: the second is integrated exactly."""
+    nodes = np.linspace(-8.5, 8.5, 20_001)
+    weights = np.exp(-(nodes**2) / 2)
+    weights /= weights.sum()
+    first = values_at(HEAVY["a"], nodes)
+    shares = {"a": 0.8, "b": 0.2}
+    return Truth(
+        quantile=inverse(lambda value: weights @ stdtr(5, value - first), -1000, 1000),
+        mean=0.0,
+        sd=5 / math.sqrt(3),
+        skewness=0.0,
+        kurtosis=6 * 17 / 25,
+        shares=shares,
+        total_shares=shares,
+    )
+
+
 def gauge_block(standard, comparator, random, systematic, *, alpha, theta, cycle, **drawn):
     """Return the deviation of a gauge block from 50 mm [nm], JCGM 101 9.5: 11 inputs, of which 4 draw 2 quantities."""
     alpha_difference = curved(1e-6, 1e-7, drawn["alpha_width"], drawn["alpha_at"])
