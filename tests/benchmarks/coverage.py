@@ -2,7 +2,7 @@
 
     python tests/benchmarks/coverage.py [--seeds SEEDS] [--lines LINES ...] [--jobs JOBS] [CASE ...]
 
-Every case of `coverage_cases` is spread with each of many seeds by 64 lines, by 256 lines, and by as many as the engine
+Every case of `coverage_cases` is spread with each of many seeds by 16 lines, by 64 lines, and by as many as the engine
 takes of itself (0). Covered should be 95 %: of percentiles, mean, standard deviation, skewness, kurtosis, the
 probability over P99.865 and over the value that one in 100,000 exceeds, the shares of variance, and what is said of
 lots. Truths come from closed forms, characteristic functions and quadrature, none from the engine; what they are
@@ -32,7 +32,7 @@ RARE = (0.00135, 1e-5)
 """Probabilities to be found over the values that have them."""
 ACCEPTABLE = 1350.0
 """Parts per million over the limit that a lot may have."""
-LINES = (64, 256, 0)
+LINES = (16, 64, 0)
 LOW, HIGH = 0.91, 0.99
 BIASED = 3.3
 """Standard errors of a mean over seeds beyond which it is listed."""
