@@ -11,7 +11,7 @@ from flexlash.schema.result_columns import result_columns
 __all__ = ["AGREEING", "POINTS", "is_within_error"]
 
 AGREEING = 4.0
-"""Combined standard errors within which two numbers agree, as those of the cross-check do."""
+"""Combined standard errors within which two numbers agree; errors are widened where few replicates are behind them."""
 
 POINTS = frozenset({"seed", "method", "samples"})
 """Settings that change the points of the calculation and nothing of the gear."""

@@ -17,6 +17,7 @@ from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, SETTINGS
 from flexlash.schema.number_words import grouped
 from flexlash.schema.result_columns import result_columns
+from flexlash.tolerance.cross_check import AGREEMENT
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES
 from flexlash.tolerance.engine.line_precision import MOST_LINES, PROBABILITY_PRECISION, SD_PRECISION
 from flexlash.tolerance.sampling import REPLICATES
@@ -136,7 +137,8 @@ def _statistics(outcome: Outcome) -> Iterator[str]:
     if "cross_check" in outcome.results.columns:
         yield (
             "Cross-check: plain Monte Carlo beside the spread. They agree when mean, sd, all percentiles and the "
-            "probability over the limit differ by at most 4 combined standard errors."
+            f"probability over the limit differ by at most {AGREEMENT:g} combined standard errors, which chance "
+            "exceeds in fewer than one row in 10,000."
         )
     yield "Worst case: every dimension at the tolerance limit that hurts, whatever k; normal units can lie beyond it."
     yield "First-order sd: root of the sum of squared (slope × sd) at mid-limits, as in the GUM."

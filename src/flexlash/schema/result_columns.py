@@ -216,12 +216,13 @@ CROSS_CHECK = (
     _result(
         "cross_check_deviation",
         "Greatest difference",
-        "Greatest difference between the spread and plain draws, in combined standard errors.",
+        "Greatest difference between the spread and plain draws, in combined standard errors of a normal: at most 37.",
     ),
     _result(
         "cross_check",
         "Cross-check",
-        "agrees: all within 4 combined standard errors. differs: not so.",
+        "agrees: all within 5 combined standard errors, which chance exceeds in fewer than one row in 10,000. differs: "
+        "not so.",
         type="choice",
         choices=("agrees", "differs"),
     ),
