@@ -1,6 +1,7 @@
 """Lots and parts: how the spread divides, and the share of lots that fail, against closed forms and brute force."""
 
 import math
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -12,10 +13,12 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from flexlash.tolerance import Normal, Triangular, TruncatedNormal, Uniform, propagate
+from flexlash.tolerance.engine.entangled_lots import EntangledLots
 from flexlash.tolerance.engine.line_direction import Inputs
 from flexlash.tolerance.engine.line_lots import LineNumbers, SeparableLots
 from flexlash.tolerance.engine.line_tables import FAULTS
 from flexlash.tolerance.engine.lot_inputs import PRODUCT, LotsAndParts
+from flexlash.tolerance.engine.lot_statistics import lot_statistics
 from flexlash.tolerance.nested_lots import NOT_LINES
 
 thorough = settings(deadline=None, max_examples=25, derandomize=True)
@@ -74,6 +77,21 @@ def corner_failing(limit):
         return stats.norm.sf((limit - a - 0.4 + math.sqrt(2 * a * 0.4 * PPM / 1e6)) / 0.2)
 
     return quad(part, 0.5, 1.5, epsabs=1e-13)[0]
+
+
+def weighed_failing(limit):
+    """Return the share of lots that fail whose two uniform weights of normal parts lie in a square."""
+
+    def beyond(c, a):
+        return a + c + SCORE * math.hypot(a, c) - limit
+
+    def part(a):
+        if beyond(2.0, a) <= 0:
+            return 0.0
+        return (2.0 - brentq(beyond, 0.2, 2.0, args=(a,))) / 1.8**2 if beyond(0.2, a) < 0 else 1 / 1.8
+
+    edge = brentq(lambda a: beyond(2.0, a), 0.2, 2.0)
+    return quad(part, edge, 2.0, epsabs=1e-13)[0]
 
 
 THREE = {name: Uniform(0, 1) for name in ("b", "c", "d")}
@@ -135,6 +153,15 @@ SPREAD = {
         math.sqrt(0.3**2 * 101 + 0.2**2 * 16.25),
         math.sqrt(25 + 9 * 0.25),
     ),
+    "weighed": (
+        crossed,
+        {"a": Uniform(0.2, 2), "c": Uniform(0.2, 2), "b": Normal(1, 1), "d": Normal(1, 1)},
+        {"a", "c"},
+        10.0,
+        weighed_failing(10.0),
+        math.sqrt(2 * (1.1**2 + 1.8**2 / 12)),
+        math.sqrt(2 * 1.8**2 / 12),
+    ),
     "corner": (
         corner,
         CORNER,
@@ -160,7 +187,7 @@ def test_lots_and_parts_are_those_of_the_closed_form(case, method):
     found, error = spread.lots_failing(limit, PPM), spread.lots_failing_standard_error(limit, PPM)
     assert abs(found - failing) <= 4 * error
     assert math.hypot(spread.within_lot_sd, spread.between_lots_sd) == pytest.approx(spread.sd, rel=1e-12)
-    if method == "line":
+    if spread.method == "line":
         assert error <= 0.02 * failing
         assert max(spread.within_lot_sd_standard_error, spread.between_lots_sd_standard_error) <= 1e-3 * spread.sd
 
@@ -175,7 +202,7 @@ def test_a_sum_is_known_far_into_the_tail():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", ["crossed", "corner", "shifted", "scaled"])
+@pytest.mark.parametrize("case", ["crossed", "weighed", "corner", "shifted", "scaled"])
 def test_told_errors_hold_the_truth(case):
     """± 1.96 of the told errors hold the exact share of failing lots, and sds, in at least 115 of 128 seeds."""
     model, inputs, between, limit, *exact = SPREAD[case]
@@ -191,6 +218,37 @@ def test_told_errors_hold_the_truth(case):
         held += [abs(one - truth) <= 1.96 * error for one, truth, error in zip(found, exact, errors, strict=True)]
     # Of 128 intervals of 95 %, 115 and fewer hold in one trial in 600.
     assert held.min() >= 115
+
+
+@pytest.mark.slow
+def test_told_errors_hold_where_few_lots_are_corrected():
+    """Few lines through the lots, and many through the parts, tell how far off they are."""
+    model, inputs, between, limit, exact, *_ = SPREAD["weighed"]
+    split = LotsAndParts(row_model(model), Inputs.of([inputs]), between)
+    held = 0
+    with np.errstate(all="ignore"):
+        for seed in range(128):
+            lots = EntangledLots(split, seed, LineNumbers(16, 64))
+            failing = lots.failing(np.array([limit]), PPM / 1e6)
+            assert failing.lots_error[0] > 3 * failing.parts_error[0]
+            held += abs(failing.share[0] - exact) <= 1.96 * failing.error[0]
+    assert held >= 115
+
+
+def test_lots_of_a_row_do_not_see_other_rows():
+    """A row beside one that takes more rounds of correction has to the last bit the numbers that it has alone."""
+    model, wide, between, limit, *_ = SPREAD["weighed"]
+    narrow = {**wide, "a": Uniform(1.09, 1.11), "c": Uniform(1.0, 1.2)}
+    limits = np.array([limit, 6.95])
+
+    def found(rows, limit):
+        split = LotsAndParts(row_model(model), Inputs.of(rows), between)
+        statistics = lot_statistics(split, limit, PPM / 1e6, seed=0)
+        return np.stack([getattr(statistics, field.name) for field in fields(statistics)])
+
+    together = found([wide, narrow], limits)
+    for index, row in enumerate((wide, narrow)):
+        assert np.array_equal(found([row], limits[[index]])[:, 0], together[:, index])
 
 
 def random_case(generator):

@@ -13,6 +13,7 @@
     lot_inputs          inputs that a lot draws once, those that each part draws, and how both act together
     lot_variance        how the variance divides into that within lots and that between them
     line_lots           the share of lots that fail, by lines through the inputs of lots and of parts
+    entangled_lots      the same where lots and parts act together otherwise than by a sum or a product
     lot_statistics      what lots and parts have of the spread of many rows
 
 Every input is a function of a standard normal *score*. A *position* on a line is a score as well. *Rows alike* have

@@ -6,39 +6,32 @@ share of lots that fail, and lines through that of the part inputs the quantile 
 
 Equation: P(p(l) > a) = P(q(l) > limit), with p(l) = P(Y > limit | l) and q(l) the quantile of Y | l at 1 − a
 Valid: what keeps lines from a row is told by `FAULTS`, as for its spread.
-Source: line sampling, as in `line_tables`; the quantile at a fixed design point of the parts, which the tables hold, is
-    that of first-order reliability (Hasofer and Lind 1974): its slopes at the medians are those of the quantile.
+Source: line sampling, as in `line_tables`.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import ndtri
 
 from flexlash.schema.arrays import Array
-from flexlash.tolerance.engine.line_direction import Indices, Inputs, LineDirection, RowModel, direction_of
+from flexlash.tolerance.engine.line_direction import Indices, Inputs, direction_of
 from flexlash.tolerance.engine.line_moments import moments_of
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, Net, line_net
 from flexlash.tolerance.engine.line_precision import unresolved
-from flexlash.tolerance.engine.line_quantiles import LEAST_PROBABILITY, LineQuantiles, quantiles_at, quantiles_of
-from flexlash.tolerance.engine.line_tables import NODES, STEPS, Lines
-from flexlash.tolerance.engine.lot_inputs import LOTS_ALIKE, PARTS_ALIKE, PRODUCT, LotsAndParts, holding
-from flexlash.tolerance.engine.lot_variance import VarianceSplit, split_of, variance_split
+from flexlash.tolerance.engine.line_quantiles import LineQuantiles, quantiles_at, quantiles_of
+from flexlash.tolerance.engine.line_tables import STEPS, Lines
+from flexlash.tolerance.engine.lot_inputs import LOTS_ALIKE, PARTS_ALIKE, PRODUCT, LotsAndParts
+from flexlash.tolerance.engine.lot_variance import VarianceSplit, split_of
 from flexlash.tolerance.lots import step_at
 
-__all__ = ["EntangledLots", "FailingLots", "LineNumbers", "LotLines", "SeparableLots"]
+__all__ = ["FailingLots", "LineNumbers", "LotLines", "SeparableLots", "worse_faults"]
 
-_BLOCK = 1 << 21
-"""Numbers of the tables through lots that are held at once."""
-
-
-_NO_GRADIENT, _SIGN = 1, 3
-"""Faults of lines: no gradient; an output that falls somewhere, as a product does beyond a change of sign."""
+_SIGN = 3
+"""The fault of an output that falls somewhere, as a product does beyond a change of sign."""
 
 
 class LineNumbers(NamedTuple):
@@ -78,6 +71,7 @@ class LotLines(ABC):
     def __init__(self, split: LotsAndParts, seed: int, lines: LineNumbers) -> None:
         self.split = split
         self.seed = seed
+        self.lines = lines
         self.centre = split.at_medians()
         self._every = np.arange(split.rows)
         self._lot_direction = direction_of(split.lots_alone, split.lots)
@@ -149,7 +143,7 @@ class SeparableLots(LotLines):
         if self._parts is not None:
             found = quantiles_of(self._parts, np.array([1 - acceptable]))
             quantile, error = found.output[0], found.output_error[0]
-            faults = _worse(faults, self._parts, found)
+            faults = worse_faults(faults, self._parts, found)
         if self._lots is None:
             share, unsure = step_at(quantile - limit, error)
             return FailingLots(share=share, lots_error=np.zeros_like(share), parts_error=unsure, faults=faults)
@@ -161,101 +155,8 @@ class SeparableLots(LotLines):
         else:
             threshold = limit - (quantile - self.centre)
         above = quantiles_at(self._lots, threshold[None])
-        faults = _worse(faults, self._lots, above)
+        faults = worse_faults(faults, self._lots, above)
         return _failing(above, error, faults)
-
-
-class EntangledLots(LotLines):
-    """Rows in which lots and parts act together otherwise: crossings are corrected with the lots' own quantiles.
-
-    The same lines through the part inputs serve every lot, so that the quantile is smooth over the lots.
-    """
-
-    def __init__(self, split: LotsAndParts, seed: int, lines: LineNumbers) -> None:
-        super().__init__(split, seed, lines)
-        self._fewest = min(lines)
-        steady = (self._lot_direction.vector != 0).any(axis=0) & (self._part_direction.vector != 0).any(axis=0)
-        self.faults = np.where(steady, 0, _NO_GRADIENT)
-
-    def variance(self) -> VarianceSplit:
-        """Return how the variance of each row is split."""
-        return variance_split(self.split, self.seed, self._fewest)
-
-    def failing(self, limit: Array, acceptable: float) -> FailingLots:
-        """Return the share of lots with more than the acceptable share of parts over the limit (rows,)."""
-        quantiles = _LotQuantiles(self.split, self._part_direction, self._part_net, acceptable)
-        medians = quantiles({name: values[None] for name, values in self.split.lot_medians.items()}, self._every)
-        lines = _QuantileLines(
-            self._at_design_point(acceptable, medians[0]),
-            quantiles,
-            self.split.lots,
-            self._lot_direction,
-            self._lot_net,
-        )
-        above = quantiles_at(lines, limit[None])
-        faults = np.where(self.faults > 0, self.faults, lines.faults)
-        faults = _worse(np.where(faults > 0, faults, quantiles.faults), lines, above)
-        return _failing(above, quantiles.errors.reshape(lines.rows, -1).mean(axis=1), faults)
-
-    def _at_design_point(self, acceptable: float, quantile: Array) -> RowModel:
-        """Return the output of the lot inputs with the parts at their design point, moved to the medians' quantile.
-
-        Equation: y(l) = Y(l, p*) + q(l₀) − Y(l₀, p*), p* at the score Φ⁻¹(1 − a) α in the direction α of the parts
-        """
-        score = float(ndtri(np.clip(1 - acceptable, LEAST_PROBABILITY, 1 - LEAST_PROBABILITY)))
-        scores = self.split.parts.correlated(score * self._part_direction.vector)
-        parts = {
-            name: self.split.parts.location[index]
-            + self.split.parts.scale[index] * self.split.parts.shapes[index].standard_at(scores[index])
-            for index, name in enumerate(self.split.parts.names)
-        }
-        fixed = holding(self.split.model, parts, self._every)
-        medians = fixed({name: values[None] for name, values in self.split.lot_medians.items()}, self._every)[0]
-        return lambda arguments, rows: fixed(arguments, rows) + (quantile - medians)[rows]
-
-
-class _LotQuantiles:
-    """The model of a lot's quantile: an output that depends on the lot inputs alone.
-
-    `errors` are the standard errors that it was last found with; `faults` (rows,) tells what kept lines from any lot.
-    """
-
-    def __init__(self, split: LotsAndParts, direction: LineDirection, net: Net, acceptable: float) -> None:
-        self._split = split
-        self._direction = direction
-        self._net = net
-        self._probability = np.array([1 - acceptable])
-        self.errors = np.zeros(0)
-        self.faults = np.zeros(split.rows, dtype=np.intp)
-
-    def __call__(self, arguments: Mapping[str, Array], rows: Indices) -> Array:
-        """Return the quantiles in lots (k, columns) by name; each column belongs to the row of its index."""
-        shape = next(iter(arguments.values())).shape
-        lots = {name: values.reshape(-1) for name, values in arguments.items()}
-        every = np.broadcast_to(rows, shape).reshape(-1)
-        step = max(_BLOCK // (len(NODES) * self._net.lines), 1)
-        pieces = [self._quantiles(lots, every, slice(start, start + step)) for start in range(0, len(every), step)]
-        quantiles, errors = (np.concatenate(values) for values in zip(*pieces, strict=True))
-        self.errors = errors
-        return np.asarray(quantiles).reshape(shape)
-
-    def _quantiles(self, lots: Mapping[str, Array], rows: Indices, chosen: slice) -> tuple[Array, Array]:
-        """Return the quantiles and their standard errors in some lots, (n,) each."""
-        rows = rows[chosen]
-        model = holding(self._split.model, {name: values[chosen] for name, values in lots.items()}, rows)
-        lines = Lines(model, self._split.parts.take(rows), self._direction.take(rows), self._net)
-        found = quantiles_of(lines, self._probability)
-        faults = _worse(lines.faults, lines, found)
-        np.maximum.at(self.faults, rows, faults)
-        return found.output[0], found.output_error[0]
-
-
-class _QuantileLines(Lines):
-    """Lines tabulated by a model that is near to another one, on which their crossings are corrected."""
-
-    def __init__(self, near: RowModel, exact: RowModel, inputs: Inputs, direction: LineDirection, net: Net) -> None:
-        super().__init__(near, inputs, direction, net)
-        self._model = exact
 
 
 def _failing(above: LineQuantiles, error: Array, faults: Indices) -> FailingLots:
@@ -268,7 +169,7 @@ def _failing(above: LineQuantiles, error: Array, faults: Indices) -> FailingLots
     )
 
 
-def _worse(faults: Indices, lines: Lines, found: LineQuantiles) -> Indices:
+def worse_faults(faults: Indices, lines: Lines, found: LineQuantiles) -> Indices:
     """Return the faults, and that of steps where quantiles could not be found or are no numbers."""
     lost = unresolved(lines, found) | ~np.isfinite(found.output[0] + found.output_error[0])
     return np.where(lost & (faults == 0), STEPS, faults)

@@ -9,8 +9,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from flexlash.schema.arrays import Array
+from flexlash.tolerance.engine.entangled_lots import EntangledLots
 from flexlash.tolerance.engine.line_direction import Indices
-from flexlash.tolerance.engine.line_lots import EntangledLots, FailingLots, LineNumbers, LotLines, SeparableLots
+from flexlash.tolerance.engine.line_lots import FailingLots, LineNumbers, LotLines, SeparableLots
 from flexlash.tolerance.engine.line_precision import (
     FEWEST_LINES,
     PROBABILITY_PRECISION,
@@ -75,11 +76,14 @@ class LotStatistics:
         empty = {field.name: np.full(rows, np.nan) for field in fields(cls)}
         return cls(**{**empty, "faults": np.zeros(rows, dtype=np.intp)})
 
-    def put(self, rows: Indices, split: VarianceSplit, failing: FailingLots, margin: Array) -> None:
-        """Fill in some rows, errors times a margin."""
+    def divide(self, rows: Indices, split: VarianceSplit, margin: Array) -> None:
+        """Fill in how the variance of some rows is divided, errors times a margin."""
         for name in ("within", "between"):
             getattr(self, name)[rows] = getattr(split, name)
             getattr(self, f"{name}_error")[rows] = getattr(split, f"{name}_error") * margin
+
+    def fail(self, rows: Indices, failing: FailingLots, margin: Array) -> None:
+        """Fill in the share of lots that fail in some rows, its error times a margin."""
         self.failing[rows], self.failing_error[rows] = failing.share, failing.error * margin
 
 
@@ -122,6 +126,7 @@ class _Search:
         self._acceptable = acceptable
         self._seed, self._samples = sampling
         self._precision = wanted
+        self._undivided = np.full(split.rows, np.isfinite(wanted.sd))
         self.found = LotStatistics.unknown(split.rows)
 
     def run(self, relation: Indices) -> None:
@@ -156,33 +161,30 @@ class _Search:
             faults = lines.faults.copy()
             if len(own):
                 lines = lines if len(own) == len(block) else self._lines(way, numbers, own)
-                variance, failing = self._divided(lines, own), self._failing(lines, own)
+                failing = self._failing(lines, own)
                 faults[sound] = failing.faults
-                wanting += self._judged(way, numbers, own, variance, failing)
+                wanting += self._judged(way, numbers, own, self._divided(lines, own), failing)
             self.found.faults[block] = faults
             lost.append(block[faults > 0])
         return np.concatenate(lost), wanting
 
     def _judged(
-        self, way: int, numbers: LineNumbers, rows: Indices, variance: VarianceSplit, failing: FailingLots
+        self, way: int, numbers: LineNumbers, rows: Indices, divided: Array, failing: FailingLots
     ) -> list[tuple[LineNumbers, Indices]]:
-        """Fill in rows, and return those whose precision wants more lines of either kind."""
-        divided = np.maximum(variance.within_error, variance.between_error) / self._precision.sd
+        """Fill in rows, and return those that want more lines of either kind; `divided` is the excess of their sds."""
         rarer = np.minimum(failing.share, 1 - failing.share)
-        counts = rarer >= RAREST_PROBABILITY
-        wanted = np.where(counts, self._precision.failing * rarer, np.inf)
-        excess = np.fmax(divided, failing.error / wanted)
-        margin = 1 + _STOPPED * np.minimum(excess, 1) ** 2
-        self.found.put(rows, variance, failing, margin)
+        wanted = np.where(rarer >= RAREST_PROBABILITY, self._precision.failing * rarer, np.inf)
+        excess = np.nan_to_num(failing.error / wanted)
+        self.found.fail(rows, failing, _margin(excess))
         if self._samples is not None:
             return []
-        short = (excess * margin > 1) & (failing.faults == 0)
-        more = [np.fmax(divided, error / wanted) > _HALF for error in (failing.lots_error, failing.parts_error)]
+        short = ((divided > 1) | (excess * _margin(excess) > 1)) & (failing.faults == 0)
+        lots, parts = (np.fmax(divided, error / wanted) > _HALF for error in (failing.lots_error, failing.parts_error))
         grown = []
-        for lots, parts in ((True, True), (True, False), (False, True)):
-            further = LineNumbers(numbers.lots * _FURTHER**lots, numbers.parts * _FURTHER**parts)
+        for more_lots, more_parts in ((True, True), (True, False), (False, True)):
+            further = LineNumbers(numbers.lots * _FURTHER**more_lots, numbers.parts * _FURTHER**more_parts)
             if max(further) <= _MOST_LINES and (way != OTHERWISE or math.prod(further) <= self._precision.most_pairs):
-                grown.append((further, rows[short & (more[0] == lots) & (more[1] == parts)]))
+                grown.append((further, rows[short & (lots == more_lots) & (parts == more_parts)]))
         return grown
 
     def _lines(self, way: int, numbers: LineNumbers, rows: Indices) -> LotLines:
@@ -191,12 +193,22 @@ class _Search:
             return EntangledLots(split, self._seed, numbers)
         return SeparableLots(split, way, self._seed, numbers)
 
-    def _divided(self, lines: LotLines, rows: Indices) -> VarianceSplit:
-        """Return how the variance is divided, NaN where that is not wanted."""
-        if np.isfinite(self._precision.sd):
-            return lines.variance()
-        nothing = np.full(len(rows), np.nan)
-        return VarianceSplit(within=nothing, between=nothing, within_error=nothing, between_error=nothing)
+    def _divided(self, lines: LotLines, rows: Indices) -> Array:
+        """Fill in how the variance of rows is divided that want it; return by how much their errors exceed the wanted.
+
+        Rows that have it well enough from fewer lines keep it.
+        """
+        excess = np.zeros(len(rows))
+        wanting = self._undivided[rows]
+        if wanting.any():
+            split = lines.variance()
+            excess = np.maximum(split.within_error, split.between_error) / self._precision.sd
+            margin = _margin(excess)
+            excess = np.where(wanting, excess * margin, 0.0)
+            chosen = VarianceSplit(**{name: values[wanting] for name, values in vars(split).items()})
+            self.found.divide(rows[wanting], chosen, margin[wanting])
+            self._undivided[rows] = excess > 1
+        return excess
 
     def _failing(self, lines: LotLines, rows: Indices) -> FailingLots:
         """Return the share of lots that fail, NaN for rows without a limit."""
@@ -212,6 +224,11 @@ class _Search:
             parts_error=np.where(limited, failing.parts_error, np.nan),
             faults=np.where(limited, failing.faults, lines.faults),
         )
+
+
+def _margin(excess: Array) -> Array:
+    """Return by how much errors are widened that are this part of the wanted ones: chance may have made them small."""
+    return 1 + _STOPPED * np.minimum(excess, 1) ** 2
 
 
 def _blocks(rows: Indices, size: int) -> Iterator[Indices]:
