@@ -23,6 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from coverage_cases import cases
+from exact_laws import EXACT
 from scipy.special import ndtri
 
 from flexlash.tolerance import propagate
@@ -127,12 +128,12 @@ def expected(truth):
         rows += [(name, name, value, 1.0, 10 * own * max(1.0, abs(value)))] if value is not None else []
     rows += [(name, name, ndtri(share), 1.0, 10 * own) for name, share in zip(("p 1e-3", "p 1e-5"), RARE, strict=True)]
     for group, shares in (("shares", truth.shares), ("total", truth.total_shares)):
-        rows += [(f"{group} {name}", group, share, 1.0, 10 * own) for name, share in shares.items()]
+        rows += [(f"{group} {name}", group, share, 1.0, EXACT) for name, share in shares.items()]
     if truth.between_lots_sd is not None:
         rows += [("within", "within", truth.within_lot_sd, truth.sd, own)]
         rows += [("between", "between", truth.between_lots_sd, truth.sd, own)]
         limit = float(truth.quantile(PROBABILITIES)[-1])
-        rows += [("lots", "lots", truth.lots_failing(limit, ACCEPTABLE), 1.0, 10 * own)]
+        rows += [("lots", "lots", truth.lots_failing(limit, ACCEPTABLE), 1.0, EXACT)]
     return [list(column) for column in zip(*rows, strict=True)]
 
 

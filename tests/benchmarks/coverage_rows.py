@@ -38,7 +38,7 @@ TESTED = (*PROBABILITIES, "mean", "sd", "probability_over_limit")
 FAR = 4.2
 RAREST = 1e-6
 """Probability over the limit below which the points do not know it well enough."""
-LOG2_POINTS, REPLICATES = 14, 8
+LOG2_POINTS, REPLICATES = 15, 16
 WIDTHS = {
     "cylinder_length": (1e-3, 1e-2),
     "mean_radius": (1e-4, 2e-3),
