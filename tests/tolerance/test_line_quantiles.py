@@ -12,6 +12,7 @@ from scipy import stats
 from scipy.special import ndtri
 
 from flexlash.tolerance import Normal, Triangular, Uniform
+from flexlash.tolerance.engine.line_drawing import DrawnLines
 from flexlash.tolerance.engine.line_moments import moments_of
 from flexlash.tolerance.engine.line_quantiles import probability_interval, quantiles_at, quantiles_of
 
@@ -24,7 +25,7 @@ def sound_lines(function, *rows, **options):
     """Return lines through rows, none of which has a fault."""
     lines = lines_of(function, *rows, **options)
     assert (lines.faults == 0).all()
-    return lines
+    return DrawnLines(lines=lines, control=None)
 
 
 def uniforms(*widths):
@@ -99,7 +100,7 @@ def test_sums_of_uniforms_against_irwin_and_hall(widths):
     below = np.array([probability_below(value, widths) for value in quantiles.output[:, 0]])
     off = (below - PROBABILITIES[1:-1]) / quantiles.density[:, 0]
     assert (np.abs(off) <= 4 * quantiles.output_error[:, 0]).all()
-    assert (quantiles.output_error[:, 0] <= 0.02 * lines.scale[0]).all()
+    assert (quantiles.output_error[:, 0] <= 0.02 * lines.lines.scale[0]).all()
     values = np.array([0.2, 0.5, 0.7, 0.9]) * sum(widths)
     shares = quantiles_at(lines, values[:, None])
     exact = 1 - np.array([probability_below(value, widths) for value in values])

@@ -16,7 +16,7 @@ from toleranced import SUM, SUM_LIMITS, SUM_NAMES, every_number, plan, row, stat
 from flexlash.mechanics import flexspline
 from flexlash.tolerance import propagate
 from flexlash.tolerance.dimension_limits import Limits, distributions
-from flexlash.tolerance.engine.line_precision import MOST_LINES
+from flexlash.tolerance.engine.line_precision import FEWEST_LINES, MOST_LINES
 from flexlash.tolerance.row_batches import batch_statistics
 from flexlash.tolerance.spread_statistics import PERCENTILES, statistics_of
 
@@ -57,7 +57,7 @@ def rows_alike(nominal, count, seed=0):
         scaled["torque"] *= size**3
         limits = {}
         for name, value in scaled.items():
-            half = value * generator.choice([0.001, 0.01, 0.03])
+            half = value * generator.choice([0.001, 0.02, 0.06])
             limits[name] = Limits(low=value - half, high=value + 1.1 * half, distribution=BENT.get(name, "normal"))
         limit = float(cup(scaled)) * (1 + 0.03 * generator.normal())
         rows.append(row(cup, scaled, limits, limit if number % 3 else None))
@@ -112,7 +112,7 @@ def test_the_rows_differ_in_how_many_lines_they_take():
     for rows in ROWS:
         numbers = {each.numbers["spread_points"] for each in together(rows, "lines as needed")}
         assert len(numbers) >= 4
-        assert all(math.log2(number).is_integer() and 64 <= number <= MOST_LINES for number in numbers)
+        assert all(math.log2(number).is_integer() and FEWEST_LINES <= number <= MOST_LINES for number in numbers)
 
 
 @pytest.mark.slow

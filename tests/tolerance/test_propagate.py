@@ -574,7 +574,7 @@ def test_lines_are_exact_for_linear_functions_of_normals(slopes, shift, seed):
     assert spread.skewness == pytest.approx(0, abs=1e-8)
     exact = mean + sd * stats.norm.ppf(PROBABILITIES)
     assert spread.quantile(PROBABILITIES) == pytest.approx(exact, rel=0, abs=1e-9 * sd + 1e-12 * abs(shift))
-    assert list(spread.shares.values()) == pytest.approx(list(parts**2 / sd**2), abs=1e-8)
+    assert list(spread.shares.values()) == pytest.approx(list(parts**2 / sd**2), abs=2e-8)
 
 
 @pytest.mark.parametrize("score", [-7.0, -5.997807, 3.0, 4.5, 5.997807, 7.0, 7.5])
@@ -796,7 +796,10 @@ def test_single_input_causes_everything():
 @pytest.mark.slow
 @pytest.mark.parametrize("samples", [64, None])
 def test_standard_errors_of_lines_cover(samples):
-    """Over many seeds of three sums of uniforms ± 1.96 standard errors hold the exact quantile in about 95 of 100."""
+    """Over many seeds of squared sums of uniforms ± 1.96 standard errors hold the exact quantile in about 95 of 100.
+
+    Neither squares nor their logarithms add up, so that no surrogate is exact.
+    """
     held = []
     for widths in ((1, 1, 1), (1, 2, 0.5, 3), (3, 1, 1, 1, 1)):
         inputs = {f"u{place}": Uniform(0, width) for place, width in enumerate(widths)}
@@ -805,10 +808,11 @@ def test_standard_errors_of_lines_cover(samples):
             brentq(lambda x, p, w: probability_below(x, w) - p, 0, sum(widths), args=(p, widths)) for p in probabilities
         ]
         for seed in range(60 if samples else 10):
-            spread = propagate(lambda **u: sum(u.values()), inputs, samples=samples, seed=seed)
-            off = (spread.quantile(probabilities) - exact) / spread.standard_error(probabilities)
+            spread = propagate(lambda **u: sum(u.values()) ** 2, inputs, samples=samples, seed=seed)
+            off = (spread.quantile(probabilities) - np.square(exact)) / spread.standard_error(probabilities)
             held += list(np.abs(off) <= 1.96)
-            held.append(abs(spread.mean - sum(widths) / 2) <= 1.96 * spread.mean_standard_error)
+            mean = sum(widths) ** 2 / 4 + sum(width**2 for width in widths) / 12
+            held.append(abs(spread.mean - mean) <= 1.96 * spread.mean_standard_error)
     assert 0.90 <= np.mean(held) <= 0.99
 
 

@@ -13,10 +13,9 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from flexlash.schema.arrays import Array
-from flexlash.tolerance.engine.line_direction import Inputs, direction_of
-from flexlash.tolerance.engine.line_points import line_net
+from flexlash.tolerance.engine.line_direction import Inputs
+from flexlash.tolerance.engine.line_drawing import LineDrawing
 from flexlash.tolerance.engine.line_quantiles import quantiles_of
-from flexlash.tolerance.engine.line_tables import Lines
 from flexlash.tolerance.row_batches import RowBatch, TolerancedRow
 from flexlash.tolerance.sampling import SamplingPlan
 from flexlash.tolerance.spread import Spread
@@ -104,10 +103,9 @@ def _level(output: float) -> Curve:
 @np.errstate(all="ignore")
 def _of_lines(batch: RowBatch, number: int, seed: int, median_errors: Sequence[float]) -> Iterator[Curve]:
     """Yield the curves that so many lines give; their errors are widened as those of the rows' medians were."""
-    inputs = Inputs.of(batch.inputs)
-    net = line_net(seed, len(inputs.names) - 1, number, single_curved=inputs.single_curved)
-    lines = Lines(batch.outputs_of, inputs, direction_of(batch.outputs_of, inputs), net)
-    quantiles, median = quantiles_of(lines, _PROBABILITIES), quantiles_of(lines, _MEDIAN)
+    drawing = LineDrawing(batch.outputs_of, Inputs.of(batch.inputs), seed)
+    drawn = drawing.drawn(np.arange(len(batch.inputs)), number)
+    quantiles, median = quantiles_of(drawn, _PROBABILITIES), quantiles_of(drawn, _MEDIAN)
     for row, (median_error, plain_error) in enumerate(zip(median_errors, median.output_error[0].tolist(), strict=True)):
         widened = median_error / plain_error if plain_error > 0 else 1.0
         yield _of_line_quantiles(quantiles.output[:, row], quantiles.output_error[:, row] * widened)

@@ -12,8 +12,11 @@ from typing import TypeAlias
 import numpy as np
 
 from flexlash.schema.arrays import Array
+from flexlash.tolerance.engine.line_control import LineControl
+from flexlash.tolerance.engine.line_crossings import NODES
+from flexlash.tolerance.engine.line_drawing import DrawnLines
 from flexlash.tolerance.engine.line_points import normal_density
-from flexlash.tolerance.engine.line_tables import NODES, REACH, Lines
+from flexlash.tolerance.engine.line_tables import REACH, Lines
 
 __all__ = ["Moments", "moments_of"]
 
@@ -47,44 +50,48 @@ class Moments:
         return replace(self, **errors)
 
 
-def moments_of(lines: Lines) -> Moments:
+def moments_of(drawn: DrawnLines) -> Moments:
     """Return the moments of each row, in the unit of the output; skewness and kurtosis have none.
 
-    Equation: E[(Y − c)ᵏ] = mean over lines of ∫ (y(t) − c)ᵏ φ(t) dt about the mean c
+    Equation: E[(Y − c)ᵏ] = mean over lines of ∫ (y(t) − c)ᵏ φ(t) dt about the mean c; with a surrogate its own exact
+        moment, and the mean over lines of the difference
     Arguments: lines of rows alike without faults.
     Valid: outputs that are smooth between the nodes; with a single input also kinks at its breaks.
     Source: trapezoidal rule under the normal density, Gauss–Legendre between breaks; half as many nodes tell the error.
     """
+    lines = drawn.lines
     rules = _rules(lines)
-    origin = lines.each(rules[0][0][len(rules[0][0]) // 2].reshape(lines.rows, -1)[:, :1].T)
-    shift = lines.mean_over_lines(_integrals(rules[0], origin)[0])
-    centre = origin + lines.each(shift)
-    (first, second, third, fourth), coarse = (_integrals(rule, centre) for rule in rules)
+    origin = lines.table[len(NODES) // 2].reshape(lines.rows, -1)[:, 0]
+    (shift, *_), _ = _moments(drawn, rules[0], origin)
+    mean = origin + shift
+    (off, variance, cube, square), lined = _moments(drawn, rules[0], mean)
+    coarse = _moments(drawn, rules[1], mean)[1]
     # A third of what twice the spacing changes is the error of a kink, and more than that of a smooth output.
     steps = [
-        np.abs(lines.mean_over_lines(fine - wide)) / 3 + lines.mean_over_lines(beyond)
-        for fine, wide, beyond in zip((first, second, third, fourth), coarse, _beyond(rules[0], centre), strict=True)
+        (np.abs(lines.mean_over_lines(fine - wide)) / 3 + lines.mean_over_lines(beyond))[0]
+        for fine, wide, beyond in zip(lined, coarse, _beyond(rules[0], lines.each(mean[None])), strict=True)
     ]
-    sd = np.sqrt(lines.mean_over_lines(second))
+    first, second, third, fourth = lined
+    sd = np.sqrt(np.maximum(variance, 0.0))
     scale = np.where(sd > 0, sd, 1.0)
-    skewness = lines.mean_over_lines(third) / scale**3
+    skewness, peak = cube / scale**3, square / scale**4
+    each = lines.each
     # The skewness moves with mean and sd as well as with the third moment.
-    skewing = third / lines.each(scale**3) - 3 * first / lines.each(scale)
-    skewing -= 1.5 * lines.each(skewness) * second / lines.each(scale**2)
-    peak = lines.mean_over_lines(fourth) / scale**4
+    skewing = third / each(scale[None] ** 3) - 3 * first / each(scale[None])
+    skewing -= 1.5 * each(skewness[None]) * second / each(scale[None] ** 2)
     # So does the kurtosis, and with the skewness where mean and third moment meet.
-    peaking = fourth / lines.each(scale**4) - 4 * lines.each(skewness) * first / lines.each(scale)
-    peaking -= 2 * lines.each(peak) * second / lines.each(scale**2)
-    peak_step = steps[3] / scale**4 + 2 * peak * steps[1] / scale**2
+    peaking = fourth / each(scale[None] ** 4) - 4 * each(skewness[None]) * first / each(scale[None])
+    peaking -= 2 * each(peak[None]) * second / each(scale[None] ** 2)
+    errors = [lines.standard_error(one)[0] for one in (first, second, skewing, peaking)]
     return Moments(
-        mean=(lines.mean_over_lines(origin) + shift)[0],
-        sd=sd[0],
-        skewness=skewness[0],
-        kurtosis=(peak - 3)[0],
-        mean_error=(lines.standard_error(first) + steps[0])[0] + _ROUNDING * sd[0],
-        sd_error=((lines.standard_error(second) + steps[1]) / (2 * scale))[0] + _ROUNDING * sd[0],
-        skewness_error=(lines.standard_error(skewing) + steps[2] / scale**3)[0] + _ROUNDING,
-        kurtosis_error=(lines.standard_error(peaking) + peak_step)[0] + _ROUNDING,
+        mean=mean + off,
+        sd=sd,
+        skewness=skewness,
+        kurtosis=peak - 3,
+        mean_error=errors[0] + steps[0] + _ROUNDING * sd,
+        sd_error=(errors[1] + steps[1]) / (2 * scale) + _ROUNDING * sd,
+        skewness_error=errors[2] + steps[2] / scale**3 + _ROUNDING,
+        kurtosis_error=errors[3] + steps[3] / scale**4 + 2 * peak * steps[1] / scale**2 + _ROUNDING,
     )
 
 
@@ -135,7 +142,34 @@ def _beyond(rule: Rule, centre: Array) -> list[Array]:
     return moments
 
 
-def _integrals(rule: Rule, centre: Array) -> tuple[Array, Array, Array, Array]:
+def _moments(drawn: DrawnLines, rule: Rule, about: Array) -> tuple[list[Array], list[Array]]:
+    """Return the first four moments about values (rows,), and what each line adds to them, (1, rows × lines) each."""
+    lines, control = drawn.lines, drawn.control
+    centre = lines.each(about[None])
+    lined = _integrals(rule, centre)
+    if control is None:
+        return [lines.mean_over_lines(one)[0] for one in lined], lined
+    every = (len(NODES) - 1) // (len(rule[0]) - 1)
+    used = lines.each(control.used[None])
+    lined = [
+        model - np.where(used, surrogate, 0.0)
+        for model, surrogate in zip(lined, _integrals((_outputs(control, lines)[::every], rule[1]), centre), strict=True)
+    ]
+    exact = control.surrogate.moments(about)
+    return [
+        lines.mean_over_lines(one)[0] + np.where(control.used, own, 0.0)
+        for one, own in zip(lined, exact, strict=True)
+    ], lined
+
+
+def _outputs(control: LineControl, lines: Lines) -> Array:
+    """Return the surrogates' outputs at the nodes of the table, (nodes, rows × lines)."""
+    by_line = np.moveaxis(control.table.reshape(len(NODES), lines.rows, -1), 1, 2)
+    outputs = control.surrogate.output(by_line)
+    return np.moveaxis(outputs, 2, 1).reshape(control.table.shape)
+
+
+def _integrals(rule: Rule, centre: Array) -> list[Array]:
     """Return the first four moments about a centre (1, rows × lines) along each line."""
     values, weight = rule
     deviation = values - centre
@@ -144,4 +178,4 @@ def _integrals(rule: Rule, centre: Array) -> tuple[Array, Array, Array, Array]:
     for _ in range(3):
         power *= deviation
         moments.append(np.add.reduce(power, axis=0, keepdims=True))
-    return moments[0], moments[1], moments[2], moments[3]
+    return moments

@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.engine.line_direction import Indices
+from flexlash.tolerance.engine.line_drawing import SD_PRECISION
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES
 from flexlash.tolerance.engine.line_quantiles import LineQuantiles
 from flexlash.tolerance.engine.line_tables import Lines
@@ -24,14 +25,11 @@ __all__ = [
     "unresolved",
 ]
 
-FEWEST_LINES = 64
+FEWEST_LINES = 16
 MOST_LINES = 1 << 14
 
 DECISIVE = (0.00135, 0.025, 0.5, 0.975, 0.99865)
 """Probabilities whose quantiles decide how many lines are enough."""
-
-SD_PRECISION = 1e-3
-"""Standard error wanted of those quantiles, in standard deviations of the output."""
 
 PROBABILITY_PRECISION = 0.05
 """Standard error wanted of the probability over a limit, as a part of itself, down to `RAREST_PROBABILITY`."""

@@ -10,9 +10,9 @@ from scipy.special import ndtri
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution
-from flexlash.tolerance.engine.line_direction import Inputs, LineDirection, RowModel, direction_of
+from flexlash.tolerance.engine.line_direction import Inputs, RowModel
+from flexlash.tolerance.engine.line_drawing import DrawnLines, LineDrawing
 from flexlash.tolerance.engine.line_moments import Moments, moments_of
-from flexlash.tolerance.engine.line_points import line_net
 from flexlash.tolerance.engine.line_precision import (
     DECISIVE,
     initial_lines,
@@ -22,7 +22,7 @@ from flexlash.tolerance.engine.line_precision import (
 )
 from flexlash.tolerance.engine.line_quantiles import LineQuantiles, probability_interval, quantiles_at, quantiles_of
 from flexlash.tolerance.engine.line_shares import line_shares
-from flexlash.tolerance.engine.line_tables import FAULTS, STEPS, Lines
+from flexlash.tolerance.engine.line_tables import FAULTS, STEPS
 from flexlash.tolerance.spread import Spread
 from flexlash.tolerance.variance_shares import VarianceShares
 
@@ -57,46 +57,45 @@ class LineSpread(Spread):
         self._inputs = Inputs.of([inputs], factor)
         self._seed = seed
         with np.errstate(all="ignore"):
-            direction = direction_of(model, self._inputs)
             self.notes = ()
             self.size = initial_lines(len(inputs), samples)
-            self._lines = self._drawn(direction)
+            drawing = LineDrawing(model, self._inputs, seed)
+            self._drawn = self._draw(drawing)
             self._margin = np.ones(1)
-            if self._lines.roughness[0] > _SMOOTH and (samples is not None or len(inputs) == 1):
+            if self._drawn.lines.roughness[0] > _SMOOTH and (samples is not None or len(inputs) == 1):
                 probed = np.array(DECISIVE if len(inputs) == 1 else DECISIVE[2:3])
-                self._require_resolved(quantiles_of(self._lines, probed))
+                self._require_resolved(quantiles_of(self._drawn, probed))
             if samples is None and len(inputs) > 1:
-                self._refine(direction)
+                self._refine(drawing)
 
-    def _refine(self, direction: LineDirection) -> None:
+    def _refine(self, drawing: LineDrawing) -> None:
         """Draw more lines until they are enough, or raise LinesUnsuitable."""
         while True:
-            decisive = quantiles_of(self._lines, np.array(DECISIVE))
-            (needed,), self._margin = lines_needed(self._lines, decisive)
+            decisive = quantiles_of(self._drawn, np.array(DECISIVE))
+            (needed,), self._margin = lines_needed(self._drawn.lines, decisive)
             if needed == self.size:
                 break
             self.size = int(needed)
-            self._lines = self._drawn(direction)
+            self._drawn = self._draw(drawing)
         self._require_resolved(decisive)
         self.notes = tuple(note for note in precision_notes(decisive, self._moments.sd) if note)
 
-    def _drawn(self, direction: LineDirection) -> Lines:
+    def _draw(self, drawing: LineDrawing) -> DrawnLines:
         """Return the lines, or raise LinesUnsuitable."""
-        net = line_net(self._seed, len(self._inputs.names) - 1, self.size, single_curved=self._inputs.single_curved)
-        lines = Lines(self._model, self._inputs, direction, net)
-        if lines.faults[0]:
-            raise LinesUnsuitable(FAULTS[lines.faults[0]])
-        return lines
+        drawn = drawing.drawn(np.arange(1), self.size)
+        if drawn.lines.faults[0]:
+            raise LinesUnsuitable(FAULTS[drawn.lines.faults[0]])
+        return drawn
 
     def _require_resolved(self, quantiles: LineQuantiles) -> None:
         """Raise LinesUnsuitable where quantiles cannot be followed on the model."""
-        if unresolved(self._lines, quantiles)[0]:
+        if unresolved(self._drawn.lines, quantiles)[0]:
             raise LinesUnsuitable(FAULTS[STEPS])
 
     @cached_property
     @np.errstate(all="ignore")
     def _moments(self) -> Moments:
-        return moments_of(self._lines).widened(self._margin)
+        return moments_of(self._drawn).widened(self._margin)
 
     @cached_property
     def mean(self) -> float:
@@ -146,16 +145,16 @@ class LineSpread(Spread):
 
     @np.errstate(all="ignore")
     def _line_quantiles(self, probability: Array) -> LineQuantiles:
-        return quantiles_of(self._lines, probability).widened(self._margin)
+        return quantiles_of(self._drawn, probability).widened(self._margin)
 
     @np.errstate(all="ignore")
     def _probabilities_above(self, value: Array) -> Array:
-        return quantiles_at(self._lines, value[:, None]).above[:, 0]
+        return quantiles_at(self._drawn, value[:, None]).above[:, 0]
 
     @np.errstate(all="ignore")
     def _interval(self, value: float, confidence: float) -> tuple[float, float]:
         """Return an interval of the probability above a value, even on the normal scale."""
-        quantiles = quantiles_at(self._lines, np.array([[value]])).widened(self._margin)
+        quantiles = quantiles_at(self._drawn, np.array([[value]])).widened(self._margin)
         factor = float(ndtri((1 + confidence) / 2))
         low, high = probability_interval(quantiles.above, quantiles.above_error, factor)
         return float(low[0, 0]), float(high[0, 0])

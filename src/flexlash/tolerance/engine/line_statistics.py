@@ -11,9 +11,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from flexlash.schema.arrays import Array
-from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel, direction_of
+from flexlash.tolerance.engine.line_crossings import NODES
+from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel
+from flexlash.tolerance.engine.line_drawing import DrawnLines, LineDrawing
 from flexlash.tolerance.engine.line_moments import moments_of
-from flexlash.tolerance.engine.line_points import line_net
 from flexlash.tolerance.engine.line_precision import (
     DECISIVE,
     initial_lines,
@@ -23,7 +24,7 @@ from flexlash.tolerance.engine.line_precision import (
 )
 from flexlash.tolerance.engine.line_quantiles import probability_interval, quantiles_at, quantiles_of
 from flexlash.tolerance.engine.line_shares import line_shares
-from flexlash.tolerance.engine.line_tables import FAULTS, NODES, STEPS, Lines
+from flexlash.tolerance.engine.line_tables import FAULTS, STEPS
 from flexlash.tolerance.sampling import SamplingPlan
 from flexlash.tolerance.spread_statistics import SpreadStatistics, named_probabilities
 from flexlash.tolerance.variance_shares import VarianceShares
@@ -46,25 +47,25 @@ def line_statistics(
     levels = _Levels(plan.coverage)
     adaptive = plan.samples is None and len(inputs.names) > 1
     with np.errstate(all="ignore"):
-        drawing = _Drawing(model, inputs, plan)
+        drawing = LineDrawing(model, inputs, plan.seed)
         pending = [(initial_lines(len(inputs.names), plan.samples), np.arange(inputs.count))]
         while pending:
             number, rows = pending.pop()
             needed = np.full(len(rows), number)
             for block in _blocks(len(rows), number * len(NODES)):
-                lines = drawing.lines(rows[block], number)
-                if lines.faults.any():
-                    faulty = np.flatnonzero(lines.faults)
-                    yield from ((int(rows[block][row]), FAULTS[lines.faults[row]]) for row in faulty)
+                drawn = drawing.drawn(rows[block], number)
+                if drawn.lines.faults.any():
+                    faulty = np.flatnonzero(drawn.lines.faults)
+                    yield from ((int(rows[block][row]), FAULTS[drawn.lines.faults[row]]) for row in faulty)
                     block = np.delete(block, faulty)  # noqa: PLW2901
                     if not len(block):
                         continue
-                    lines = drawing.lines(rows[block], number)
-                reading = _Reading(lines, levels, limit[rows[block]])
+                    drawn = drawing.drawn(rows[block], number)
+                reading = _Reading(drawn, levels, limit[rows[block]])
                 if adaptive:
                     needed[block] = reading.refine()
                 enough = needed[block] == number
-                lost = unresolved(lines, reading.decisive) & enough
+                lost = unresolved(drawn.lines, reading.decisive) & enough
                 yield from ((int(row), FAULTS[STEPS]) for row in rows[block[lost]])
                 finished = np.flatnonzero(enough & ~lost)
                 if len(finished):
@@ -92,36 +93,18 @@ class _Levels:
         self.index = {name: levels.index(round(probability, 12)) for name, probability in named.items()}
 
 
-class _Drawing:
-    """Lines drawn through some of the rows at a time."""
-
-    def __init__(self, model: RowModel, inputs: Inputs, plan: SamplingPlan) -> None:
-        self._model = model
-        self._inputs = inputs
-        self._seed = plan.seed
-        self._direction = direction_of(model, inputs)
-
-    def model(self, rows: Indices) -> RowModel:
-        """Return the model of some rows."""
-        return lambda arguments, chosen: self._model(arguments, rows[chosen])
-
-    def lines(self, rows: Indices, number: int) -> Lines:
-        """Return this number of lines through each of some rows."""
-        net = line_net(self._seed, len(self._inputs.names) - 1, number, single_curved=self._inputs.single_curved)
-        return Lines(self.model(rows), self._inputs.take(rows), self._direction.take(rows), net)
-
-
 class _Reading:
     """What lines through some rows say of all their statistics."""
 
-    def __init__(self, lines: Lines, levels: _Levels, limit: Array) -> None:
-        self._lines = lines
+    def __init__(self, drawn: DrawnLines, levels: _Levels, limit: Array) -> None:
+        self._drawn = drawn
+        self._lines = lines = drawn.lines
         self._levels = levels
         self._limit = limit
         self._limited = np.isfinite(limit)
-        self._quantiles = quantiles_of(lines, levels.probabilities)
+        self._quantiles = quantiles_of(drawn, levels.probabilities)
         median = self._quantiles.output[levels.index["p50"]]
-        self._over = quantiles_at(lines, np.where(self._limited, limit, median)[None]) if self._limited.any() else None
+        self._over = quantiles_at(drawn, np.where(self._limited, limit, median)[None]) if self._limited.any() else None
         self.decisive = self._quantiles.take(len(DECISIVE))
         self._margin = np.ones(lines.rows)
 
@@ -136,7 +119,7 @@ class _Reading:
     def statistics(self, rows: Indices, model: RowModel, plan: SamplingPlan) -> list[SpreadStatistics]:
         """Return the statistics of some of the rows, whose model this is."""
         inputs = self._lines.inputs.take(rows)
-        moments = moments_of(self._lines).widened(self._margin)
+        moments = moments_of(self._drawn).widened(self._margin)
         variance = moments.sd[rows] ** 2, 2 * moments.sd[rows] * moments.sd_error[rows]
         shares = line_shares(model, inputs, variance, plan.seed)
         numbers = self._quantile_numbers() | self._over_numbers()

@@ -12,27 +12,23 @@ Source: Koutsourelakis, Pradlwarter and Schuëller 2004 (line sampling); L'Ecuye
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 import numpy.typing as npt
 
 from flexlash.schema.arrays import Array
-from flexlash.tolerance.distributions import Normal
+from flexlash.tolerance.distributions import Distribution, Normal
+from flexlash.tolerance.engine.line_crossings import FAR, NODES, STEP, crossings
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, LineDirection, RowModel, scores_across
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, Net
 from flexlash.tolerance.engine.line_smoothness import ALMOST_STRAIGHT, is_stepped, looked_closely
 from flexlash.tolerance.sampling import standard_error
 
-__all__ = ["FAR", "FAULTS", "NODES", "REACH", "STEP", "STEPS", "Lines"]
+__all__ = ["FAULTS", "REACH", "STEPS", "Lines", "bounds_of"]
 
 REACH = 8.3
 """Scores beyond ±8.3 have no weight in double precision and are not visited."""
-
-STEP = 0.5
-NODES = np.arange(-8.0, 8.0 + STEP / 2, STEP)
-"""Positions on each line at which the model is tabulated."""
-
-FAR = 8.5
-"""The position of a crossing that a line does not have: Φ(−FAR) is nothing beside 1."""
 
 FAULTS = (
     "",
@@ -61,9 +57,6 @@ _CUBIC = np.array([
     (_ASIDE + 1) * _ASIDE * (_ASIDE - 1) / 6,
 ])  # fmt: skip
 """Weights of the four nodes around of the cubic through them."""
-
-_LAST = 2
-"""The last of the three intervals between four nodes."""
 
 _DIP = 1e-9
 """A fall along a line smaller than this part of its range is rounding."""
@@ -105,13 +98,11 @@ class Lines:
         # What is straight in independent scores is straight in correlated ones.
         self._origin = inputs.correlated(scores_across(direction, net.scores).reshape(len(inputs.names), -1))
         self._direction = inputs.correlated(direction.vector[:, self._row_of])
+        reach = np.abs(self._origin).max(axis=1) + FAR * np.abs(self._direction).max(axis=1)
+        self._far = np.flatnonzero(reach > REACH)
         self._location = inputs.location[:, self._row_of]
         self._scale = inputs.scale[:, self._row_of]
-        self._far = np.abs(self._origin).max(axis=1) + FAR * np.abs(self._direction).max(axis=1) > REACH
-        for index, shape in enumerate(inputs.shapes):
-            if shape.shape == Normal.shape:
-                self._origin[index] = self._location[index] + self._scale[index] * self._origin[index]
-                self._direction[index] *= self._scale[index]
+        self._alike = _alike(inputs.shapes)
         outputs = self.outputs(np.concatenate([NODES, _PROBED + _ASIDE * STEP])[:, None])
         table, probes = outputs[: len(NODES)], outputs[len(NODES) :]
         self.faults = self._faults(direction.vector, table, probes)
@@ -161,8 +152,7 @@ class Lines:
 
     def _outputs_on(self, lines: Indices, positions: Array) -> Array:
         """Return the outputs (k, n) on some n lines at positions (k, 1) or (k, n)."""
-        arguments = {name: self._values(index, positions, lines) for index, name in enumerate(self.inputs.names)}
-        return self._model(arguments, self._row_of[lines])
+        return self._modelled(self._values(positions, lines), lines)
 
     def _even(self, step: Array) -> npt.NDArray[np.bool_]:
         """Return which lines have neither a lone step, far above both its neighbours, nor an edge to a flat part."""
@@ -180,35 +170,46 @@ class Lines:
 
     def outputs(self, positions: Array) -> Array:
         """Return the outputs (k, rows × lines) at positions (k, 1) or (k, rows × lines) along the lines."""
+        return self.along(positions, self._modelled)
+
+    def _modelled(self, values: Array, lines: slice | Indices) -> Array:
+        return self._model(dict(zip(self.inputs.names, values, strict=True)), self._row_of[lines])
+
+    def along(self, positions: Array, function: Callable[[Array, slice], Array]) -> Array:
+        """Return a function of the inputs (inputs, k, columns), and of the columns they are, along the lines."""
         width = self._origin.shape[1]
         output = np.empty((len(positions), width))
         step = max(_BLOCK // len(positions), 1)
         for start in range(0, width, step):
             block = slice(start, min(start + step, width))
-            along = positions if positions.shape[1] == 1 else positions[:, block]
-            arguments = {name: self._values(index, along, block) for index, name in enumerate(self.inputs.names)}
-            output[:, block] = self._model(arguments, self._row_of[block])
+            cut = positions if positions.shape[1] == 1 else positions[:, block]
+            output[:, block] = function(self._values(cut, block), block)
         return output
 
-    def _values(self, index: int, along: Array, block: slice | Indices) -> Array:
-        """Return an input at positions along some lines; that of a normal is a straight line itself."""
-        values = self._direction[index, block] * along
-        values += self._origin[index, block]
-        location, scale = self._location[index, block], self._scale[index, block]
-        if self.inputs.shapes[index].shape == Normal.shape:
-            if self._far[index]:
-                low, high = location - REACH * scale, location + REACH * scale
-                np.minimum(np.maximum(values, low, out=values), high, out=values)
-            return values
-        values = self.inputs.shapes[index].standard_at(values) * scale
-        values += location
+    def _values(self, along: Array, lines: slice | Indices) -> Array:
+        """Return the inputs (inputs, k, lines) at positions (k, 1) or (k, lines) along some lines."""
+        values = self._direction[:, None, lines] * along
+        values += self._origin[:, None, lines]
+        for index in self._far:
+            np.minimum(np.maximum(values[index], -REACH, out=values[index]), REACH, out=values[index])
+        for shape, chosen in self._alike:
+            values[chosen] = shape.standard_at(values[chosen])
+        values *= self._scale[:, None, lines]
+        values += self._location[:, None, lines]
         return values
+
+    def target(self, output: Array) -> Array:
+        """Return outputs (levels, rows) once for every line."""
+        return self.each(output)
+
+    def crossings(self, outputs: Array) -> tuple[Array, Array]:
+        """Return where lines cross outputs (levels, rows × lines) by the table, and their slopes there."""
+        return crossings(self.table, outputs)
 
     @property
     def bounds(self) -> tuple[Array, Array]:
         """Least and greatest output in the table of each row, (rows,) each."""
-        low = np.minimum.reduce(self.table[0].reshape(self.rows, -1), axis=1)
-        return low, np.maximum.reduce(self.table[-1].reshape(self.rows, -1), axis=1)
+        return bounds_of(self.table, self.rows)
 
     def each(self, values: Array) -> Array:
         """Return values (k, rows) once for every line, (k, rows × lines)."""
@@ -240,36 +241,17 @@ class Lines:
         first, last = (by_point[:, :, :, end].mean(axis=(2, 3)) for end in (0, -1))
         return np.asarray(_BEYOND * self._net.beyond * (np.abs(first - mean) + np.abs(last - mean)))
 
-    def crossings(self, outputs: Array) -> tuple[Array, Array]:
-        """Return the positions where lines cross outputs (k, rows × lines), and their slopes there.
 
-        Both are (k, rows × lines), by cubics through the table; beyond it the position is ±FAR.
-        """
-        table, width = self.table, self.table.shape[1]
-        passed = np.zeros(outputs.shape, dtype=np.int8)
-        for node in table:
-            passed += (node <= outputs).view(np.int8)
-        base = np.minimum(np.maximum(passed - np.int8(2), np.int8(0)), np.int8(len(NODES) - 4))
-        index = base * np.int64(width) + np.arange(width)
-        first, second, third, fourth = (table.reshape(-1).take(index + shift * width) for shift in range(4))
-        interval = np.minimum(np.maximum(passed - np.int8(1) - base, 0), _LAST)
-        low, starts, ends = interval.astype(float), interval == 0, interval == _LAST
-        below = np.where(starts, first, np.where(ends, third, second))
-        above = np.where(starts, second, np.where(ends, fourth, third))
-        secant = above - below
-        inside = (passed > 0) & (passed < len(NODES))
-        secant = np.where(secant > 0, secant, 1.0)
-        bend, twist = third - 2 * second + first, (fourth - 3 * third + 3 * second - first) / 3
-        rise = second - first
-        part = low + (outputs - below) / secant
-        for _ in range(2):
-            value = first + part * (rise + (part - 1) / 2 * (bend + (part - 2) * twist))
-            part = part + (outputs - value) / _slope(part, rise, bend, twist, secant)
-            part = np.minimum(np.maximum(part, low), low + 1)
-        slope = _slope(part, rise, bend, twist, secant) / STEP
-        position = NODES[0] + STEP * (base + part)
-        outside = np.where(passed == 0, -FAR, FAR)
-        return np.where(inside, position, outside), slope
+def _alike(shapes: Sequence[Distribution]) -> list[tuple[Distribution, slice | list[int]]]:
+    """Return each shape that is not normal with the inputs that have it, as a slice where they follow one another."""
+    groups: dict[tuple[str | float, ...], list[int]] = {}
+    for index, shape in enumerate(shapes):
+        if shape.shape != Normal.shape:
+            groups.setdefault(shape.shape, []).append(index)
+    return [
+        (shapes[group[0]], slice(group[0], group[-1] + 1) if group[-1] - group[0] + 1 == len(group) else group)
+        for group in groups.values()
+    ]
 
 
 def _slack(table: Array) -> Array:
@@ -278,7 +260,6 @@ def _slack(table: Array) -> Array:
     return np.asarray(_DIP * (table.max(axis=0) - table.min(axis=0)) + 64 * np.finfo(float).eps * size)
 
 
-def _slope(part: Array, rise: Array, bend: Array, twist: Array, secant: Array) -> Array:
-    """Return the slopes of cubics through four values a unit apart, no less than a tenth of the secant's."""
-    slope = rise + (part - 0.5) * bend + (1.5 * part * part - 3 * part + 1) * twist
-    return np.maximum(slope, 0.1 * secant)
+def bounds_of(table: Array, rows: int) -> tuple[Array, Array]:
+    """Return least and greatest output of rows in a table (nodes, rows × lines) of rising curves, (rows,) each."""
+    return table[0].reshape(rows, -1).min(axis=1), table[-1].reshape(rows, -1).max(axis=1)

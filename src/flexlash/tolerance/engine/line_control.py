@@ -1,0 +1,132 @@
+"""The surrogate along the lines of rows: what its law knows exactly corrects what the lines say of the model.
+
+    control             the surrogate beside the model on the same lines
+    used                rows (rows,) in which the difference of both is sharper known than the model alone
+
+Equation: P(Y > y) = 1 − F_S(s) + mean over lines of (Φ(−t_model(y)) − Φ(−t_surrogate(s))), whichever s stands for y
+Valid: a surrogate that only rises along every line; its law is known to `residual`.
+Source: control variates (Glasserman 2003, 4.1) with an expectation that is known.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import ndtr, ndtri
+
+from flexlash.schema.arrays import Array
+from flexlash.tolerance.engine.line_crossings import NODES, crossings
+from flexlash.tolerance.engine.line_points import normal_density
+from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate, polynomial
+from flexlash.tolerance.engine.line_tables import Lines, bounds_of
+from flexlash.tolerance.engine.surrogate_law import SurrogateLaw
+
+__all__ = ["LineControl"]
+
+_TRIED = np.array([0.00135, 0.025, 0.5, 0.975, 0.99865])
+"""Probabilities at whose outputs model and surrogate are compared."""
+
+_BETTER = 0.8
+"""The difference must be this much sharper than the model alone."""
+
+_RARE = 0.05
+"""Part of a probability up to which the law's own residual is let in."""
+
+_MIDDLE = [len(NODES) // 2]
+_OUTER = [int(np.flatnonzero(NODES == score)[0]) for score in (-4.0, 4.0)]
+"""Nodes at which model and surrogate are compared for the tails that no line reaches."""
+
+_DIP = 1e-9
+"""A fall along a line smaller than this part of its range is rounding."""
+
+Bools = npt.NDArray[np.bool_]
+
+
+class LineControl:
+    """The surrogates of rows alike on their lines: `table` (nodes, rows × lines) of outputs that only rise."""
+
+    def __init__(self, lines: Lines, surrogate: AdditiveSurrogate, law: SurrogateLaw, needed: Bools) -> None:
+        self._lines = lines
+        self.surrogate = surrogate
+        self.law = law
+        self._coefficients = np.repeat(surrogate.coefficients[:, :, None], lines.lines, axis=3)
+        middle = np.array([[rule.middle] for rule in surrogate.rules])
+        half = np.array([[rule.half] for rule in surrogate.rules])
+        inputs = lines.inputs
+        self._middle = np.repeat(inputs.location + inputs.scale * middle, lines.lines, axis=1)[:, None]
+        self._inverse = np.repeat(1 / (inputs.scale * half), lines.lines, axis=1)[:, None]
+        table = self.outputs(NODES[:, None])
+        rises = (np.diff(table, axis=0) >= -_DIP * (table[-1] - table[0])).all(axis=0) & np.isfinite(table).all(axis=0)
+        self.used = needed & surrogate.fitted & rises.reshape(lines.rows, -1).all(axis=1)
+        self.table = np.maximum.accumulate(table, axis=0)
+        self._apart = self._mismatch()
+        self.used &= self._helps()
+
+    def _mismatch(self) -> Array:
+        """Return how far apart model and surrogate are in both tails, (tails, rows), as values of S."""
+        lines = self._lines
+        tails = lines.table[_OUTER].reshape(len(_OUTER), lines.rows, -1)
+        matched = self.surrogate.matched(np.moveaxis(tails, 1, 2).reshape(-1, lines.rows))[0]
+        matched = np.moveaxis(matched.reshape(len(_OUTER), -1, lines.rows), 1, 2).reshape(len(_OUTER), -1)
+        return lines.mean_over_lines(np.abs(matched - self.table[_OUTER]))
+
+    def _helps(self) -> Bools:
+        """Return in which rows the difference is sharper known than the model alone, pooled over probabilities."""
+        lines = self._lines
+        output = np.where(self.used, self.quantiles(_TRIED), lines.mean_over_lines(lines.table[_MIDDLE]))
+        model = ndtr(-lines.crossings(lines.target(output))[0])
+        difference = model - ndtr(-self.crossings(self.target(output))[0])
+        density = normal_density(ndtri(_TRIED))[:, None]
+        alone = lines.standard_error(model) / density
+        controlled = (lines.standard_error(difference) + self.law.residual) / density
+        pooled = [np.add.reduce(error * error, axis=0) for error in (controlled, alone)]
+        return np.asarray(pooled[0] < _BETTER * pooled[1])
+
+    def outputs(self, positions: Array) -> Array:
+        """Return S (k, rows × lines) at positions (k, 1) or (k, rows × lines) along the lines."""
+        return self._lines.along(positions, self._total)
+
+    def _total(self, values: Array, block: slice) -> Array:
+        variable = (values - self._middle[:, :, block]) * self._inverse[:, :, block]
+        return np.asarray(np.add.reduce(polynomial(self._coefficients[:, :, :, block], variable), axis=0))
+
+    def target(self, output: Array) -> Array:
+        """Return the values of S (levels, rows × lines) that stand for outputs (levels, rows)."""
+        return self._lines.each(self.surrogate.matched(output)[0])
+
+    def crossings(self, totals: Array) -> tuple[Array, Array]:
+        """Return where the surrogates cross values of S (levels, rows × lines) by their table, and their slopes."""
+        return crossings(self.table, totals)
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """About the least and the greatest output of each row that its surrogate stands for, (rows,) each."""
+        low, high = (self.surrogate.unmatched(ends[None])[0] for ends in bounds_of(self.table, self._lines.rows))
+        return low, high
+
+    def above(self, output: Array) -> tuple[Array, Array]:
+        """Return the exact probabilities of S above what stands for outputs (levels, rows), and their densities."""
+        total, slope = self.surrogate.matched(output)
+        below, density = self.law.below(total)
+        return 1 - below, density * slope
+
+    def quantiles(self, probability: Array) -> Array:
+        """Return about which outputs (levels, rows) the surrogate stays below with probabilities (levels,)."""
+        return self.surrogate.unmatched(self.law.quantiles(probability))
+
+    def trusted(self, rarer: Array) -> Bools:
+        """Return at which levels (levels, rows), of this lesser probability, the law is sharp enough to be used."""
+        return np.asarray(self.used & (self.law.residual <= _RARE * rarer))
+
+    def unseen(self, output: Array, lined: Array) -> Array:
+        """Return about what no line tells of probabilities above outputs (levels, rows).
+
+        Equation: |1 − F_S − mean over lines of Φ(−t_surrogate)| · min(1, d f_S/min(F_S, 1 − F_S)), d how far apart model
+            and surrogate are in that tail: the part of the surrogate's own probability that the lines miss may be as
+            far off for the model as that is
+        Arguments: outputs, and the mean over lines of Φ(−t_surrogate) there, (levels, rows) each.
+        """
+        below, density = self.law.below(self.surrogate.matched(output)[0])
+        apart = np.where(below > 0.5, self._apart[1], self._apart[0])
+        rarer = np.maximum(np.minimum(below, 1 - below), np.finfo(float).tiny)
+        return np.abs(1 - below - lined) * np.minimum(1.0, apart * density / rarer)
