@@ -112,7 +112,10 @@ def test_a_curve_does_not_depend_on_the_rows_beside_it():
     rows = [
         row(CUP, NOMINAL | {"cylinder_length": 0.16 * (1 + place / 50)}, LIMITS | {"wall_thickness": limits}, 1.08e-3)
         for place, limits in enumerate(
-            [Limits(low=0.0016 - off, high=0.0016 + off, distribution="uniform") for off in (1e-5, 1e-4, 3e-4, 5e-4, 9e-4)]
+            [
+                Limits(low=0.0016 - off, high=0.0016 + off, distribution="uniform")
+                for off in (1e-5, 1e-4, 3e-4, 5e-4, 9e-4)
+            ]
         )
     ]
     sampling = plan()

@@ -12,11 +12,13 @@ from scipy.special import ndtr, ndtri
 
 from flexlash.schema.arrays import Array, Quantity
 from flexlash.tolerance.digital_nets import scrambled_net
+from flexlash.tolerance.engine.line_crossings import NODES
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel, direction_of
+from flexlash.tolerance.engine.line_drawing import DrawnLines
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, line_net
 from flexlash.tolerance.engine.line_precision import unresolved
 from flexlash.tolerance.engine.line_quantiles import quantiles_of
-from flexlash.tolerance.engine.line_tables import NODES, Lines
+from flexlash.tolerance.engine.line_tables import Lines
 from flexlash.tolerance.engine.lot_inputs import (
     OTHERWISE,
     PARTS_ALIKE,
@@ -193,7 +195,7 @@ class PointLots(Lots):
         quantile, error, sound = np.zeros(lots), np.zeros(lots), np.zeros(lots, dtype=bool)
         for some in _blocks(np.flatnonzero((direction.vector != 0).any(axis=0)), number * len(NODES)):
             lines = Lines(of_rows(model, some), parts.take(some), direction.take(some), net)
-            found = quantiles_of(lines, np.array([1 - acceptable]))
+            found = quantiles_of(DrawnLines(lines=lines), np.array([1 - acceptable]))
             quantile[some], error[some] = found.output[0], found.output_error[0]
             sound[some] = (lines.faults == 0) & ~unresolved(lines, found) & np.isfinite(quantile[some] + error[some])
         return quantile, error, sound

@@ -19,6 +19,7 @@ from flexlash.tolerance.engine.line_crossings import NODES, crossings
 from flexlash.tolerance.engine.line_points import normal_density
 from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate, polynomial
 from flexlash.tolerance.engine.line_tables import Lines, bounds_of
+from flexlash.tolerance.engine.shape_rules import REACH
 from flexlash.tolerance.engine.surrogate_law import SurrogateLaw
 
 __all__ = ["LineControl"]
@@ -33,7 +34,7 @@ _RARE = 0.05
 """Part of a probability up to which the law's own residual is let in."""
 
 _MIDDLE = [len(NODES) // 2]
-_OUTER = [int(np.flatnonzero(NODES == score)[0]) for score in (-4.0, 4.0)]
+_OUTER = [int(np.flatnonzero(score == NODES)[0]) for score in (-4.0, 4.0)]
 """Nodes at which model and surrogate are compared for the tails that no line reaches."""
 
 _DIP = 1e-9
@@ -49,6 +50,7 @@ class LineControl:
         self._lines = lines
         self.surrogate = surrogate
         self.law = law
+        self._heavy = [index for index, rule in enumerate(surrogate.rules) if rule.heavy]
         self._coefficients = np.repeat(surrogate.coefficients[:, :, None], lines.lines, axis=3)
         middle = np.array([[rule.middle] for rule in surrogate.rules])
         half = np.array([[rule.half] for rule in surrogate.rules])
@@ -88,6 +90,8 @@ class LineControl:
 
     def _total(self, values: Array, block: slice) -> Array:
         variable = (values - self._middle[:, :, block]) * self._inverse[:, :, block]
+        for index in self._heavy:
+            np.minimum(np.maximum(variable[index], -REACH, out=variable[index]), REACH, out=variable[index])
         return np.asarray(np.add.reduce(polynomial(self._coefficients[:, :, :, block], variable), axis=0))
 
     def target(self, output: Array) -> Array:
@@ -121,12 +125,12 @@ class LineControl:
     def unseen(self, output: Array, lined: Array) -> Array:
         """Return about what no line tells of probabilities above outputs (levels, rows).
 
-        Equation: |1 − F_S − mean over lines of Φ(−t_surrogate)| · min(1, d f_S/min(F_S, 1 − F_S)), d how far apart model
-            and surrogate are in that tail: the part of the surrogate's own probability that the lines miss may be as
-            far off for the model as that is
+        Equation: |1 − F_S − mean over lines of Φ(−t_surrogate)| · min(1, d f_S/min(F_S, 1 − F_S)), d how far apart
+            model and surrogate are in that tail: what the lines miss of the surrogate's own probability may be as far
+            off for the model as that is
         Arguments: outputs, and the mean over lines of Φ(−t_surrogate) there, (levels, rows) each.
         """
         below, density = self.law.below(self.surrogate.matched(output)[0])
-        apart = np.where(below > 0.5, self._apart[1], self._apart[0])
+        apart = np.where(below > 1 - below, self._apart[1], self._apart[0])
         rarer = np.maximum(np.minimum(below, 1 - below), np.finfo(float).tiny)
-        return np.abs(1 - below - lined) * np.minimum(1.0, apart * density / rarer)
+        return np.asarray(np.abs(1 - below - lined) * np.minimum(1.0, apart * density / rarer))

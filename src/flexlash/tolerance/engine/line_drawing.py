@@ -21,7 +21,7 @@ __all__ = ["SD_PRECISION", "DrawnLines", "LineDrawing"]
 SD_PRECISION = 1e-3
 """Standard error wanted of the usual quantiles, in standard deviations of the output."""
 
-_ENDS = [int(np.flatnonzero(NODES == score)[0]) for score in (-3.0, 0.0, 3.0)]
+_ENDS = [int(np.flatnonzero(score == NODES)[0]) for score in (-3.0, 0.0, 3.0)]
 """Nodes by which it is seen whether lines do without a surrogate."""
 
 Bools = npt.NDArray[np.bool_]
@@ -32,7 +32,7 @@ class DrawnLines:
     """Lines through rows alike, and their surrogates where these help at least one of the rows."""
 
     lines: Lines
-    control: LineControl | None
+    control: LineControl | None = None
 
 
 class LineDrawing:
@@ -55,8 +55,8 @@ class LineDrawing:
         net = line_net(self._seed, len(inputs.names) - 1, number, single_curved=inputs.single_curved)
         lines = Lines(self.model(rows), inputs, self._direction.take(rows), net)
         needed = _unsettled(lines) & (lines.faults == 0)
-        if len(inputs.names) == 1 or not needed.any():
-            return DrawnLines(lines=lines, control=None)
+        if len(inputs.names) == 1 or inputs.factor is not None or not needed.any():
+            return DrawnLines(lines=lines)
         if self._surrogates is None:
             surrogate = fitted_surrogate(self._model, self._inputs, self._direction.vector)
             self._surrogates = surrogate, SurrogateLaw(surrogate, self._inputs.shapes)

@@ -153,12 +153,13 @@ def _moments(drawn: DrawnLines, rule: Rule, about: Array) -> tuple[list[Array], 
     used = lines.each(control.used[None])
     lined = [
         model - np.where(used, surrogate, 0.0)
-        for model, surrogate in zip(lined, _integrals((_outputs(control, lines)[::every], rule[1]), centre), strict=True)
+        for model, surrogate in zip(
+            lined, _integrals((_outputs(control, lines)[::every], rule[1]), centre), strict=True
+        )
     ]
     exact = control.surrogate.moments(about)
     return [
-        lines.mean_over_lines(one)[0] + np.where(control.used, own, 0.0)
-        for one, own in zip(lined, exact, strict=True)
+        lines.mean_over_lines(one)[0] + np.where(control.used, own, 0.0) for one, own in zip(lined, exact, strict=True)
     ], lined
 
 

@@ -205,7 +205,7 @@ class _Estimator:
     def __init__(self, lines: Lines, control: LineControl | None, trusted: Bools | None) -> None:
         self._lines = lines
         self._control = control if trusted is not None and trusted.any() else None
-        self._trusted = np.zeros((1, lines.rows), dtype=bool) if trusted is None else trusted
+        self._trusted: Bools = np.zeros((1, lines.rows), dtype=bool) if trusted is None else trusted
         self.bounds = _bounds(lines, control)
 
     def fronts(self, output: Array) -> list[_Front]:

@@ -30,7 +30,7 @@ DEGREE = 6
 RULE_NODES = 41
 """Nodes of the rule by which expectations of terms are taken."""
 
-_CORNERS = [int(np.flatnonzero(NODES == score)[0]) for score in (-2.0, 2.0)]
+_CORNERS = [int(np.flatnonzero(score == NODES)[0]) for score in (-2.0, 2.0)]
 """Nodes at which logarithm and output are tried for which adds up better."""
 
 _NODES = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
@@ -73,7 +73,9 @@ class AdditiveSurrogate:
 
     def output(self, total: Array) -> Array:
         """Return the outputs (..., rows) that h has at values of S."""
-        return np.where(self.logarithmic, np.exp(np.where(self.logarithmic, total, 0.0)) * self.centre, total + self.centre)
+        return np.where(
+            self.logarithmic, np.exp(np.where(self.logarithmic, total, 0.0)) * self.centre, total + self.centre
+        )
 
     def matched(self, output: Array) -> tuple[Array, Array]:
         """Return the values of S (levels, rows) that stand for outputs, and how they rise with these.
@@ -90,7 +92,9 @@ class AdditiveSurrogate:
 
     def unmatched(self, total: Array) -> Array:
         """Return about which outputs (levels, rows) values of S stand for."""
-        return values_at(self.outputs, crossings(self.totals, total)[0])[0]
+        output = values_at(self.outputs, crossings(self.totals, total)[0])[0]
+        beyond = total - np.minimum(np.maximum(total, self.totals[0]), self.totals[-1])
+        return np.asarray(output + beyond * np.where(self.logarithmic, self.centre, 1.0))
 
     def moments(self, about: Array) -> tuple[Array, ...]:
         """Return the first four moments of the surrogate's output about a value (rows,), (rows,) each.
@@ -137,7 +141,7 @@ def polynomial(coefficients: Array, variable: Array) -> Array:
         value += coefficient
         value *= variable
     value += coefficients[0]
-    return value
+    return np.asarray(value)
 
 
 def fitted_surrogate(model: RowModel, inputs: Inputs, vector: Array) -> AdditiveSurrogate:
@@ -153,52 +157,46 @@ def fitted_surrogate(model: RowModel, inputs: Inputs, vector: Array) -> Additive
     outputs, variables = _seen(model, inputs, vector, rules)
     centre = outputs[0]
     along, central = outputs[1 : -len(NODES)].reshape(len(rules), DEGREE + 1, -1), outputs[-len(NODES) :]
-    fitted = np.isfinite(outputs).all(axis=0)
+    fitted = np.asarray(np.isfinite(outputs).all(axis=0))
     positive = fitted & (outputs > 0).all(axis=0)
-    candidates = [_candidate(rules, centre, along, central, variables, one & fitted, fitted)
-                  for one in (positive, np.zeros_like(positive))]
-    off = [np.abs(one.output(one.totals) - central)[_CORNERS].max(axis=0) for one in candidates]
-    better = positive & (off[0] <= off[1])
-    fields = {
-        name: np.where(better, getattr(candidates[0], name), getattr(candidates[1], name))
-        for name in ("coefficients", "logarithmic", "totals")
-    }
-    fields["totals"] = np.maximum.accumulate(fields["totals"], axis=0)
-    return replace(candidates[1], outputs=np.maximum.accumulate(central, axis=0), **fields)
 
+    def with_logarithm(logarithmic: Bools) -> AdditiveSurrogate:
+        coefficients = _coefficients(along, centre, logarithmic, fitted)
+        totals = np.zeros(central.shape)
+        for index, variable in enumerate(variables):
+            totals += polynomial(coefficients[:, index], variable)
+        return AdditiveSurrogate(
+            rules=rules,
+            coefficients=coefficients,
+            centre=centre,
+            logarithmic=logarithmic,
+            fitted=fitted,
+            outputs=np.maximum.accumulate(central, axis=0),
+            totals=totals,
+        )
 
-def _candidate(
-    rules: tuple[ShapeRule, ...],
-    centre: Array,
-    along: Array,
-    central: Array,
-    variables: Sequence[Array],
-    logarithmic: Bools,
-    fitted: Bools,
-) -> AdditiveSurrogate:
-    """Return the surrogates with the logarithm in these rows."""
-    risen = np.where(logarithmic, np.log(np.where(logarithmic, along / centre, 1.0)), along - centre)
-    risen = np.where(fitted, risen, 0.0)
-    coefficients = np.zeros((DEGREE + 1, len(rules), len(centre)))
-    for node in range(DEGREE + 1):
-        coefficients += _FIT[:, node, None, None] * risen[:, node]
-    totals = np.zeros(central.shape)
-    for index, variable in enumerate(variables):
-        totals += polynomial(coefficients[:, index], variable)
-    return AdditiveSurrogate(
-        rules=rules,
-        coefficients=coefficients,
-        centre=centre,
-        logarithmic=logarithmic,
-        fitted=fitted,
-        outputs=central,
-        totals=totals,
+    logarithms, plain = with_logarithm(positive), with_logarithm(np.zeros_like(positive))
+    off, plain_off = (np.abs(one.output(one.totals) - central)[_CORNERS].max(axis=0) for one in (logarithms, plain))
+    better = positive & (off <= plain_off)
+    return replace(
+        plain,
+        coefficients=np.where(better, logarithms.coefficients, plain.coefficients),
+        totals=np.maximum.accumulate(np.where(better, logarithms.totals, plain.totals), axis=0),
+        logarithmic=better,
     )
 
 
-def _seen(
-    model: RowModel, inputs: Inputs, vector: Array, rules: Sequence[ShapeRule]
-) -> tuple[Array, list[Array]]:
+def _coefficients(along: Array, centre: Array, logarithmic: Bools, fitted: Bools) -> Array:
+    """Return the coefficients (degree + 1, inputs, rows) through outputs (inputs, nodes, rows) at the nodes."""
+    risen = np.where(logarithmic, np.log(np.where(logarithmic, along / centre, 1.0)), along - centre)
+    risen = np.where(fitted, risen, 0.0)
+    coefficients = np.zeros((DEGREE + 1, len(along), len(centre)))
+    for node in range(DEGREE + 1):
+        coefficients += _FIT[:, node, None, None] * risen[:, node]
+    return coefficients
+
+
+def _seen(model: RowModel, inputs: Inputs, vector: Array, rules: Sequence[ShapeRule]) -> tuple[Array, list[Array]]:
     """Return outputs of rows (1 + inputs × nodes + line nodes, rows), and the variables of each input on that line.
 
     Outputs are those at the medians, at the nodes of each input, and on the line through the medians.

@@ -13,6 +13,7 @@ Source: Koutsourelakis, Pradlwarter and Schuëller 2004 (line sampling); L'Ecuye
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -78,6 +79,8 @@ _LOOKED_AT = 64
 """Lines of a row that are looked at closely where its table is uneven."""
 
 _BLOCK = 1 << 15
+
+Number = TypeVar("Number", bound=np.generic)
 
 
 class Lines:
@@ -211,7 +214,7 @@ class Lines:
         """Least and greatest output in the table of each row, (rows,) each."""
         return bounds_of(self.table, self.rows)
 
-    def each(self, values: Array) -> Array:
+    def each(self, values: npt.NDArray[Number]) -> npt.NDArray[Number]:
         """Return values (k, rows) once for every line, (k, rows × lines)."""
         return np.repeat(values, self.lines, axis=1)
 

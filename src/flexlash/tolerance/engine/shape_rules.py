@@ -1,24 +1,26 @@
 """What is known of a distribution's shape once for all rows: the variable polynomials are in, and how to integrate it.
 
-    variable            v, the standard value mapped to −1 … 1 between the scores ±6
-    rule                nodes of v with weights: Σ w f(v) is the expectation of f
-    bounded             a shape whose standard value no longer moves at great scores
+variable            v, the standard value mapped to −1 … 1 between the scores ±6
+rule                nodes of v with weights: Σ w f(v) is the expectation of f
+bounded             a shape whose standard value no longer moves at great scores
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import ndtr
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution
 
-__all__ = ["FITTED", "ShapeRule", "gauss_rule", "shape_rule"]
+__all__ = ["REACH", "ShapeRule", "gauss_rule", "shape_rule"]
 
-FITTED = 6.0
-"""Scores between which the variable runs from −1 to 1."""
+_FITTED, _HEAVY_FITTED = 6.0, 4.0
+"""Scores between which the variable runs from −1 to 1; the latter for shapes with heavy tails."""
+
+REACH = 1.5
+"""Variables further out are taken as this: a polynomial is not to be asked far beyond where it was fitted."""
 
 _OUTER = 8.0
 """Scores at which the trapezoidal rule ends; beyond lies 1e-15."""
@@ -39,6 +41,7 @@ class ShapeRule:
 
     `median` is the variable of the median. `resolved` is the greatest frequency, in radians per unit of v, of a wave
     whose expectation the rule gives to 1e-8; for a shape that is not bounded the wave's own decay has to do its part.
+    `heavy` are tails that go on beyond `REACH`.
     """
 
     middle: float
@@ -47,10 +50,12 @@ class ShapeRule:
     variables: Array
     weights: Array
     resolved: float
+    heavy: bool
 
     def variable(self, standard: Array) -> Array:
         """Return the variables of standard values, in their shape."""
-        return (standard - self.middle) / self.half
+        variable = (standard - self.middle) / self.half
+        return np.minimum(np.maximum(variable, -REACH), REACH) if self.heavy else variable
 
 
 def shape_rule(distribution: Distribution, nodes: int) -> ShapeRule:
@@ -78,11 +83,12 @@ def shape_rule(distribution: Distribution, nodes: int) -> ShapeRule:
 
 
 def _made(distribution: Distribution, nodes: int) -> ShapeRule:
-    scores = np.array([-_OUTER, -FITTED, 0.0, FITTED, _OUTER])
-    lowest, low, median, high, highest = distribution.standard_at(scores).tolist()
-    middle, half = (low + high) / 2, (high - low) / 2
-    bounded = max(highest - high, low - lowest) <= _SETTLED * half
-    if bounded:
+    scores = np.array([-_OUTER, -_FITTED, -_HEAVY_FITTED, 0.0, _HEAVY_FITTED, _FITTED, _OUTER])
+    lowest, low, low_heavy, median, high_heavy, high, highest = distribution.standard_at(scores).tolist()
+    middle, half, fitted = (low + high) / 2, (high - low) / 2, _FITTED
+    if max(highest - middle, middle - lowest) > REACH * half:
+        middle, half, fitted = (low_heavy + high_heavy) / 2, (high_heavy - low_heavy) / 2, _HEAVY_FITTED
+    if max(highest - high, low - lowest) <= _SETTLED * half:
         standard, weights = gauss_rule(distribution, nodes)
         resolved = 1.1 * nodes
     else:
@@ -90,15 +96,17 @@ def _made(distribution: Distribution, nodes: int) -> ShapeRule:
         standard = distribution.standard_at(score)
         weights = np.exp(-score * score / 2)
         weights = weights / weights.sum()
-        resolved = FITTED * (2 * np.pi * (nodes - 1) / (2 * _OUTER) - FITTED)
-    return ShapeRule(
+        resolved = fitted * (2 * np.pi * (nodes - 1) / (2 * _OUTER) - _FITTED)
+    rule = ShapeRule(
         middle=middle,
         half=half,
         median=(median - middle) / half,
-        variables=(standard - middle) / half,
+        variables=np.zeros(nodes),
         weights=weights,
         resolved=resolved,
+        heavy=bool(max(highest - middle, middle - lowest) > REACH * half),
     )
+    return replace(rule, variables=rule.variable(standard))
 
 
 def gauss_rule(distribution: Distribution, nodes: int) -> tuple[Array, Array]:
@@ -140,7 +148,8 @@ def _stieltjes(values: Array, mass: Array, nodes: int) -> tuple[Array, Array]:
     middle, half = (values.max() + values.min()) / 2, (values.max() - values.min()) / 2
     values = (values - middle) / half
     before, now = np.zeros_like(values), np.ones_like(values) / np.sqrt(mass.sum())
-    diagonal, beside = [], []
+    diagonal: list[float] = []
+    beside: list[float] = []
     for order in range(nodes):
         centre = float((mass * values * now * now).sum())
         diagonal.append(centre)

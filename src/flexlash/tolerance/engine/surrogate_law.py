@@ -33,6 +33,9 @@ _CONVERGED = 1e-9
 _REACH = 8.5
 """Half the width of the range, in standard deviations of a sum that is nearly normal."""
 
+_FEWEST = 8
+"""Terms that the rules must resolve, or nothing is told of the law."""
+
 _TAIL = 8
 """The last of so many parts of the terms tells what those left out would add."""
 
@@ -130,7 +133,7 @@ class SurrogateLaw:
 
 @dataclass(frozen=True, kw_only=True)
 class _Rules:
-    """The rules of all inputs with as many nodes: `variables` and `weights` (inputs, 1, nodes), `resolved` (inputs, 1)."""
+    """The rules of all inputs: `variables` and `weights` (inputs, 1, nodes), `resolved` (inputs, 1)."""
 
     variables: Array
     weights: Array
@@ -161,6 +164,7 @@ def _expanded(surrogate: AdditiveSurrogate, rules: _Rules, rows: Indices, terms:
     kept = number <= count
     tail = kept & (number > count * (1 - 1 / _TAIL))
     residual = 2 / np.pi * np.where(tail, np.abs(factor), 0.0).max(axis=0) + outside
+    residual = np.where(count < _FEWEST, np.inf, residual)
     coefficients = np.where(kept, factor.real, 0.0) * (2 / np.pi) / number
     return _Series(index=rows, low=low, width=width, coefficients=np.ascontiguousarray(coefficients.T)), residual
 
@@ -209,7 +213,7 @@ def _total(values: Array) -> Array:
     total = values[0].copy()
     for one in values[1:]:
         total += one
-    return total
+    return np.asarray(total)
 
 
 def _summed(series: _Series, total: Array) -> tuple[Array, Array]:
@@ -247,4 +251,4 @@ def _quantiles(series: _Series, probability: Array) -> Array:
         found, density = _summed(series, total)
         moved = (probability[:, None] - found) / np.where(density > 0, density, np.inf)
         total = np.minimum(np.maximum(total + moved, low), high)
-    return total
+    return np.asarray(total)
