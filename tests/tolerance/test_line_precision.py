@@ -38,7 +38,7 @@ def decided(excess, *, lines=FEWEST_LINES, share=None, relative=0.0, limited=Non
 
 def test_default_and_single_input():
     """Without a number 64 lines begin; one input alone has one line in each replicate, whatever is asked for."""
-    assert initial_lines(2, None) == FEWEST_LINES == 16
+    assert initial_lines(2, None) == FEWEST_LINES == 64
     assert initial_lines(1, None) == initial_lines(1, 5000) == LINE_REPLICATES
 
 

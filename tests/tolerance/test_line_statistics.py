@@ -16,7 +16,7 @@ from toleranced import SUM, SUM_LIMITS, SUM_NAMES, every_number, plan, row, stat
 from flexlash.mechanics import flexspline
 from flexlash.tolerance import propagate
 from flexlash.tolerance.dimension_limits import Limits, distributions
-from flexlash.tolerance.engine.line_precision import FEWEST_LINES, MOST_LINES
+from flexlash.tolerance.engine.line_precision import FEWEST_ROW_LINES, MOST_LINES
 from flexlash.tolerance.row_batches import batch_statistics
 from flexlash.tolerance.spread_statistics import PERCENTILES, statistics_of
 
@@ -112,7 +112,7 @@ def test_the_rows_differ_in_how_many_lines_they_take():
     for rows in ROWS:
         numbers = {each.numbers["spread_points"] for each in together(rows, "lines as needed")}
         assert len(numbers) >= 4
-        assert all(math.log2(number).is_integer() and FEWEST_LINES <= number <= MOST_LINES for number in numbers)
+        assert all(math.log2(number).is_integer() and FEWEST_ROW_LINES <= number <= MOST_LINES for number in numbers)
 
 
 @pytest.mark.slow

@@ -19,7 +19,7 @@ from flexlash.tolerance.engine.line_crossings import NODES, crossings
 from flexlash.tolerance.engine.line_points import normal_density
 from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate, polynomial
 from flexlash.tolerance.engine.line_tables import Lines, bounds_of
-from flexlash.tolerance.engine.shape_rules import REACH
+from flexlash.tolerance.engine.shape_rules import pulled_in
 from flexlash.tolerance.engine.surrogate_law import SurrogateLaw
 
 __all__ = ["LineControl"]
@@ -91,7 +91,7 @@ class LineControl:
     def _total(self, values: Array, block: slice) -> Array:
         variable = (values - self._middle[:, :, block]) * self._inverse[:, :, block]
         for index in self._heavy:
-            np.minimum(np.maximum(variable[index], -REACH, out=variable[index]), REACH, out=variable[index])
+            variable[index] = pulled_in(variable[index])
         return np.asarray(np.add.reduce(polynomial(self._coefficients[:, :, :, block], variable), axis=0))
 
     def target(self, output: Array) -> Array:

@@ -15,6 +15,7 @@ from flexlash.tolerance.engine.line_tables import Lines
 __all__ = [
     "DECISIVE",
     "FEWEST_LINES",
+    "FEWEST_ROW_LINES",
     "MOST_LINES",
     "PROBABILITY_PRECISION",
     "RAREST_PROBABILITY",
@@ -25,7 +26,10 @@ __all__ = [
     "unresolved",
 ]
 
-FEWEST_LINES = 16
+FEWEST_LINES = 64
+FEWEST_ROW_LINES = 16
+"""Fewest lines of a model, and of rows of a table: their model is known, that of a single call may hold surprises."""
+
 MOST_LINES = 1 << 14
 
 DECISIVE = (0.00135, 0.025, 0.5, 0.975, 0.99865)
@@ -45,7 +49,7 @@ _MARGIN = 1.5
 Bools = npt.NDArray[np.bool_]
 
 
-def initial_lines(inputs: int, samples: int | None) -> int:
+def initial_lines(inputs: int, samples: int | None, fewest: int = FEWEST_LINES) -> int:
     """Return how many lines a row starts with; one input alone has but one line, the same in each replicate.
 
     Raises ValueError for less than one sample.
@@ -57,7 +61,7 @@ def initial_lines(inputs: int, samples: int | None) -> int:
         raise ValueError(f"samples = {samples} must be at least 1")
     if inputs == 1:
         return LINE_REPLICATES
-    total = FEWEST_LINES if samples is None else samples
+    total = fewest if samples is None else samples
     return LINE_REPLICATES << max(0, -(-total // LINE_REPLICATES) - 1).bit_length()
 
 

@@ -17,6 +17,7 @@ from flexlash.tolerance.engine.line_drawing import DrawnLines, LineDrawing
 from flexlash.tolerance.engine.line_moments import moments_of
 from flexlash.tolerance.engine.line_precision import (
     DECISIVE,
+    FEWEST_ROW_LINES,
     initial_lines,
     lines_needed,
     precision_notes,
@@ -48,7 +49,7 @@ def line_statistics(
     adaptive = plan.samples is None and len(inputs.names) > 1
     with np.errstate(all="ignore"):
         drawing = LineDrawing(model, inputs, plan.seed)
-        pending = [(initial_lines(len(inputs.names), plan.samples), np.arange(inputs.count))]
+        pending = [(initial_lines(len(inputs.names), plan.samples, FEWEST_ROW_LINES), np.arange(inputs.count))]
         while pending:
             number, rows = pending.pop()
             needed = np.full(len(rows), number)

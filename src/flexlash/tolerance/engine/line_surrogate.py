@@ -209,5 +209,5 @@ def _seen(model: RowModel, inputs: Inputs, vector: Array, rules: Sequence[ShapeR
         standard = inputs.shapes[index].standard_at(NODES[:, None] * vector[index])
         variable[-len(NODES) :] = rule.variable(standard)
         variables.append(variable[-len(NODES) :])
-        arguments[name] = inputs.location[index] + inputs.scale[index] * (rule.middle + rule.half * variable)
+        arguments[name] = inputs.location[index] + inputs.scale[index] * rule.standard(variable)
     return model(arguments, np.arange(inputs.count)), variables

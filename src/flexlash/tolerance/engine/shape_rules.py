@@ -14,13 +14,15 @@ import numpy as np
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution
 
-__all__ = ["REACH", "ShapeRule", "gauss_rule", "shape_rule"]
+__all__ = ["ShapeRule", "gauss_rule", "pulled_in", "shape_rule"]
 
 _FITTED, _HEAVY_FITTED = 6.0, 4.0
 """Scores between which the variable runs from −1 to 1; the latter for shapes with heavy tails."""
 
-REACH = 1.5
-"""Variables further out are taken as this: a polynomial is not to be asked far beyond where it was fitted."""
+_REACH = 1.5
+"""Tails that go further than this, in half ranges, are heavy: no polynomial is to be asked so far from its nodes."""
+
+_PULL = float(np.tanh(1.0))
 
 _OUTER = 8.0
 """Scores at which the trapezoidal rule ends; beyond lies 1e-15."""
@@ -37,11 +39,11 @@ _MOST_RULES = 512
 
 @dataclass(frozen=True, kw_only=True)
 class ShapeRule:
-    """A rule of a shape: `variables` and `weights` (nodes,); v = (standard value − `middle`)/`half`.
+    """A rule of a shape: `variables` and `weights` (nodes,); v = x = (standard value − `middle`)/`half`.
 
     `median` is the variable of the median. `resolved` is the greatest frequency, in radians per unit of v, of a wave
     whose expectation the rule gives to 1e-8; for a shape that is not bounded the wave's own decay has to do its part.
-    `heavy` are tails that go on beyond `REACH`.
+    Where tails are `heavy` v = tanh(x)/tanh(1), which is as smooth and has an end.
     """
 
     middle: float
@@ -55,7 +57,11 @@ class ShapeRule:
     def variable(self, standard: Array) -> Array:
         """Return the variables of standard values, in their shape."""
         variable = (standard - self.middle) / self.half
-        return np.minimum(np.maximum(variable, -REACH), REACH) if self.heavy else variable
+        return pulled_in(variable) if self.heavy else variable
+
+    def standard(self, variable: Array) -> Array:
+        """Return the standard values of variables, in their shape."""
+        return self.middle + self.half * (np.arctanh(variable * _PULL) if self.heavy else variable)
 
 
 def shape_rule(distribution: Distribution, nodes: int) -> ShapeRule:
@@ -64,8 +70,8 @@ def shape_rule(distribution: Distribution, nodes: int) -> ShapeRule:
     Equation: E f(v) = Σ w_q f(v_q): Gauss's rule of the shape's own measure where it is bounded, which kinks of the
         density do not disturb; else the trapezoidal rule in the score
     Arguments: a distribution, whose shape alone matters; an odd number of nodes.
-    Valid: e^{iωv} of a bounded shape for ω up to 1.1 × nodes, of a normal one for ω/6 up to 2π/h − 6, where the step h
-        is 16/(nodes − 1).
+    Valid: e^{iωv} of a bounded shape for ω up to 1.1 × nodes, of a normal one where
+        ω dv/dscore stays below 2π/h − 6, the step h = 16/(nodes − 1).
     Source: Golub and Welsch 1969; Trefethen and Weideman 2014 (trapezoidal rule).
 
     >>> from flexlash.tolerance.distributions import Uniform
@@ -82,31 +88,30 @@ def shape_rule(distribution: Distribution, nodes: int) -> ShapeRule:
     return rule
 
 
+def pulled_in(variable: Array) -> Array:
+    """Return variables whose heavy tails are pulled in: −1, 0 and 1 stay."""
+    return np.asarray(np.tanh(variable) / _PULL)
+
+
 def _made(distribution: Distribution, nodes: int) -> ShapeRule:
-    scores = np.array([-_OUTER, -_FITTED, -_HEAVY_FITTED, 0.0, _HEAVY_FITTED, _FITTED, _OUTER])
-    lowest, low, low_heavy, median, high_heavy, high, highest = distribution.standard_at(scores).tolist()
-    middle, half, fitted = (low + high) / 2, (high - low) / 2, _FITTED
-    if max(highest - middle, middle - lowest) > REACH * half:
-        middle, half, fitted = (low_heavy + high_heavy) / 2, (high_heavy - low_heavy) / 2, _HEAVY_FITTED
+    score = np.linspace(-_OUTER, _OUTER, nodes)
+    ends = np.array([-_OUTER, -_FITTED, -_HEAVY_FITTED, 0.0, _HEAVY_FITTED, _FITTED, _OUTER])
+    lowest, low, low_heavy, median, high_heavy, high, highest = distribution.standard_at(ends).tolist()
+    middle, half = (low + high) / 2, (high - low) / 2
+    heavy = max(highest - middle, middle - lowest) > _REACH * half
+    if heavy:
+        middle, half = (low_heavy + high_heavy) / 2, (high_heavy - low_heavy) / 2
+    bare = ShapeRule(
+        middle=middle, half=half, median=0.0, variables=score, weights=score, resolved=1.1 * nodes, heavy=heavy
+    )
+    bare = replace(bare, median=float(bare.variable(np.array(median))))
     if max(highest - high, low - lowest) <= _SETTLED * half:
         standard, weights = gauss_rule(distribution, nodes)
-        resolved = 1.1 * nodes
-    else:
-        score = np.linspace(-_OUTER, _OUTER, nodes)
-        standard = distribution.standard_at(score)
-        weights = np.exp(-score * score / 2)
-        weights = weights / weights.sum()
-        resolved = fitted * (2 * np.pi * (nodes - 1) / (2 * _OUTER) - _FITTED)
-    rule = ShapeRule(
-        middle=middle,
-        half=half,
-        median=(median - middle) / half,
-        variables=np.zeros(nodes),
-        weights=weights,
-        resolved=resolved,
-        heavy=bool(max(highest - middle, middle - lowest) > REACH * half),
-    )
-    return replace(rule, variables=rule.variable(standard))
+        return replace(bare, variables=bare.variable(standard), weights=weights)
+    variables, weights = bare.variable(distribution.standard_at(score)), np.exp(-score * score / 2)
+    step = float(score[1] - score[0])
+    resolved = (2 * np.pi / step - _FITTED) / float(np.abs(np.gradient(variables, step)).max())
+    return replace(bare, variables=variables, weights=weights / weights.sum(), resolved=resolved)
 
 
 def gauss_rule(distribution: Distribution, nodes: int) -> tuple[Array, Array]:
