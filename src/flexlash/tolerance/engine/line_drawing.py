@@ -59,7 +59,7 @@ class LineDrawing:
             return DrawnLines(lines=lines)
         if self._surrogates is None:
             surrogate = fitted_surrogate(self._model, self._inputs, self._direction.vector)
-            self._surrogates = surrogate, SurrogateLaw(surrogate, self._inputs.shapes)
+            self._surrogates = surrogate, SurrogateLaw.of(surrogate, self._inputs.shapes)
         surrogate, law = self._surrogates
         control = LineControl(lines, surrogate.take(rows), law.take(rows), needed)
         return DrawnLines(lines=lines, control=control if control.used.any() else None)

@@ -73,6 +73,7 @@ class _Series:
         return cls(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in vars(parts[0])})
 
 
+@dataclass(frozen=True, kw_only=True)
 class SurrogateLaw:
     """The distribution of S in rows alike.
 
@@ -83,50 +84,43 @@ class SurrogateLaw:
     """
 
     residual: Array
+    series: tuple[_Series, ...]
 
-    def __init__(self, surrogate: AdditiveSurrogate, shapes: tuple[Distribution, ...]) -> None:
-        self.residual = np.full(len(surrogate.centre), np.inf)
-        self._series: list[_Series] = []
+    @classmethod
+    def of(cls, surrogate: AdditiveSurrogate, shapes: Sequence[Distribution]) -> SurrogateLaw:
+        """Return the laws of surrogates of rows alike, whose inputs have these shapes."""
+        residual, series = np.full(len(surrogate.centre), np.inf), []
         pending = np.flatnonzero(surrogate.fitted)
         for terms, nodes in _LEVELS:
-            rules = _Rules.of(shapes, nodes)
-            step = max(_TOGETHER // (terms * len(shapes) * nodes), 1)
-            blocks = [pending[start : start + step] for start in range(0, len(pending), step)]
-            found = [_expanded(surrogate.take(rows), rules, rows, terms) for rows in blocks]
-            if not found:
+            if not len(pending):
                 break
-            series = _Series.joined([one for one, _ in found])
-            residual = np.concatenate([one for _, one in found])
-            done = (residual <= _CONVERGED) | ((terms, nodes) == _LEVELS[-1])
-            self.residual[pending[done]] = residual[done]
+            expanded, left = _expanded_in_blocks(surrogate, _Rules.of(shapes, nodes), pending, terms)
+            done = (left <= _CONVERGED) | ((terms, nodes) == _LEVELS[-1])
+            residual[pending[done]] = left[done]
             if done.any():
-                self._series.append(series.take(np.flatnonzero(done)))
+                series.append(expanded.take(np.flatnonzero(done)))
             pending = pending[~done]
+        return cls(residual=residual, series=tuple(series))
 
     def take(self, rows: Indices) -> SurrogateLaw:
         """Return some of the rows."""
-        law = object.__new__(SurrogateLaw)
-        law.residual = self.residual[rows]
         place = np.full(len(self.residual), -1)
         place[rows] = np.arange(len(rows))
-        law._series = []
-        for series in self._series:
-            found = np.flatnonzero(place[series.index] >= 0)
-            if len(found):
-                law._series.append(replace(series.take(found), index=place[series.index[found]]))
-        return law
+        chosen = [(series, np.flatnonzero(place[series.index] >= 0)) for series in self.series]
+        series = [replace(one.take(found), index=place[one.index[found]]) for one, found in chosen if len(found)]
+        return SurrogateLaw(residual=self.residual[rows], series=tuple(series))
 
     def below(self, total: Array) -> tuple[Array, Array]:
         """Return the probability that S stays below values (levels, rows), and the density there."""
         probability, density = np.zeros(total.shape), np.zeros(total.shape)
-        for series in self._series:
+        for series in self.series:
             probability[:, series.index], density[:, series.index] = _summed(series, total[:, series.index])
         return probability, density
 
     def quantiles(self, probability: Array) -> Array:
         """Return about which values (levels, rows) S stays below with probabilities (levels,); NaN without a law."""
         total = np.full((len(probability), len(self.residual)), np.nan)
-        for series in self._series:
+        for series in self.series:
             total[:, series.index] = _quantiles(series, probability)
         return total
 
@@ -148,6 +142,16 @@ class _Rules:
             weights=np.array([rule.weights for rule in rules])[:, None],
             resolved=np.array([[rule.resolved] for rule in rules]),
         )
+
+
+def _expanded_in_blocks(
+    surrogate: AdditiveSurrogate, rules: _Rules, rows: Indices, terms: int
+) -> tuple[_Series, Array]:
+    """Return the series of so many terms of some rows, and their residuals."""
+    step = max(_TOGETHER // (terms * rules.variables.size), 1)
+    blocks = [rows[start : start + step] for start in range(0, len(rows), step)]
+    found = [_expanded(surrogate.take(block), rules, block, terms) for block in blocks]
+    return _Series.joined([series for series, _ in found]), np.concatenate([residual for _, residual in found])
 
 
 def _expanded(surrogate: AdditiveSurrogate, rules: _Rules, rows: Indices, terms: int) -> tuple[_Series, Array]:
