@@ -15,12 +15,14 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from flexlash.schema.arrays import Array
+from flexlash.tolerance.engine.line_crossings import FAR, NODES
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, LineDirection, RowModel
+from flexlash.tolerance.engine.line_drawing import DrawnLines
 from flexlash.tolerance.engine.line_lots import FailingLots, LineNumbers, LotLines, worse_faults
 from flexlash.tolerance.engine.line_points import Net
 from flexlash.tolerance.engine.line_precision import MOST_LINES
 from flexlash.tolerance.engine.line_quantiles import LEAST_PROBABILITY, quantiles_at, quantiles_of
-from flexlash.tolerance.engine.line_tables import FAR, NODES, STEPS, Lines
+from flexlash.tolerance.engine.line_tables import STEPS, Lines
 from flexlash.tolerance.engine.lot_inputs import LotsAndParts, holding
 from flexlash.tolerance.engine.lot_variance import VarianceSplit, variance_split
 
@@ -67,7 +69,7 @@ class EntangledLots(LotLines):
         medians = quantiles({name: values[None] for name, values in self.split.lot_medians.items()}, self._every)
         near, lots, direction = self._at_design_point(acceptable, medians[0]), self.split.lots, self._lot_direction
         many = Lines(near, lots, direction, self._net(lots, 3, min(_CHEAPER * self.lines.lots, MOST_LINES)))
-        above = quantiles_at(many, limit[None])
+        above = quantiles_at(DrawnLines(lines=many), limit[None])
         few = (
             Lines(near, lots, direction, self._lot_net),
             _QuantileLines(near, quantiles, lots, direction, self._lot_net),
@@ -131,7 +133,7 @@ class _LotQuantiles:
         rows = rows[chosen]
         model = holding(self._split.model, {name: values[chosen] for name, values in lots.items()}, rows)
         lines = Lines(model, self._split.parts.take(rows), self._direction.take(rows), self._net)
-        found = quantiles_of(lines, self._probability)
+        found = quantiles_of(DrawnLines(lines=lines), self._probability)
         faults = worse_faults(lines.faults, lines, found)
         np.maximum.at(self.faults, rows, faults)
         return found.output[0], found.output_error[0]

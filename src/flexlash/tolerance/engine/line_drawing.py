@@ -21,6 +21,9 @@ __all__ = ["SD_PRECISION", "DrawnLines", "LineDrawing"]
 SD_PRECISION = 1e-3
 """Standard error wanted of the usual quantiles, in standard deviations of the output."""
 
+_ALONE = 64
+"""Lines from which on their errors are believed to say that lines do without a surrogate."""
+
 _ENDS = [int(np.flatnonzero(score == NODES)[0]) for score in (-3.0, 0.0, 3.0)]
 """Nodes by which it is seen whether lines do without a surrogate."""
 
@@ -67,7 +70,7 @@ class LineDrawing:
 
 def _unsettled(lines: Lines) -> Bools:
     """Return which rows (rows,) take a surrogate: of normal inputs those that lines alone do not know as wanted."""
-    if any(shape.shape != Normal.shape for shape in lines.inputs.shapes):
+    if lines.lines < _ALONE or any(shape.shape != Normal.shape for shape in lines.inputs.shapes):
         return np.ones(lines.rows, dtype=bool)
     ends = lines.table[_ENDS]
     return np.asarray((lines.standard_error(ends) > SD_PRECISION * lines.scale).any(axis=0))

@@ -19,6 +19,7 @@ import numpy as np
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, direction_of
+from flexlash.tolerance.engine.line_drawing import DrawnLines
 from flexlash.tolerance.engine.line_moments import moments_of
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, Net, line_net
 from flexlash.tolerance.engine.line_precision import unresolved
@@ -131,7 +132,7 @@ class SeparableLots(LotLines):
         """Return the variance over some lines, for a product over the squared mean, and its standard error."""
         if lines is None:
             return np.zeros(self.split.rows), np.zeros(self.split.rows)
-        moments = moments_of(lines)
+        moments = moments_of(DrawnLines(lines=lines))
         size = np.abs(moments.mean) if self._product else np.ones(self.split.rows)
         spread = moments.sd / size
         error = 2 * spread * (moments.sd_error + (spread * moments.mean_error if self._product else 0.0)) / size
@@ -141,7 +142,7 @@ class SeparableLots(LotLines):
         """Return the share of lots with more than the acceptable share of parts over the limit (rows,)."""
         quantile, error, faults = self.centre, np.zeros(self.split.rows), self.faults
         if self._parts is not None:
-            found = quantiles_of(self._parts, np.array([1 - acceptable]))
+            found = quantiles_of(DrawnLines(lines=self._parts), np.array([1 - acceptable]))
             quantile, error = found.output[0], found.output_error[0]
             faults = worse_faults(faults, self._parts, found)
         if self._lots is None:
@@ -154,7 +155,7 @@ class SeparableLots(LotLines):
             error = error * np.abs(threshold / np.where(ratio > 0, quantile, 1.0))
         else:
             threshold = limit - (quantile - self.centre)
-        above = quantiles_at(self._lots, threshold[None])
+        above = quantiles_at(DrawnLines(lines=self._lots), threshold[None])
         faults = worse_faults(faults, self._lots, above)
         return _failing(above, error, faults)
 

@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 FEWEST_LINES = 64
-FEWEST_ROW_LINES = 16
+FEWEST_ROW_LINES = 32
 """Fewest lines of a model, and of rows of a table: their model is known, that of a single call may hold surprises."""
 
 MOST_LINES = 1 << 14

@@ -72,8 +72,9 @@ _FLAT, _HIGH = 1e-12, 0.05
 """A line is flat where it rises less than the one part of its range, and has an edge where two positions on it rises
 more than the other: limits that are approached smoothly take longer."""
 
-_BEYOND = 2.0
-"""How much further from the mean lines beyond an evenly spaced coordinate may be than its last."""
+_BEYOND, _MOST_BEYOND = 2.0, 20.0
+"""How many times further from the mean lines beyond an evenly spaced coordinate may be than its last: at least the one
+number, as many as the last is beyond the one before it, at most the other."""
 
 _LOOKED_AT = 64
 """Lines of a row that are looked at closely where its table is uneven."""
@@ -241,8 +242,12 @@ class Lines:
         by_point = values.reshape(
             -1, self.rows, LINE_REPLICATES, spaced, values.shape[1] // (self.rows * LINE_REPLICATES * spaced)
         )
-        first, last = (by_point[:, :, :, end].mean(axis=(2, 3)) for end in (0, -1))
-        return np.asarray(_BEYOND * self._net.beyond * (np.abs(first - mean) + np.abs(last - mean)))
+        beyond = np.zeros(mean.shape)
+        for end, inner in ((0, 1), (-1, -2)):
+            off, before = (np.abs(by_point[:, :, :, point].mean(axis=(2, 3)) - mean) for point in (end, inner))
+            growth = off / np.where(before > 0, before, np.inf)
+            beyond += off * np.minimum(np.maximum(growth, _BEYOND), _MOST_BEYOND)
+        return np.asarray(self._net.beyond * beyond)
 
 
 def _alike(shapes: Sequence[Distribution]) -> list[tuple[Distribution, slice | list[int]]]:

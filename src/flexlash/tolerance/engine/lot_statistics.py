@@ -10,6 +10,7 @@ import numpy as np
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.engine.entangled_lots import EntangledLots
+from flexlash.tolerance.engine.line_crossings import NODES
 from flexlash.tolerance.engine.line_direction import Indices
 from flexlash.tolerance.engine.line_lots import FailingLots, LineNumbers, LotLines, SeparableLots
 from flexlash.tolerance.engine.line_precision import (
@@ -19,7 +20,6 @@ from flexlash.tolerance.engine.line_precision import (
     SD_PRECISION,
     initial_lines,
 )
-from flexlash.tolerance.engine.line_tables import NODES
 from flexlash.tolerance.engine.lot_inputs import OTHERWISE, LotsAndParts
 from flexlash.tolerance.engine.lot_variance import VarianceSplit
 

@@ -33,6 +33,9 @@ _CONVERGED = 1e-9
 _REACH = 8.5
 """Half the width of the range, in standard deviations of a sum that is nearly normal."""
 
+_LOBES = 4.0
+"""How many times greater than the last terms those left out may be: bounded terms have waves with lobes."""
+
 _FEWEST = 8
 """Terms that the rules must resolve, or nothing is told of the law."""
 
@@ -167,7 +170,7 @@ def _expanded(surrogate: AdditiveSurrogate, rules: _Rules, rows: Indices, terms:
     count = np.floor((rules.resolved / np.maximum(swing * frequency, rules.resolved / terms)).min(axis=0))
     kept = number <= count
     tail = kept & (number > count * (1 - 1 / _TAIL))
-    residual = 2 / np.pi * np.where(tail, np.abs(factor), 0.0).max(axis=0) + outside
+    residual = _LOBES * 2 / np.pi * np.where(tail, np.abs(factor), 0.0).max(axis=0) + outside
     residual = np.where(count < _FEWEST, np.inf, residual)
     coefficients = np.where(kept, factor.real, 0.0) * (2 / np.pi) / number
     return _Series(index=rows, low=low, width=width, coefficients=np.ascontiguousarray(coefficients.T)), residual
