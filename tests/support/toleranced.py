@@ -29,7 +29,8 @@ def statistics_of_row(toleranced, sampling):
 def every_number(statistics):
     """Return everything that is told of a row, so that == compares it to the last bit."""
     numbers = {name: value for name, value in statistics.numbers.items() if value is not None}
-    return [numbers, statistics.texts, statistics.shares, statistics.total_shares, statistics.swings]
+    shares = statistics.shares, statistics.total_shares, statistics.share_errors, statistics.total_share_errors
+    return [numbers, statistics.texts, *shares, statistics.swings]
 
 
 def total(dimensions):

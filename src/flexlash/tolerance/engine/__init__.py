@@ -7,6 +7,7 @@
     line_quantiles      outputs and the probabilities above them
     line_moments        mean, sd, skewness and kurtosis
     line_shares         shares of variance
+    surrogate_shares    those of the surrogate, and how the model departs from it
     line_precision      how many lines a row needs
     line_spread         the spread of one model by lines
     line_statistics     the statistics of many rows by lines

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -46,11 +47,20 @@ class LineDrawing:
         self._inputs = inputs
         self._seed = seed
         self._direction = direction_of(model, inputs)
-        self._surrogates: tuple[AdditiveSurrogate, SurrogateLaw] | None = None
+        self._law: SurrogateLaw | None = None
 
     def model(self, rows: Indices) -> RowModel:
         """Return the model of some rows."""
         return lambda arguments, chosen: self._model(arguments, rows[chosen])
+
+    @cached_property
+    def _fitted(self) -> AdditiveSurrogate:
+        return fitted_surrogate(self._model, self._inputs, self._direction.vector)
+
+    def surrogate(self, rows: Indices) -> AdditiveSurrogate | None:
+        """Return the surrogates of some rows; None of a single input and of correlated ones."""
+        alone = len(self._inputs.names) == 1 or self._inputs.factor is not None
+        return None if alone else self._fitted.take(rows)
 
     def drawn(self, rows: Indices, number: int) -> DrawnLines:
         """Return this number of lines through each of some rows."""
@@ -60,11 +70,9 @@ class LineDrawing:
         needed = _unsettled(lines) & (lines.faults == 0)
         if len(inputs.names) == 1 or inputs.factor is not None or not needed.any():
             return DrawnLines(lines=lines)
-        if self._surrogates is None:
-            surrogate = fitted_surrogate(self._model, self._inputs, self._direction.vector)
-            self._surrogates = surrogate, SurrogateLaw.of(surrogate, self._inputs.shapes)
-        surrogate, law = self._surrogates
-        control = LineControl(lines, surrogate.take(rows), law.take(rows), needed)
+        if self._law is None:
+            self._law = SurrogateLaw.of(self._fitted, self._inputs.shapes)
+        control = LineControl(lines, self._fitted.take(rows), self._law.take(rows), needed)
         return DrawnLines(lines=lines, control=control if control.used.any() else None)
 
 

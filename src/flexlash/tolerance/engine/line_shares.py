@@ -1,7 +1,7 @@
-"""Which input causes how much: Sobol' indices by quadrature over one input and mirrored points over the others.
+"""Which input causes how much: Sobol' indices by the surrogate where it is close to the model, else by quadrature.
 
-The effect of an input hardly depends on the others where a model is nearly additive, so a few points do there; rows
-whose errors are too great get four times as many, and again.
+Quadrature goes over one input, and mirrored points over the others. Rows whose errors are too great get four times as
+many points, and again.
 
     effect      mean of the output at a node of one input, over the points of the others, less its own mean
 """
@@ -9,6 +9,7 @@ whose errors are too great get four times as many, and again.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from flexlash.schema.arrays import Array
 from flexlash.tolerance.engine.correlated_line_shares import correlated_line_shares
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, mirrored_net, normal_density
+from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate
+from flexlash.tolerance.engine.surrogate_shares import missed_variance, surrogate_shares
 from flexlash.tolerance.sampling import standard_error
 
 __all__ = ["line_shares"]
@@ -23,11 +26,12 @@ __all__ = ["line_shares"]
 SHARE_PRECISION = 2e-3
 """Standard error wanted of every share."""
 
-FEWEST_POINTS, MOST_POINTS = 16, 1024
-"""Points over the other inputs in all replicates; the fewest are one and its mirror image in each."""
+SURROGATE_POINTS = 16, 64
+"""Points in all replicates that say where a model departs from its surrogate; the fewest are one and its mirror image
+in each."""
 
-_MORE = 4
-"""How many times more points a row gets whose errors are too great."""
+QUADRATURE_POINTS = 64, 256, 1024
+"""Points over the other inputs where that is not enough."""
 
 _STOPPED = 0.3
 """Part by which errors are widened that stopped just at what was wanted."""
@@ -39,14 +43,21 @@ _BLOCK = 1 << 16
 """Numbers of an array that leave room in the cache for a few others."""
 
 
-def line_shares(model: RowModel, inputs: Inputs, variance: tuple[Array, Array], seed: int) -> Array:
+def line_shares(
+    model: RowModel,
+    inputs: Inputs,
+    variance: tuple[Array, Array],
+    seed: int,
+    surrogate: AdditiveSurrogate | None = None,
+) -> Array:
     """Return first-order and total Sobol' indices of rows alike and their standard errors, (4, inputs, rows).
 
     Equation: Sᵢ = Var(E[y | xᵢ])/Var y, Sᵢᵀ = E[Var(y | all but xᵢ)]/Var y
     Arguments: model and inputs of rows alike; variance of the output and its standard error (rows,) in its squared
-        unit; seed of the points.
-    Valid: an output smooth in the scores, or the difference to half as many nodes tells its error; correlated
-        inputs go to `correlated_line_shares`. Where `MOST_POINTS` do not reach `SHARE_PRECISION`, the error is large.
+        unit; seed of the points; surrogates of the rows, if there are any.
+    Valid: an output smooth in the scores, or the difference to half as many nodes tells its error; correlated inputs
+        go to `correlated_line_shares`. Where the most points do not reach `SHARE_PRECISION`, the error is what it is,
+        and too small for an output nearly all of whose variance comes from a few of them.
     Source: Sobol' 1993; Homma and Saltelli 1996.
     """
     if inputs.factor is not None:
@@ -54,18 +65,20 @@ def line_shares(model: RowModel, inputs: Inputs, variance: tuple[Array, Array], 
     found = np.zeros((4, *inputs.location.shape))
     if len(inputs.names) == 1:
         found[:2] = variance[0] > 0
-        return np.clip(found, 0, 1)
-    pending, points = np.flatnonzero(variance[0] > 0), FEWEST_POINTS
-    while len(pending):
+        return found
+    pending = np.flatnonzero(variance[0] > 0)
+    stages = [(surrogate, points) for points in SURROGATE_POINTS if surrogate is not None]
+    for stood, points in [*stages, *((None, points) for points in QUADRATURE_POINTS)]:
         net = mirrored_net(seed, len(inputs.names), points)
-        for block in _blocks(pending, points * len(_NODES)):
-            known = variance[0][block], variance[1][block]
-            found[:, :, block] = _estimate(_of(model, block), inputs.take(block), net, known)
-        excess = found[2:, :, pending].max(axis=(0, 1)) / SHARE_PRECISION
-        # Points were found enough by errors some of which came out small by chance.
-        found[2:, :, pending] *= 1 + _STOPPED * np.minimum(excess, 1) ** 2
-        pending = pending[excess > 1] if points < MOST_POINTS else pending[:0]
-        points *= _MORE
+        for block in _blocks(pending, points * (1 if stood else len(_NODES))):
+            given = _of(model, block), inputs.take(block), net, variance[0][block]
+            found[:, :, block] = surrogate_shares(stood.take(block), *given) if stood else _by_quadrature(*given)
+        known = variance[1][pending] / variance[0][pending]
+        found[2:, :, pending] = np.hypot(found[2:, :, pending], found[:2, :, pending] * known)
+        pending = pending[found[2:, :, pending].max(axis=(0, 1)) > SHARE_PRECISION]
+    # Points were found enough by errors some of which came out small by chance.
+    excess = found[2:].max(axis=(0, 1)) / SHARE_PRECISION
+    found[2:] *= 1 + _STOPPED * np.minimum(excess, 1) ** 2
     return np.clip(found, 0, 1)
 
 
@@ -81,7 +94,7 @@ def _of(model: RowModel, rows: Indices) -> RowModel:
     return lambda arguments, chosen: model(arguments, rows[chosen])
 
 
-def _estimate(model: RowModel, inputs: Inputs, net: Array, variance: tuple[Array, Array]) -> Array:
+def _by_quadrature(model: RowModel, inputs: Inputs, net: Array, variance: Array) -> Array:
     """Return first-order and total indices and their standard errors by points (inputs, points): (4, inputs, rows)."""
     points = net.shape[1]
     rows = np.repeat(np.arange(inputs.count), points)
@@ -94,11 +107,12 @@ def _estimate(model: RowModel, inputs: Inputs, net: Array, variance: tuple[Array
         # A third of what twice the spacing changes is the error of a kink, and more than that of a smooth output.
         fine = _parts(output, inputs.count, 1)
         coarse = _parts(output, inputs.count, 2)
-        found[:2, index], found[2:, index] = fine[:2], fine[2:] + np.abs(fine[:2] - coarse[:2]) / 3
+        standard = inputs.shapes[index].standard_at(_NODES[:, 0])
+        missed = missed_variance(inputs.shapes[index], standard, _weights(1)[:, 0])
+        found[:2, index] = fine[:2]
+        found[2:, index] = fine[2:] + np.abs(fine[:2] - coarse[:2]) / 3 + missed * fine[:2]
         found[2:, index, ~sound.reshape(-1, inputs.count, points).all(axis=(0, 2))] = np.inf
-    found /= variance[0]
-    found[2:] = np.hypot(found[2:], found[:2] * variance[1] / variance[0])
-    return found
+    return found / variance
 
 
 def _values(inputs: Inputs, index: int, scores: Array, rows: Indices) -> Array:
@@ -107,6 +121,13 @@ def _values(inputs: Inputs, index: int, scores: Array, rows: Indices) -> Array:
     if standard.ndim == 1:
         standard = np.tile(standard, inputs.count)[None]
     return np.asarray(inputs.location[index, rows] + inputs.scale[index, rows] * standard)
+
+
+@cache
+def _weights(every: int) -> Array:
+    """Return the weights (k, 1) of every so many nodes under the normal density, nearly exact for what is smooth."""
+    density = normal_density(_NODES[::every])
+    return np.asarray(density / density.sum())
 
 
 def _parts(output: Array, rows: int, every: int) -> Array:
@@ -119,9 +140,7 @@ def _parts(output: Array, rows: int, every: int) -> Array:
     Source: Hoeffding 1948 (U-statistics), whose standard error is the jackknife's (Efron and Stein 1981); trapezoidal
         rule in the score, nearly exact for what is smooth.
     """
-    output = output[::every]
-    weight = normal_density(_NODES[::every])
-    weight /= weight.sum()
+    output, weight = output[::every], _weights(every)
     deviation = output - (weight * output).sum(axis=0)
     inner = (weight * deviation * deviation).sum(axis=0).reshape(rows, LINE_REPLICATES, -1).mean(axis=2)
     effect = deviation.reshape(len(output), rows, LINE_REPLICATES, -1).mean(axis=3)

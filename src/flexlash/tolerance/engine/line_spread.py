@@ -59,7 +59,7 @@ class LineSpread(Spread):
         with np.errstate(all="ignore"):
             self.notes = ()
             self.size = initial_lines(len(inputs), samples)
-            drawing = LineDrawing(model, self._inputs, seed)
+            self._drawing = drawing = LineDrawing(model, self._inputs, seed)
             self._drawn = self._draw(drawing)
             self._margin = np.ones(1)
             if self._drawn.lines.roughness[0] > _SMOOTH and (samples is not None or len(inputs) == 1):
@@ -164,5 +164,6 @@ class LineSpread(Spread):
     def variance_shares(self) -> VarianceShares:
         """First-order and total Sobol' indices with their standard errors."""
         variance = self._moments.sd**2, 2 * self._moments.sd * self._moments.sd_error
-        found = line_shares(self._model, self._inputs, variance, self._seed)
+        surrogate = self._drawing.surrogate(np.arange(1))
+        found = line_shares(self._model, self._inputs, variance, self._seed, surrogate)
         return VarianceShares.of(self._inputs.names, found[:, :, 0])

@@ -71,7 +71,7 @@ def line_statistics(
                 finished = np.flatnonzero(enough & ~lost)
                 if len(finished):
                     own = rows[block[finished]]
-                    yield from zip(own.tolist(), reading.statistics(finished, drawing.model(own), plan), strict=True)
+                    yield from zip(own.tolist(), reading.statistics(finished, own, drawing, plan), strict=True)
             further = needed[needed != number]
             pending += [(int(larger), rows[needed == larger]) for larger in np.unique(further)[::-1]]
 
@@ -117,12 +117,14 @@ class _Reading:
         self._over = self._over.widened(margin) if self._over else None
         return needed
 
-    def statistics(self, rows: Indices, model: RowModel, plan: SamplingPlan) -> list[SpreadStatistics]:
-        """Return the statistics of some of the rows, whose model this is."""
+    def statistics(
+        self, rows: Indices, drawn: Indices, drawing: LineDrawing, plan: SamplingPlan
+    ) -> list[SpreadStatistics]:
+        """Return the statistics of some of the rows, which are these ones of the drawing."""
         inputs = self._lines.inputs.take(rows)
         moments = moments_of(self._drawn).widened(self._margin)
         variance = moments.sd[rows] ** 2, 2 * moments.sd[rows] * moments.sd_error[rows]
-        shares = line_shares(model, inputs, variance, plan.seed)
+        shares = line_shares(drawing.model(drawn), inputs, variance, plan.seed, drawing.surrogate(drawn))
         numbers = self._quantile_numbers() | self._over_numbers()
         numbers |= {
             "mean": moments.mean,
