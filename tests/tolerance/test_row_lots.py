@@ -13,7 +13,10 @@ from toleranced import SUM, every_number, plan, row, statistics_of_row
 from flexlash.schema.units import ARCMIN
 from flexlash.tolerance import propagate
 from flexlash.tolerance.dimension_limits import Limits, distributions
-from flexlash.tolerance.row_batches import batch_statistics, batches_alike
+from flexlash.tolerance.engine.line_direction import Inputs
+from flexlash.tolerance.engine.line_lots import LineNumbers, SeparableLots
+from flexlash.tolerance.engine.lot_inputs import PRODUCT, LotsAndParts
+from flexlash.tolerance.row_batches import RowBatch, batch_statistics, batches_alike
 
 LOTS = frozenset({"youngs_modulus", "poisson_ratio", "shear_modulus", "cylinder_calibration", "disk_calibration"})
 
@@ -116,6 +119,18 @@ def test_rows_agree_with_one_model_alone(limits):
                 assert abs(numbers["lots_failing"] - found) <= 5 * math.hypot(
                     numbers["lots_failing_standard_error"], error
                 )
+
+
+def test_lines_tell_limits_however_far_out():
+    """From limits that all lots miss to those that none does, no lot is lost and fewer and fewer fail."""
+    batch = RowBatch([STUDY] * 41)
+    split = LotsAndParts(batch.outputs_of, Inputs.of(batch.inputs), LOTS)
+    with np.errstate(all="ignore"):
+        lots = SeparableLots(split, PRODUCT, 0, LineNumbers(64, 32))
+        failing = lots.failing(np.linspace(3.4, 4.2, 41) * ARCMIN, 1350e-6)
+    assert not failing.faults.any()
+    assert (np.diff(failing.share) <= 0).all()
+    assert (failing.share[0], failing.share[-1]) == (1.0, 0.0)
 
 
 @pytest.mark.slow

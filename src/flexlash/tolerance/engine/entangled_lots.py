@@ -77,7 +77,7 @@ class EntangledLots(LotLines):
         (by_near, near_left), (by_lot, left) = (_beyond(lines, limit) for lines in few)
         share = above.above[0] + few[0].mean_over_lines(by_lot - by_near)[0]
         faults = np.maximum(np.maximum(many.faults, few[0].faults), quantiles.faults)
-        faults = worse_faults(np.where(self.faults > 0, self.faults, faults), many, above)
+        faults = np.where(self.faults > 0, self.faults, faults)
         error = np.hypot(above.above_error, few[0].standard_error(by_lot - by_near))[0]
         return FailingLots(
             share=np.clip(share, 0.0, 1.0),

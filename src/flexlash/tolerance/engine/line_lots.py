@@ -156,7 +156,8 @@ class SeparableLots(LotLines):
         else:
             threshold = limit - (quantile - self.centre)
         above = quantiles_at(DrawnLines(lines=self._lots), threshold[None])
-        faults = worse_faults(faults, self._lots, above)
+        # What a crossing far out may still move is told as an error; only no number at all is a fault.
+        faults = np.where(~np.isfinite(above.above[0]) & (faults == 0), STEPS, faults)
         return _failing(above, error, faults)
 
 

@@ -14,7 +14,6 @@ from flexlash.tolerance.engine.line_crossings import NODES
 from flexlash.tolerance.engine.line_direction import Indices
 from flexlash.tolerance.engine.line_lots import FailingLots, LineNumbers, LotLines, SeparableLots
 from flexlash.tolerance.engine.line_precision import (
-    FEWEST_LINES,
     PROBABILITY_PRECISION,
     RAREST_PROBABILITY,
     SD_PRECISION,
@@ -25,7 +24,7 @@ from flexlash.tolerance.engine.lot_variance import VarianceSplit
 
 __all__ = ["LotPrecision", "LotStatistics", "lot_statistics"]
 
-_SEPARABLE, _ENTANGLED = LineNumbers(FEWEST_LINES, FEWEST_LINES), LineNumbers(16, 16)
+_SEPARABLE, _ENTANGLED = LineNumbers(64, 32), LineNumbers(16, 16)
 """Lines to begin with; where each through the lots meets all those through the parts, far fewer."""
 
 _MOST_LINES = 1 << 12
