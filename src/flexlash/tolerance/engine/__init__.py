@@ -6,8 +6,9 @@
     line_smoothness     steps, bends and dips between the positions of a table
     line_quantiles      outputs and the probabilities above them
     line_moments        mean, sd, skewness and kurtosis
-    line_shares         shares of variance
+    line_shares         shares of variance; correlated_line_shares where inputs are correlated
     surrogate_shares    those of the surrogate, and how the model departs from it
+    term_rules          expectations over one input, or over correlated inputs together
     line_precision      how many lines a row needs
     line_spread         the spread of one model by lines
     line_statistics     the statistics of many rows by lines

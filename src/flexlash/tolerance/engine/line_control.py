@@ -17,10 +17,11 @@ from scipy.special import ndtr, ndtri
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.engine.line_crossings import NODES, crossings
 from flexlash.tolerance.engine.line_points import normal_density
-from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate, polynomial
+from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate
 from flexlash.tolerance.engine.line_tables import Lines, bounds_of
 from flexlash.tolerance.engine.shape_rules import pulled_in
 from flexlash.tolerance.engine.surrogate_law import SurrogateLaw
+from flexlash.tolerance.engine.term_rules import polynomial
 
 __all__ = ["LineControl"]
 

@@ -16,6 +16,7 @@ from flexlash.tolerance.engine.line_points import line_net
 from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate, fitted_surrogate
 from flexlash.tolerance.engine.line_tables import Lines
 from flexlash.tolerance.engine.surrogate_law import SurrogateLaw
+from flexlash.tolerance.engine.term_rules import serves
 
 __all__ = ["SD_PRECISION", "DrawnLines", "LineDrawing"]
 
@@ -68,10 +69,10 @@ class LineDrawing:
         net = line_net(self._seed, len(inputs.names) - 1, number, single_curved=inputs.single_curved)
         lines = Lines(self.model(rows), inputs, self._direction.take(rows), net)
         needed = _unsettled(lines) & (lines.faults == 0)
-        if len(inputs.names) == 1 or inputs.factor is not None or not needed.any():
+        if len(inputs.names) == 1 or not serves(inputs) or not needed.any():
             return DrawnLines(lines=lines)
         if self._law is None:
-            self._law = SurrogateLaw.of(self._fitted, self._inputs.shapes)
+            self._law = SurrogateLaw.of(self._fitted, self._inputs)
         control = LineControl(lines, self._fitted.take(rows), self._law.take(rows), needed)
         return DrawnLines(lines=lines, control=control if control.used.any() else None)
 

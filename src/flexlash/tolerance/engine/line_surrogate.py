@@ -21,8 +21,9 @@ from flexlash.schema.arrays import Array
 from flexlash.tolerance.engine.line_crossings import NODES, crossings, values_at
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel
 from flexlash.tolerance.engine.shape_rules import ShapeRule, shape_rule
+from flexlash.tolerance.engine.term_rules import TermRule, polynomial, term_rules
 
-__all__ = ["DEGREE", "RULE_NODES", "AdditiveSurrogate", "fitted_surrogate", "polynomial"]
+__all__ = ["DEGREE", "RULE_NODES", "AdditiveSurrogate", "fitted_surrogate"]
 
 DEGREE = 6
 """Degree of each polynomial."""
@@ -52,6 +53,7 @@ class AdditiveSurrogate:
     """
 
     rules: tuple[ShapeRule, ...]
+    terms: tuple[TermRule, ...]
     coefficients: Array
     centre: Array
     logarithmic: Bools
@@ -63,6 +65,7 @@ class AdditiveSurrogate:
         """Return some of the rows."""
         return AdditiveSurrogate(
             rules=self.rules,
+            terms=self.terms,
             coefficients=self.coefficients[:, :, rows],
             centre=self.centre[rows],
             logarithmic=self.logarithmic[rows],
@@ -101,16 +104,16 @@ class AdditiveSurrogate:
 
         Equation: with δᵢ = e^{sᵢ} − 1, X ← X (1 + δᵢ) + δᵢ from X = 0 makes output = centre · (1 + X);
             with δᵢ = sᵢ, X ← X + δᵢ makes output = centre + X; E Xᵏ follows from E δᵢʲ without cancelling
-        Valid: inputs that are independent; a rule that resolves e^{4 sᵢ}.
+        Valid: terms that are independent, those of a cluster being one; a rule that resolves e^{4 sᵢ}.
         Source: moments of sums and products of independent factors.
         """
         raw = [np.ones_like(self.centre), *(np.zeros_like(self.centre) for _ in range(_MOMENTS))]
-        for index, rule in enumerate(self.rules):
-            term = polynomial(self.coefficients[:, index, :, None], rule.variables)
-            logarithmic = self.logarithmic[:, None]
-            risen = np.where(logarithmic, np.expm1(np.where(logarithmic, term, 0.0)), term)
-            factor = 1 + np.where(logarithmic, risen, 0.0)
-            raw = _with_term(raw, risen, factor, rule.weights)
+        logarithmic = self.logarithmic[:, None]
+        for rule in self.terms:
+            for term, weights in zip(rule.terms(rule.parts(self.coefficients)), rule.weights, strict=True):
+                risen = np.where(logarithmic, np.expm1(np.where(logarithmic, term, 0.0)), term)
+                factor = 1 + np.where(logarithmic, risen, 0.0)
+                raw = _with_term(raw, risen, factor, weights)
         unit = np.where(self.logarithmic, self.centre, 1.0)
         shift = (about - self.centre) / unit
         return tuple(
@@ -132,16 +135,6 @@ def _with_term(raw: Sequence[Array], risen: Array, factor: Array, weights: Array
             moment = moment + comb(power, part) * raw[part] * np.add.reduce(mixed, axis=-1)
         result.append(moment)
     return result
-
-
-def polynomial(coefficients: Array, variable: Array) -> Array:
-    """Return polynomials by Horner's rule: coefficients (degree + 1, ...) at variables that go with (...)."""
-    value = coefficients[-1] * variable
-    for coefficient in coefficients[-2:0:-1]:
-        value += coefficient
-        value *= variable
-    value += coefficients[0]
-    return np.asarray(value)
 
 
 def fitted_surrogate(model: RowModel, inputs: Inputs, vector: Array) -> AdditiveSurrogate:
@@ -167,6 +160,7 @@ def fitted_surrogate(model: RowModel, inputs: Inputs, vector: Array) -> Additive
             totals += polynomial(coefficients[:, index], variable)
         return AdditiveSurrogate(
             rules=rules,
+            terms=term_rules(inputs, RULE_NODES),
             coefficients=coefficients,
             centre=centre,
             logarithmic=logarithmic,
@@ -202,6 +196,7 @@ def _seen(model: RowModel, inputs: Inputs, vector: Array, rules: Sequence[ShapeR
     Outputs are those at the medians, at the nodes of each input, and on the line through the medians.
     """
     count, nodes = len(inputs.names), DEGREE + 1
+    vector = inputs.correlated(vector)
     arguments, variables = {}, []
     for index, (name, rule) in enumerate(zip(inputs.names, rules, strict=True)):
         variable = np.full((1 + count * nodes + len(NODES), inputs.count), rule.median)

@@ -14,21 +14,20 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
+import numpy.typing as npt
 
 from flexlash.schema.arrays import Array
-from flexlash.tolerance.distributions import Distribution
-from flexlash.tolerance.engine.line_direction import Indices
-from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate, polynomial
-from flexlash.tolerance.engine.shape_rules import shape_rule
+from flexlash.tolerance.engine.line_direction import Indices, Inputs
+from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate
+from flexlash.tolerance.engine.term_rules import TermRule, term_rules
 
 __all__ = ["SurrogateLaw"]
 
 _LEVELS = ((40, 41), (64, 97), (128, 193), (256, 385))
 """Terms of the series and nodes of the rules, tried in turn."""
 
-_CONVERGED = 1e-9
-"""Residual from which on more terms are not tried."""
+_CONVERGED, _CONVERGED_TOGETHER = 1e-9, 1e-6
+"""Residual from which on more terms are not tried: without clusters, and with them, whose rules have many nodes."""
 
 _REACH = 8.5
 """Half the width of the range, in standard deviations of a sum that is nearly normal."""
@@ -54,7 +53,8 @@ _CELLS = 64
 _NEWTON = 1
 
 
-Waves = NDArray[np.complex128]
+Waves = npt.NDArray[np.complex128]
+Bools = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +81,7 @@ class SurrogateLaw:
     """The distribution of S in rows alike.
 
     Equation: F(s) = (s − a)/w + Σ 2/(kπ) Re(φ(kπ/w) e^{−ikπa/w}) sin(kπ(s − a)/w), a the low end, w the width
-    Arguments: surrogates of rows alike and the shapes of their inputs, which are independent.
+    Arguments: surrogates of rows alike and their inputs, which `serves` accepts.
     Valid: to `residual` (rows,), an error of a probability.
     Source: Fang and Oosterlee 2008 (COS method).
     """
@@ -90,15 +90,17 @@ class SurrogateLaw:
     series: tuple[_Series, ...]
 
     @classmethod
-    def of(cls, surrogate: AdditiveSurrogate, shapes: Sequence[Distribution]) -> SurrogateLaw:
-        """Return the laws of surrogates of rows alike, whose inputs have these shapes."""
+    def of(cls, surrogate: AdditiveSurrogate, inputs: Inputs) -> SurrogateLaw:
+        """Return the laws of surrogates of rows alike."""
         residual, series = np.full(len(surrogate.centre), np.inf), []
         pending = np.flatnonzero(surrogate.fitted)
         for terms, nodes in _LEVELS:
             if not len(pending):
                 break
-            expanded, left = _expanded_in_blocks(surrogate, _Rules.of(shapes, nodes), pending, terms)
-            done = (left <= _CONVERGED) | ((terms, nodes) == _LEVELS[-1])
+            rules = term_rules(inputs, nodes)
+            expanded, left, limited = _expanded_in_blocks(surrogate, rules, pending, terms)
+            wanted = _CONVERGED_TOGETHER if any(rule.clustered for rule in rules) else _CONVERGED
+            done = (left <= wanted) | limited | ((terms, nodes) == _LEVELS[-1])
             residual[pending[done]] = left[done]
             if done.any():
                 series.append(expanded.take(np.flatnonzero(done)))
@@ -128,52 +130,42 @@ class SurrogateLaw:
         return total
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Rules:
-    """The rules of all inputs: `variables` and `weights` (inputs, 1, nodes), `resolved` (inputs, 1)."""
-
-    variables: Array
-    weights: Array
-    resolved: Array
-
-    @classmethod
-    def of(cls, shapes: Sequence[Distribution], nodes: int) -> _Rules:
-        """Return the rules of shapes."""
-        rules = [shape_rule(shape, nodes) for shape in shapes]
-        return cls(
-            variables=np.array([rule.variables for rule in rules])[:, None],
-            weights=np.array([rule.weights for rule in rules])[:, None],
-            resolved=np.array([[rule.resolved] for rule in rules]),
-        )
-
-
 def _expanded_in_blocks(
-    surrogate: AdditiveSurrogate, rules: _Rules, rows: Indices, terms: int
-) -> tuple[_Series, Array]:
-    """Return the series of so many terms of some rows, and their residuals."""
-    step = max(_TOGETHER // (terms * rules.variables.size), 1)
+    surrogate: AdditiveSurrogate, rules: Sequence[TermRule], rows: Indices, terms: int
+) -> tuple[_Series, Array, Bools]:
+    """Return what `_expanded` does of some rows, as many together as fit the cache."""
+    step = max(_TOGETHER // (terms * sum(rule.variables.size for rule in rules)), 1)
     blocks = [rows[start : start + step] for start in range(0, len(rows), step)]
-    found = [_expanded(surrogate.take(block), rules, block, terms) for block in blocks]
-    return _Series.joined([series for series, _ in found]), np.concatenate([residual for _, residual in found])
+    series, *found = zip(*(_expanded(surrogate.take(block), rules, block, terms) for block in blocks), strict=True)
+    residual, limited = (np.concatenate(one) for one in found)
+    return _Series.joined(series), residual, limited
 
 
-def _expanded(surrogate: AdditiveSurrogate, rules: _Rules, rows: Indices, terms: int) -> tuple[_Series, Array]:
-    """Return the series of so many terms, and its residual (rows,)."""
-    values = polynomial(surrogate.coefficients[..., None], rules.variables)
-    low, width, outside = _range(values, rules.weights)
+def _expanded(
+    surrogate: AdditiveSurrogate, rules: Sequence[TermRule], rows: Indices, terms: int
+) -> tuple[_Series, Array, Bools]:
+    """Return the series of so many terms, its residual (rows,), and whether no rule resolves as many terms (rows,)."""
+    parts = [rule.parts(surrogate.coefficients) for rule in rules]
+    values = [rule.terms(part) for rule, part in zip(rules, parts, strict=True)]
+    low, width, outside = _range(values, [rule.weights for rule in rules])
     frequency = np.pi / width
     number = np.arange(1, terms + 1)[:, None]
     factor = np.exp(-1j * number * (frequency * low))
-    for one in np.moveaxis(_characteristic(frequency[:, None] * values, rules.weights, terms), 1, 0):
-        factor *= one
-    swing = (values.max(axis=2) - values.min(axis=2)) / 2
-    count = np.floor((rules.resolved / np.maximum(swing * frequency, rules.resolved / terms)).min(axis=0))
+    count = np.full(len(rows), float(terms))
+    limited = np.zeros(len(rows), dtype=bool)
+    for rule, part, value in zip(rules, parts, values, strict=True):
+        for one in np.moveaxis(_characteristic(frequency[:, None] * value, rule.weights, terms), 1, 0):
+            factor *= one
+        resolved = np.floor(rule.waves_resolved(part, frequency))
+        count = np.minimum(count, resolved)
+        limited |= (resolved < terms) & rule.finest
     kept = number <= count
     tail = kept & (number > count * (1 - 1 / _TAIL))
     residual = _LOBES * 2 / np.pi * np.where(tail, np.abs(factor), 0.0).max(axis=0) + outside
     residual = np.where(count < _FEWEST, np.inf, residual)
     coefficients = np.where(kept, factor.real, 0.0) * (2 / np.pi) / number
-    return _Series(index=rows, low=low, width=width, coefficients=np.ascontiguousarray(coefficients.T)), residual
+    series = _Series(index=rows, low=low, width=width, coefficients=np.ascontiguousarray(coefficients.T))
+    return series, residual, limited
 
 
 def _characteristic(phase: Array, weights: Array, terms: int) -> Waves:
@@ -195,24 +187,30 @@ def _waves(phase: Array, terms: int) -> Waves:
     return waves
 
 
-def _range(values: Array, weights: Array) -> tuple[Array, Array, Array]:
+def _range(values: Sequence[Array], weights: Sequence[Array]) -> tuple[Array, Array, Array]:
     """Return low end and width of the range of S, and about the probability that it leaves out, (rows,) each.
 
     A single term that reaches most of the way out would make S leave the range by itself.
     """
+    found = [_moments(value, weight) for value, weight in zip(values, weights, strict=True)]
+    mean, variance, fourth, least, greatest = (_total(np.concatenate(one)) for one in zip(*found, strict=True))
+    reach = _REACH * np.sqrt(variance + np.sqrt(np.abs(fourth)))
+    low, high = np.maximum(mean - reach, least), np.minimum(mean + reach, greatest)
+    outside = [
+        np.add.reduce(np.where(np.abs(value - first[:, :, None]) > _FAR * reach[:, None], weight, 0.0), axis=2)
+        for value, weight, (first, *_) in zip(values, weights, found, strict=True)
+    ]
+    return low, np.where(high > low, high - low, 1.0), _total(np.concatenate(outside))
+
+
+def _moments(values: Array, weights: Array) -> tuple[Array, ...]:
+    """Return mean, variance and fourth cumulant of terms, their least and greatest value, (terms, rows) each."""
     first = np.add.reduce(weights * values, axis=2)
     deviation = values - first[:, :, None]
     squares = deviation * deviation
     second = np.add.reduce(weights * squares, axis=2)
     fourth = np.add.reduce(weights * squares * squares, axis=2) - 3 * second * second
-    mean, variance, fourth, least, greatest = (
-        _total(one) for one in (first, second, fourth, values.min(axis=2), values.max(axis=2))
-    )
-    reach = _REACH * np.sqrt(variance + np.sqrt(np.abs(fourth)))
-    low, high = np.maximum(mean - reach, least), np.minimum(mean + reach, greatest)
-    far = np.abs(deviation) > _FAR * reach[:, None]
-    outside = _total(np.add.reduce(np.where(far, weights, 0.0), axis=2))
-    return low, np.where(high > low, high - low, 1.0), outside
+    return first, second, fourth, values.min(axis=2), values.max(axis=2)
 
 
 def _total(values: Array) -> Array:

@@ -15,7 +15,8 @@ from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, normal_density
-from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate, polynomial
+from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate
+from flexlash.tolerance.engine.term_rules import polynomial
 from flexlash.tolerance.sampling import standard_error
 
 __all__ = ["missed_variance", "surrogate_shares"]
