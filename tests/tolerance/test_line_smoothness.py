@@ -103,6 +103,18 @@ def test_steep_is_not_stepped(case):
     assert abs(spread.sd - sd) <= 1.96 * spread.sd_standard_error
 
 
+@pytest.mark.parametrize("power", [0.3, 1.0, 1.5, 2.0])
+@pytest.mark.parametrize("score", [-3.53, -3.0902, -2.2, -1.13, 1.27, 3.09])
+def test_probabilities_above_values_of_steep_models_hold(power, score):
+    """The probability above a value of a steep model is good to 1e-5 of itself, within the interval that is told."""
+    spread = propagate(lambda a, b: np.exp(power * (a + b)), TWO)
+    value, exact = math.exp(power * math.sqrt(2) * score), float(stats.norm.sf(score))
+    low, high = spread.probability_interval(value)
+    room = 1e-12 * min(exact, 1 - exact)
+    assert low - room <= exact <= high + room
+    assert abs(spread.probability_above(value) - exact) <= 1e-5 * min(exact, 1 - exact)
+
+
 @pytest.mark.parametrize(
     ("function", "inputs", "fault"),
     [

@@ -8,9 +8,9 @@ from line_models import MIXED, NORMALS, curved, linear, lines_of
 from scipy.special import ndtr, ndtri
 
 from flexlash.tolerance import Normal, TruncatedNormal, Uniform
+from flexlash.tolerance.engine.line_crossings import FAR, NODES
 from flexlash.tolerance.engine.line_direction import Inputs, direction_of
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, line_net
-from flexlash.tolerance.engine.line_crossings import FAR, NODES
 from flexlash.tolerance.engine.line_tables import FAULTS, REACH, Lines
 
 thorough = settings(deadline=None, max_examples=40, derandomize=True)

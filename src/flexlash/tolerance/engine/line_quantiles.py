@@ -35,6 +35,9 @@ _ROUNDING = 1e-9
 _EXACT = 1e-4
 """Part of the scale by which a quantile may still move; the correction then leaves a small part of that."""
 
+_EXACT_PART = 1e-3
+"""Part of itself by which a probability may still move, likewise."""
+
 _SLOPE_ERROR = 0.1
 """How well the slope of a line is known; a correction leaves at most this part of itself."""
 
@@ -273,18 +276,21 @@ class _Estimator:
             live = lines.each(~settled)
             tried = [front.tried(live) for front in fronts]
             left = self._left(fronts, tried)
-            target = output
+            target, sure = output, np.ones(output.shape, dtype=bool)
             if level is not None:
                 target, tried, missing = self.moved(output, tried, level)
                 target = np.clip(target, *self.bounds)
                 left = np.maximum(left, np.maximum(np.abs(target - output), missing * exact * lines.scale / _EXACT))
             else:
-                above = self.above(output, tried)[0]
-                left = np.where((above <= LEAST_PROBABILITY) | (above >= 1 - LEAST_PROBABILITY), 0.0, left)
+                above, density = self.above(output, tried)
+                rarer = np.minimum(above, 1 - above)
+                left = np.where(rarer <= LEAST_PROBABILITY, 0.0, left)
+                # A steep output may be followed to a small part of its scale, and its rare values not.
+                sure = left * density <= _EXACT_PART * rarer
             output = np.where(settled, output, target)
             fronts = [now.settled(before, live) for now, before in zip(tried, fronts, strict=True)]
             residual = np.where(settled, residual, left)
-            settled = settled | (left <= exact * lines.scale)
+            settled = settled | ((left <= exact * lines.scale) & sure)
             if settled.all():
                 break
         if level is not None:
@@ -292,12 +298,20 @@ class _Estimator:
             residual = np.where(settled, residual, np.maximum(residual, np.abs(output - start)))
             output = np.where(settled, output, start)
         above, density = self.above(output, fronts)
-        error = lines.standard_error(self.crossed(fronts))
-        if self._control is not None:
-            unseen = self._control.unseen(output, lines.mean_over_lines(ndtr(-fronts[1].position)))
-            error = np.where(self._trusted, np.maximum(error, unseen) + self._control.law.residual, error)
-        residual = np.maximum(np.where(settled, _SLOPE_ERROR * residual, residual), _ROUNDING * lines.scale)
+        error = self._error(output, fronts)
+        residual = np.where(settled, _SLOPE_ERROR * residual, residual)
+        if level is None:
+            error = error + residual * density
+        residual = np.maximum(residual, _ROUNDING * lines.scale)
         return LineQuantiles(output=output, above=above, above_error=error, density=density, residual=residual)
+
+    def _error(self, output: Array, fronts: Sequence[_Front]) -> Array:
+        """Return the standard errors of the probabilities above outputs (levels, rows) for want of lines."""
+        error = self._lines.standard_error(self.crossed(fronts))
+        if self._control is None:
+            return error
+        unseen = self._control.unseen(output, self._lines.mean_over_lines(ndtr(-fronts[1].position)))
+        return np.where(self._trusted, np.maximum(error, unseen) + self._control.law.residual, error)
 
     def _left(self, fronts: Sequence[_Front], tried: Sequence[_Front]) -> Array:
         """Return about how far outputs (levels, rows) are off for what the fronts had to be corrected by."""
