@@ -16,9 +16,9 @@ from scipy.special import ndtr, ndtri
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.engine.line_crossings import FAR, NODES
-from flexlash.tolerance.engine.line_direction import Indices, Inputs, LineDirection, RowModel
+from flexlash.tolerance.engine.line_direction import Indices, Inputs, LineDirection, RowModel, direction_of
 from flexlash.tolerance.engine.line_drawing import DrawnLines
-from flexlash.tolerance.engine.line_lots import FailingLots, LineNumbers, LotLines, worse_faults
+from flexlash.tolerance.engine.line_lots import FailingLots, LineNumbers, LotLines, drawn_lines, drawn_net, worse_faults
 from flexlash.tolerance.engine.line_points import Net
 from flexlash.tolerance.engine.line_precision import MOST_LINES
 from flexlash.tolerance.engine.line_quantiles import LEAST_PROBABILITY, quantiles_at, quantiles_of
@@ -52,6 +52,10 @@ class EntangledLots(LotLines):
 
     def __init__(self, split: LotsAndParts, seed: int, lines: LineNumbers) -> None:
         super().__init__(split, seed, lines)
+        self._lot_direction = direction_of(split.lots_alone, split.lots)
+        self._part_direction = direction_of(split.parts_alone, split.parts)
+        self._lot_net = drawn_net(self._stream(1), split.lots, lines.lots)
+        self._near_net = drawn_net(self._stream(3), split.lots, min(_CHEAPER * lines.lots, MOST_LINES))
         steady = (self._lot_direction.vector != 0).any(axis=0) & (self._part_direction.vector != 0).any(axis=0)
         self.faults = np.where(steady, 0, _NO_GRADIENT)
 
@@ -65,10 +69,12 @@ class EntangledLots(LotLines):
         Equation: P(q > limit) = P(y > limit) + mean over few lines of Φ(−t_q) − Φ(−t_y), y the output of the lot inputs
             with the parts at their design point, by many lines
         """
-        quantiles = _LotQuantiles(self.split, self._part_direction, self._part_net, acceptable)
+        quantiles = _LotQuantiles(
+            self.split, self._part_direction, (self._stream(2), self.lines.parts), np.array([1 - acceptable])
+        )
         medians = quantiles({name: values[None] for name, values in self.split.lot_medians.items()}, self._every)
         near, lots, direction = self._at_design_point(acceptable, medians[0]), self.split.lots, self._lot_direction
-        many = Lines(near, lots, direction, self._net(lots, 3, min(_CHEAPER * self.lines.lots, MOST_LINES)))
+        many = Lines(near, lots, direction, self._near_net)
         above = quantiles_at(DrawnLines(lines=many), limit[None])
         few = (
             Lines(near, lots, direction, self._lot_net),
@@ -109,11 +115,13 @@ class _LotQuantiles:
     `errors` are the standard errors that it was last found with; `faults` (rows,) tells what kept lines from any lot.
     """
 
-    def __init__(self, split: LotsAndParts, direction: LineDirection, net: Net, acceptable: float) -> None:
+    def __init__(
+        self, split: LotsAndParts, direction: LineDirection, sampling: tuple[int, int], probability: Array
+    ) -> None:
         self._split = split
         self._direction = direction
-        self._net = net
-        self._probability = np.array([1 - acceptable])
+        self._seed, self._lines = sampling
+        self._probability = probability
         self.errors = np.zeros(0)
         self.faults = np.zeros(split.rows, dtype=np.intp)
 
@@ -122,7 +130,7 @@ class _LotQuantiles:
         shape = next(iter(arguments.values())).shape
         lots = {name: values.reshape(-1) for name, values in arguments.items()}
         every = np.broadcast_to(rows, shape).reshape(-1)
-        step = max(_BLOCK // (len(NODES) * self._net.lines), 1)
+        step = max(_BLOCK // (len(NODES) * self._lines), 1)
         pieces = [self._quantiles(lots, every, slice(start, start + step)) for start in range(0, len(every), step)]
         quantiles, errors = (np.concatenate(values) for values in zip(*pieces, strict=True))
         self.errors = errors
@@ -132,9 +140,10 @@ class _LotQuantiles:
         """Return the quantiles and their standard errors in some lots, (n,) each."""
         rows = rows[chosen]
         model = holding(self._split.model, {name: values[chosen] for name, values in lots.items()}, rows)
-        lines = Lines(model, self._split.parts.take(rows), self._direction.take(rows), self._net)
-        found = quantiles_of(DrawnLines(lines=lines), self._probability)
-        faults = worse_faults(lines.faults, lines, found)
+        parts, direction = self._split.parts.take(rows), self._direction.take(rows)
+        drawn = drawn_lines(model, parts, direction, self._seed, self._lines)
+        found = quantiles_of(drawn, self._probability)
+        faults = worse_faults(drawn.lines.faults, drawn.lines, found)
         np.maximum.at(self.faults, rows, faults)
         return found.output[0], found.output_error[0]
 

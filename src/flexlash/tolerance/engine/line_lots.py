@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from flexlash.schema.arrays import Array
-from flexlash.tolerance.engine.line_direction import Indices, Inputs, direction_of
-from flexlash.tolerance.engine.line_drawing import DrawnLines
+from flexlash.tolerance.engine.line_direction import Indices, Inputs, LineDirection, RowModel, direction_of
+from flexlash.tolerance.engine.line_drawing import DrawnLines, LineDrawing
 from flexlash.tolerance.engine.line_moments import moments_of
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, Net, line_net
 from flexlash.tolerance.engine.line_precision import unresolved
@@ -29,7 +29,10 @@ from flexlash.tolerance.engine.lot_inputs import LOTS_ALIKE, PARTS_ALIKE, PRODUC
 from flexlash.tolerance.engine.lot_variance import VarianceSplit, split_of
 from flexlash.tolerance.lots import step_at
 
-__all__ = ["FailingLots", "LineNumbers", "LotLines", "SeparableLots", "worse_faults"]
+__all__ = ["FailingLots", "LineNumbers", "LotLines", "SeparableLots", "drawn_lines", "drawn_net", "worse_faults"]
+
+_PLAIN_LINES = 64
+"""Lines up to which a surrogate would take longer than all of them."""
 
 _SIGN = 3
 """The fault of an output that falls somewhere, as a product does beyond a change of sign."""
@@ -75,16 +78,10 @@ class LotLines(ABC):
         self.lines = lines
         self.centre = split.at_medians()
         self._every = np.arange(split.rows)
-        self._lot_direction = direction_of(split.lots_alone, split.lots)
-        self._part_direction = direction_of(split.parts_alone, split.parts)
-        self._lot_net = self._net(split.lots, 1, lines.lots)
-        self._part_net = self._net(split.parts, 2, lines.parts)
 
-    def _net(self, inputs: Inputs, stream: int, lines: int) -> Net:
-        """Return the net of one kind of inputs; the two have nothing in common. One input alone has one line."""
-        seed = int(np.random.default_rng([self.seed, stream]).integers(1 << 62))
-        width = len(inputs.names) - 1
-        return line_net(seed, width, lines if width else LINE_REPLICATES, single_curved=inputs.single_curved)
+    def _stream(self, number: int) -> int:
+        """Return the seed of a stream of randomness: lines of two streams have nothing in common."""
+        return int(np.random.default_rng([self.seed, number]).integers(1 << 62))
 
     @abstractmethod
     def variance(self) -> VarianceSplit:
@@ -107,14 +104,18 @@ class SeparableLots(LotLines):
         self._lots = self._parts = None
         self.faults = np.zeros(split.rows, dtype=np.intp)
         if relation != LOTS_ALIKE:
-            self._lots = Lines(split.lots_alone, split.lots, self._lot_direction, self._lot_net)
-            self.faults = self._lots.faults
+            self._lots = self._drawn(split.lots_alone, split.lots, 1, lines.lots)
+            self.faults = self._lots.lines.faults
             if self._product:
-                ends = np.stack(self._lots.bounds) * self.centre
+                ends = np.stack(self._lots.lines.bounds) * self.centre
                 self.faults = np.where((ends <= 0).any(axis=0) & (self.faults == 0), _SIGN, self.faults)
         if relation != PARTS_ALIKE:
-            self._parts = Lines(split.parts_alone, split.parts, self._part_direction, self._part_net)
-            self.faults = np.where(self.faults > 0, self.faults, self._parts.faults)
+            self._parts = self._drawn(split.parts_alone, split.parts, 2, lines.parts)
+            self.faults = np.where(self.faults > 0, self.faults, self._parts.lines.faults)
+
+    def _drawn(self, alone: RowModel, inputs: Inputs, stream: int, lines: int) -> DrawnLines:
+        """Return lines through one kind of inputs."""
+        return drawn_lines(alone, inputs, None, self._stream(stream), lines)
 
     def variance(self) -> VarianceSplit:
         """Return how the variance of each row is split.
@@ -128,11 +129,11 @@ class SeparableLots(LotLines):
             within, within_error = within * (1 + between), within_error * (1 + between)
         return split_of(within, between, within_error, between_error)
 
-    def _variance(self, lines: Lines | None) -> tuple[Array, Array]:
+    def _variance(self, lines: DrawnLines | None) -> tuple[Array, Array]:
         """Return the variance over some lines, for a product over the squared mean, and its standard error."""
         if lines is None:
             return np.zeros(self.split.rows), np.zeros(self.split.rows)
-        moments = moments_of(DrawnLines(lines=lines))
+        moments = moments_of(lines)
         size = np.abs(moments.mean) if self._product else np.ones(self.split.rows)
         spread = moments.sd / size
         error = 2 * spread * (moments.sd_error + (spread * moments.mean_error if self._product else 0.0)) / size
@@ -142,9 +143,9 @@ class SeparableLots(LotLines):
         """Return the share of lots with more than the acceptable share of parts over the limit (rows,)."""
         quantile, error, faults = self.centre, np.zeros(self.split.rows), self.faults
         if self._parts is not None:
-            found = quantiles_of(DrawnLines(lines=self._parts), np.array([1 - acceptable]))
+            found = quantiles_of(self._parts, np.array([1 - acceptable]))
             quantile, error = found.output[0], found.output_error[0]
-            faults = worse_faults(faults, self._parts, found)
+            faults = worse_faults(faults, self._parts.lines, found)
         if self._lots is None:
             share, unsure = step_at(quantile - limit, error)
             return FailingLots(share=share, lots_error=np.zeros_like(share), parts_error=unsure, faults=faults)
@@ -155,10 +156,24 @@ class SeparableLots(LotLines):
             error = error * np.abs(threshold / np.where(ratio > 0, quantile, 1.0))
         else:
             threshold = limit - (quantile - self.centre)
-        above = quantiles_at(DrawnLines(lines=self._lots), threshold[None])
+        above = quantiles_at(self._lots, threshold[None])
         # What a crossing far out may still move is told as an error; only no number at all is a fault.
         faults = np.where(~np.isfinite(above.above[0]) & (faults == 0), STEPS, faults)
         return _failing(above, error, faults)
+
+
+def drawn_lines(model: RowModel, inputs: Inputs, direction: LineDirection | None, seed: int, lines: int) -> DrawnLines:
+    """Return lines through rows alike, in their own direction where none is given; many with their surrogates."""
+    if len(inputs.names) > 1 and lines > _PLAIN_LINES:
+        return LineDrawing(model, inputs, seed).drawn(np.arange(inputs.count), lines)
+    direction = direction_of(model, inputs) if direction is None else direction
+    return DrawnLines(lines=Lines(model, inputs, direction, drawn_net(seed, inputs, lines)))
+
+
+def drawn_net(seed: int, inputs: Inputs, lines: int) -> Net:
+    """Return a net across lines through inputs; one input alone has one line."""
+    width = len(inputs.names) - 1
+    return line_net(seed, width, lines if width else LINE_REPLICATES, single_curved=inputs.single_curved)
 
 
 def _failing(above: LineQuantiles, error: Array, faults: Indices) -> FailingLots:

@@ -50,7 +50,7 @@ class LotPrecision:
 
     sd: float = SD_PRECISION
     failing: float = PROBABILITY_PRECISION
-    most_pairs: int = 1 << 12
+    most_pairs: int = 1 << 14
 
 
 @dataclass(frozen=True, kw_only=True)
