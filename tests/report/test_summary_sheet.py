@@ -141,7 +141,7 @@ def test_verdicts_of_few_points_have_a_mark(folder):
     cells = [sheet.cell(row, 2) for row in range(first, first + 11)]
     assert [cell.value for cell in cells] == ["red"] * 3 + ["green?"] * 8
     assert [cell.fill.fgColor.rgb for cell in cells] == [FILLS["red"]] * 3 + [FILLS["green"]] * 8
-    assert sheet.cell(first, 9).value == "Young's modulus (≈73 %)"
+    assert sheet.cell(first, 9).value == "Young's modulus (≈68 %)"
     assert {sheet.row_dimensions[row].height or LINE_HEIGHT for row in range(first, first + 11)} == {LINE_HEIGHT}
 
 

@@ -74,7 +74,7 @@ def sampled_shares(
 def _variances(inputs: Mapping[str, Distribution], points: UnitPoints, deviation: Array) -> Array:
     """Return the variance of the output in each replicate (replicates,), freed of what is known of its linear part.
 
-    Equation: l = Σ bᵢ (xᵢ − E xᵢ), bᵢ = Cov(y, xᵢ)/Var xᵢ, whose variance Σ bᵢ² Var xᵢ is known
+    Equation: l = Σ bᵢ (xᵢ − E xᵢ) with slopes by least squares, whose variance Σ bᵢ² Var xᵢ is known
     Arguments: distributions of independent inputs; `deviation` (replicates, points) of the output from its mean.
     Valid: any model; of a linear one nothing is left to chance.
     Source: as `_controlled`.
@@ -82,16 +82,30 @@ def _variances(inputs: Mapping[str, Distribution], points: UnitPoints, deviation
     # Fourth powers of a great output would overflow.
     size = np.abs(deviation).max()
     deviation = deviation / size
+    middles = [(one.expectation - one.location) / one.scale for one in inputs.values()]
+    off = [points.standard(*one) - middle for one, middle in zip(inputs.items(), middles, strict=True)]
+    slopes = _slopes(off, deviation)
+    # The mean of the output errs by what the means of the inputs err.
+    deviation += sum(slope * values.mean() for slope, values in zip(slopes, off, strict=True)) - deviation.mean()
     linear, known = np.zeros(deviation.shape), 0.0
-    for name, distribution in inputs.items():
-        middle = (distribution.expectation - distribution.location) / distribution.scale
-        off = points.standard(name, distribution) - middle
-        slope = (off * deviation).mean() / _variance(distribution)
-        linear += slope * off
+    for slope, values, distribution in zip(slopes, off, inputs.values(), strict=True):
+        linear += slope * values
         known += slope * slope * _variance(distribution)
     squares = deviation * deviation
     controlled = _controlled(squares, linear * linear, known)
     return np.asarray(size * size * (controlled if controlled.mean() > 0 else squares.mean(axis=1)))
+
+
+def _slopes(off: list[Array], deviation: Array) -> list[float]:
+    """Return the slopes of the output by least squares in its leading points, (inputs,).
+
+    Products of means instead would err by as many parts of all points as there are inputs.
+    """
+    leading = [values[:, :FEWEST_POINTS] for values in (*off, deviation)]
+    leading = [values - values.mean() for values in leading]
+    products = np.array([[(one * other).mean() for other in leading] for one in leading[:-1]])
+    slopes, *_ = np.linalg.lstsq(products[:, :-1], products[:, -1], rcond=None)
+    return [float(slope) for slope in slopes]
 
 
 def _variance(distribution: Distribution) -> float:

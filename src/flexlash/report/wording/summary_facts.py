@@ -30,7 +30,7 @@ NAMED = 3
 _NAME = 30
 """Most characters of a name in a sentence."""
 
-_SURE = {"line": 64, "sobol": 2**12, "random": 2**20}
+_SURE = {"line": 8, "sobol": 2**8, "random": 2**10}
 """Fewest lines or points by which shares of the variance are known to one per cent."""
 
 Row: TypeAlias = dict[str, Any]
