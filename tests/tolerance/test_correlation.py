@@ -59,6 +59,7 @@ def test_each_cluster_is_mended_by_itself():
     assert second.nearest == {3: pytest.approx(0.2)}
 
 
+@pytest.mark.slow
 @thorough
 @given(draw=st.integers(0, 10**6), count=st.integers(3, 10))
 def test_nearest_values_are_admissible_when_entered(draw, count):

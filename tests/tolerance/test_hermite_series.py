@@ -59,6 +59,7 @@ def test_values_correlate_as_quadrature_in_the_plane_says(pair):
         assert value_correlation(first, second)(of_scores) == pytest.approx(exact, abs=2e-6)
 
 
+@pytest.mark.slow
 @for_each("pair", PAIRS)
 def test_ends_are_those_of_sorted_values(pair):
     """With ρ = ±1 values correlate as their quantile functions at one score, or at opposite ones."""
@@ -70,6 +71,7 @@ def test_ends_are_those_of_sorted_values(pair):
     assert correlation(-1.0) == pytest.approx(np.corrcoef(values[0], values[1][::-1])[0, 1], abs=1e-4)
 
 
+@pytest.mark.slow
 @for_each("pair", PAIRS)
 def test_score_correlation_turns_value_correlation_back(pair):
     """The scores' correlation that is found has the values correlate as was asked, at the ends exactly ±1."""

@@ -110,6 +110,7 @@ def test_the_line_through_the_medians_is_one_of_correlated_scores():
     assert surrogate.output(surrogate.totals)[:, 0] == pytest.approx(surrogate.outputs[:, 0], abs=5e-3)
 
 
+@pytest.mark.slow
 def test_rows_with_correlated_inputs_keep_their_bits_beside_others():
     """Every number of a row with correlated inputs is the same alone, with others, and in another order."""
     rows = [{"a": Uniform(1, 2 + step), "b": Uniform(3, 3.5), "c": Normal(5, 0.1 + step)} for step in (0.0, 0.5, 1.0)]
@@ -139,6 +140,7 @@ def test_clusters_that_have_no_rule():
     assert serves(Inputs.of([{"a": Triangular(0, 1), "b": Triangular(0, 1)}]))
 
 
+@pytest.mark.slow
 @for_each("correlation", [-0.7, 0.5, 1.0])
 def test_law_of_a_sum_with_a_correlated_pair(correlation):
     """Of a + b + c with a and b tied uniforms and c normal the law is the integral over both scores, as it tells."""
@@ -172,7 +174,8 @@ def test_moments_of_a_product_with_a_correlated_pair():
     assert moments[1][0] == pytest.approx(exact.var(), rel=1e-6)
 
 
-@pytest.mark.parametrize("correlation", [-0.6, 0.5, 0.9])
+@pytest.mark.slow
+@pytest.mark.parametrize("correlation", [-0.6, 0.9])
 def test_correlated_bounded_inputs_take_few_lines(correlation):
     """Eight uniforms, two of them tied, are known to 1e-3 standard deviations by at most 512 lines, and rightly."""
     inputs = {f"x{index}": Uniform(-1, 1) for index in range(8)}
