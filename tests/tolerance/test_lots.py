@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import fields
+from functools import partial
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from flexlash.tolerance.engine.line_direction import Inputs
 from flexlash.tolerance.engine.line_lots import LineNumbers, SeparableLots
 from flexlash.tolerance.engine.line_tables import FAULTS
 from flexlash.tolerance.engine.lot_inputs import PRODUCT, LotsAndParts
+from flexlash.tolerance.engine.lot_inputs import SUM as SUM_OF_BOTH
 from flexlash.tolerance.engine.lot_statistics import lot_statistics
 from flexlash.tolerance.nested_lots import NOT_LINES
 
@@ -233,6 +235,20 @@ def test_told_errors_hold_where_few_lots_are_corrected():
             assert failing.lots_error[0] > 3 * failing.parts_error[0]
             held += abs(failing.share[0] - exact) <= 1.96 * failing.error[0]
     assert held >= 115
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", ["shifted", "scaled"])
+def test_many_lines_take_their_surrogates(case):
+    """Of uniform parts 256 lines with their surrogates know the share of failing lots to half a per cent."""
+    model, inputs, between, limit, exact, *_ = SPREAD[case]
+    split = LotsAndParts(row_model(model), Inputs.of([inputs]), between)
+    statistics = EntangledLots if case == "scaled" else partial(SeparableLots, relation=SUM_OF_BOTH)
+    with np.errstate(all="ignore"):
+        lots = statistics(split, seed=0, lines=LineNumbers(64, 256))
+        failing = lots.failing(np.array([limit]), PPM / 1e6)
+    assert failing.error[0] <= 0.005 * exact
+    assert abs(failing.share[0] - exact) <= 4 * failing.error[0]
 
 
 def test_lots_of_a_row_do_not_see_other_rows():
