@@ -10,17 +10,24 @@ import numpy as np
 from flexlash.schema.argument_checks import function, named_arguments, of_type, one_of, whole_number
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.correlated_inputs import CorrelationOf, correlation_factor
-from flexlash.tolerance.distributions import Distribution
+from flexlash.tolerance.distributions import Distribution, Normal, Triangular, Uniform
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel
 from flexlash.tolerance.engine.line_spread import LineSpread, LinesUnsuitable
+from flexlash.tolerance.lognormal import Lognormal
+from flexlash.tolerance.measured import Measured
 from flexlash.tolerance.nested_lots import lots_of, require_lots_apart
 from flexlash.tolerance.sampled_spread import Model, SampledSpread
 from flexlash.tolerance.sampling import UnitPoints
 from flexlash.tolerance.spread import Method, Spread
+from flexlash.tolerance.student import Student
+from flexlash.tolerance.truncated_normal import TruncatedNormal
 
 __all__ = ["NOT_LINES", "propagate"]
 
 NOT_LINES = "Sobol' points instead of lines"
+
+_KNOWN = {Normal, TruncatedNormal, Uniform, Triangular, Lognormal, Student, Measured}
+"""What needs no look at all that a distribution must tell, which takes as long as a fifth of a spread by lines."""
 
 
 @named_arguments
@@ -68,7 +75,8 @@ def propagate(
     function("model", model, required="a function of the inputs by name")
     for name, distribution in of_type("inputs", inputs, Mapping, "a mapping of names to distributions").items():
         of_type("a name of inputs", name, str, "a text")
-        of_type(f"inputs[{name!r}]", distribution, Distribution, "a distribution such as Normal(0, 1)")
+        if type(distribution) not in _KNOWN:
+            of_type(f"inputs[{name!r}]", distribution, Distribution, "a distribution such as Normal(0, 1)")
     if not inputs:
         raise ValueError("at least one input must vary")
     factor = None if correlation is None else correlation_factor(correlation, correlation_of, inputs)

@@ -77,8 +77,8 @@ class LineControl:
         """Return in which rows the difference is sharper known than the model alone, pooled over probabilities."""
         lines = self._lines
         output = np.where(self.used, self.quantiles(_TRIED), lines.mean_over_lines(lines.table[_MIDDLE]))
-        model = ndtr(-lines.crossings(lines.target(output))[0])
-        difference = model - ndtr(-self.crossings(self.target(output))[0])
+        model = ndtr(-lines.crossings(lines.each(output))[0])
+        difference = model - ndtr(-self.crossings(lines.each(self.matched(output)[0]))[0])
         density = normal_density(ndtri(_TRIED))[:, None]
         alone = lines.standard_error(model) / density
         controlled = (lines.standard_error(difference) + self.law.residual) / density
@@ -95,9 +95,9 @@ class LineControl:
             variable[index] = pulled_in(variable[index])
         return np.asarray(np.add.reduce(polynomial(self._coefficients[:, :, :, block], variable), axis=0))
 
-    def target(self, output: Array) -> Array:
-        """Return the values of S (levels, rows × lines) that stand for outputs (levels, rows)."""
-        return self._lines.each(self.surrogate.matched(output)[0])
+    def matched(self, output: Array) -> tuple[Array, Array]:
+        """Return the values of S that stand for outputs (levels, rows), and how they rise with these."""
+        return self.surrogate.matched(output)
 
     def crossings(self, totals: Array) -> tuple[Array, Array]:
         """Return where the surrogates cross values of S (levels, rows × lines) by their table, and their slopes."""
@@ -109,11 +109,9 @@ class LineControl:
         low, high = (self.surrogate.unmatched(ends[None])[0] for ends in bounds_of(self.table, self._lines.rows))
         return low, high
 
-    def above(self, output: Array) -> tuple[Array, Array]:
-        """Return the exact probabilities of S above what stands for outputs (levels, rows), and their densities."""
-        total, slope = self.surrogate.matched(output)
-        below, density = self.law.below(total)
-        return 1 - below, density * slope
+    def above(self, output: Array) -> Array:
+        """Return the exact probabilities of S above what stands for outputs (levels, rows)."""
+        return 1 - self.law.below(self.matched(output)[0])[0]
 
     def quantiles(self, probability: Array) -> Array:
         """Return about which outputs (levels, rows) the surrogate stays below with probabilities (levels,)."""
@@ -123,15 +121,14 @@ class LineControl:
         """Return at which levels (levels, rows), of this lesser probability, the law is sharp enough to be used."""
         return np.asarray(self.used & (self.law.residual <= _RARE * rarer))
 
-    def unseen(self, output: Array, lined: Array) -> Array:
-        """Return about what no line tells of probabilities above outputs (levels, rows).
+    def unseen(self, above: Array, density: Array, lined: Array) -> Array:
+        """Return about what no line tells of the probabilities of the model, (levels, rows).
 
-        Equation: |1 − F_S − mean over lines of Φ(−t_surrogate)| · min(1, d f_S/min(F_S, 1 − F_S)), d how far apart
-            model and surrogate are in that tail: what the lines miss of the surrogate's own probability may be as far
-            off for the model as that is
-        Arguments: outputs, and the mean over lines of Φ(−t_surrogate) there, (levels, rows) each.
+        Equation: |p − mean over lines of Φ(−t_surrogate)| · min(1, d f/min(p, 1 − p)), d how far apart model and
+            surrogate are in that tail: what the lines miss of the surrogate's own probability may be as far off for
+            the model as that is
+        Arguments: exact probabilities p above values of S, the densities f there, the mean over lines of the same.
         """
-        below, density = self.law.below(self.surrogate.matched(output)[0])
-        apart = np.where(below > 1 - below, self._apart[1], self._apart[0])
-        rarer = np.maximum(np.minimum(below, 1 - below), np.finfo(float).tiny)
-        return np.asarray(np.abs(1 - below - lined) * np.minimum(1.0, apart * density / rarer))
+        apart = np.where(above < 1 - above, self._apart[1], self._apart[0])
+        rarer = np.maximum(np.minimum(above, 1 - above), np.finfo(float).tiny)
+        return np.asarray(np.abs(above - lined) * np.minimum(1.0, apart * density / rarer))

@@ -15,6 +15,9 @@ NODES = np.arange(-8.0, 8.0 + STEP / 2, STEP)
 FAR = 8.5
 """The position of a crossing that a line does not have: Φ(−FAR) is nothing beside 1."""
 
+_FEW = 1 << 10
+"""Crossings up to which all nodes are compared at once."""
+
 _LAST = 2
 """The last of the three intervals between four nodes."""
 
@@ -28,9 +31,12 @@ def crossings(table: Array, outputs: Array) -> tuple[Array, Array]:
     Source: Lagrange interpolation.
     """
     width = table.shape[1]
-    passed = np.zeros(outputs.shape, dtype=np.int8)
-    for node in table:
-        passed += (node <= outputs).view(np.int8)
+    if outputs.size <= _FEW:
+        passed = np.add.reduce(table[:, None] <= outputs, axis=0, dtype=np.int8)
+    else:
+        passed = np.zeros(outputs.shape, dtype=np.int8)
+        for node in table:
+            passed += (node <= outputs).view(np.int8)
     base = np.minimum(np.maximum(passed - np.int8(2), np.int8(0)), np.int8(len(NODES) - 4))
     index = base * np.int64(width) + np.arange(width)
     first, second, third, fourth = (table.reshape(-1).take(index + shift * width) for shift in range(4))

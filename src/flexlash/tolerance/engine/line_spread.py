@@ -28,7 +28,7 @@ from flexlash.tolerance.variance_shares import VarianceShares
 
 __all__ = ["LineSpread", "LinesUnsuitable"]
 
-_SMOOTH = 1e-4
+_SMOOTH = 1e-2
 """Roughness of a table below which its quantiles need not be tried on the model before they are asked for."""
 
 

@@ -202,9 +202,9 @@ class Lines:
         values += self._location[:, None, lines]
         return values
 
-    def target(self, output: Array) -> Array:
-        """Return outputs (levels, rows) once for every line."""
-        return self.each(output)
+    def matched(self, output: Array) -> tuple[Array, Array]:
+        """Return what stands for outputs (levels, rows) on lines, these themselves, and how it rises with them."""
+        return output, np.ones_like(output)
 
     def crossings(self, outputs: Array) -> tuple[Array, Array]:
         """Return where lines cross outputs (levels, rows × lines) by the table, and their slopes there."""

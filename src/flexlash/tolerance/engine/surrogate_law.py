@@ -26,7 +26,7 @@ __all__ = ["SurrogateLaw"]
 _LEVELS = ((40, 41), (64, 97), (128, 193), (256, 385))
 """Terms of the series and nodes of the rules, tried in turn."""
 
-_CONVERGED, _CONVERGED_TOGETHER = 1e-9, 1e-6
+_CONVERGED, _CONVERGED_TOGETHER = 1e-8, 1e-6
 """Residual from which on more terms are not tried: without clusters, and with them, whose rules have many nodes."""
 
 _REACH = 8.5

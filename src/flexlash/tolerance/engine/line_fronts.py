@@ -1,0 +1,171 @@
+"""Where lines cross outputs, and what follows of the probabilities above these: of the model, and of its surrogate.
+
+front               where curves of one kind, model or surrogate, cross the outputs of all levels
+value               what stands for an output on these curves: itself, or a value of S
+estimate            the probability above an output: lines alone, or what they add to the surrogate's own
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import ndtr
+
+from flexlash.schema.arrays import Array
+from flexlash.tolerance.engine.line_control import LineControl
+from flexlash.tolerance.engine.line_crossings import FAR, STEP
+from flexlash.tolerance.engine.line_drawing import DrawnLines
+from flexlash.tolerance.engine.line_points import normal_density
+
+__all__ = ["Estimate", "Estimator", "Front", "positive"]
+
+_APART = 1e-6
+"""Least distance of two positions between which a slope is taken."""
+
+Bools = npt.NDArray[np.bool_]
+
+
+class Curves(Protocol):
+    """Curves along lines: those of the model, and those of the surrogate."""
+
+    def matched(self, output: Array) -> tuple[Array, Array]: ...
+
+    def crossings(self, values: Array) -> tuple[Array, Array]: ...
+
+    def outputs(self, positions: Array) -> Array: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Front:
+    """Where curves cross values: positions and slopes (levels, rows × lines) of values and their rates (levels, rows).
+
+    `before` are the positions tried last with what was reached there, `gap` how far they had to be corrected.
+    """
+
+    curves: Curves
+    value: Array
+    rate: Array
+    position: Array
+    slope: Array
+    before: tuple[Array, Array] | None = None
+    gap: Array | float = 0.0
+
+    @classmethod
+    def of(cls, curves: Curves, output: Array, lines: int) -> Front:
+        """Return the front at outputs (levels, rows) by the table; rows have so many lines."""
+        value, rate = curves.matched(output)
+        position, slope = curves.crossings(np.repeat(value, lines, axis=1))
+        return cls(curves=curves, value=value, rate=rate, position=position, slope=slope)
+
+    def tried(self, live: Bools, lines: int) -> Front:
+        """Return the front corrected by what the curves themselves say."""
+        reached = self.curves.outputs(self.position)
+        slope = self.slope
+        if self.before is not None:
+            slope = np.where(live, _secant(self.before, (self.position, reached), slope), slope)
+        gap = _within((np.repeat(self.value, lines, axis=1) - reached) / slope, STEP)
+        position = _within(self.position + gap, FAR)
+        return replace(self, position=position, slope=slope, before=(self.position, reached), gap=gap)
+
+    def moved(self, output: Array, lines: int) -> Front:
+        """Return the front after it moved to other outputs (levels, rows)."""
+        value, rate = self.curves.matched(output)
+        step = _within(np.repeat(value - self.value, lines, axis=1) / self.slope, STEP)
+        return replace(self, value=value, rate=rate, position=_within(self.position + step, FAR))
+
+    def settled(self, before: Front, live: Bools, settled: Bools) -> Front:
+        """Return the front that stays where it was before in what is settled."""
+        return replace(
+            self,
+            value=np.where(settled, before.value, self.value),
+            rate=np.where(settled, before.rate, self.rate),
+            position=np.where(live, self.position, before.position),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Estimate:
+    """Probabilities above outputs, their densities and standard errors, (levels, rows) each."""
+
+    above: Array
+    density: Array
+    error: Array
+
+
+class Estimator:
+    """The estimate from the fronts of the model and, at the levels where it is `trusted`, of the surrogate."""
+
+    def __init__(self, drawn: DrawnLines, trusted: Bools | None) -> None:
+        self._lines = drawn.lines
+        self._control: LineControl | None = drawn.control if trusted is not None and trusted.any() else None
+        self._trusted: Bools = np.zeros((1, drawn.lines.rows), dtype=bool) if trusted is None else trusted
+
+    def fronts(self, output: Array) -> list[Front]:
+        """Return the fronts at outputs by the tables."""
+        kinds: list[Curves] = [self._lines, *([self._control] if self._control else [])]
+        return [Front.of(curves, output, self._lines.lines) for curves in kinds]
+
+    def above(self, fronts: Sequence[Front]) -> tuple[Array, Array]:
+        """Return the probabilities above the outputs of fronts (levels, rows), and the densities there."""
+        above = self._lines.mean_over_lines(self._crossed(fronts))
+        if self._control is None:
+            return above, self._density(fronts)
+        below, density = self._control.law.below(fronts[1].value)
+        density = np.where(self._trusted, density * fronts[1].rate, self._density(fronts))
+        return np.where(self._trusted, above + (1 - below), above), density
+
+    def estimate(self, fronts: Sequence[Front]) -> Estimate:
+        """Return the probabilities above the outputs of fronts with all that is told of them."""
+        crossed = self._crossed(fronts)
+        above, error = self._lines.mean_over_lines(crossed), self._lines.standard_error(crossed)
+        if self._control is None:
+            return Estimate(above=above, density=self._density(fronts), error=error)
+        below, density = self._control.law.below(fronts[1].value)
+        lined = self._lines.mean_over_lines(ndtr(-fronts[1].position))
+        unseen = self._control.unseen(1 - below, density, lined)
+        return Estimate(
+            above=np.where(self._trusted, above + (1 - below), above),
+            density=np.where(self._trusted, density * fronts[1].rate, self._density(fronts)),
+            error=np.where(self._trusted, np.maximum(error, unseen) + self._control.law.residual, error),
+        )
+
+    def left(self, fronts: Sequence[Front], tried: Sequence[Front]) -> Array:
+        """Return about how far outputs (levels, rows) are off for what the fronts had to be corrected by."""
+        mean = self._lines.mean_over_lines
+        density = positive(mean(normal_density(fronts[0].position) / tried[0].slope))
+        off = [mean(normal_density(was.position) * np.abs(now.gap)) for was, now in zip(fronts, tried, strict=True)]
+        if self._control is None:
+            return np.asarray(off[0] / density)
+        return np.asarray(np.where(self._trusted, np.maximum(*off), off[0]) / density)
+
+    def _crossed(self, fronts: Sequence[Front]) -> Array:
+        """Return what each line adds, (levels, rows × lines)."""
+        crossed = ndtr(-fronts[0].position)
+        if self._control is None:
+            return np.asarray(crossed)
+        return np.asarray(crossed - np.where(self._lines.each(self._trusted), ndtr(-fronts[1].position), 0.0))
+
+    def _density(self, fronts: Sequence[Front]) -> Array:
+        return self._lines.mean_over_lines(normal_density(fronts[0].position) / fronts[0].slope)
+
+
+def _secant(before: tuple[Array, Array], now: tuple[Array, Array], slope: Array) -> Array:
+    """Return the slopes between two positions of each line where they are far enough apart, within a factor of 5."""
+    moved = now[0] - before[0]
+    apart = np.abs(moved) > _APART
+    secant = (now[1] - before[1]) / np.where(apart, moved, 1.0)
+    return np.where(apart, np.clip(secant, 0.2 * slope, 5 * slope), slope)
+
+
+def _within(values: Array, most: float) -> Array:
+    """Return values cut at ± most."""
+    return np.minimum(np.maximum(values, -most), most)
+
+
+def positive(density: Array) -> Array:
+    """Return densities that one can divide by."""
+    return np.maximum(density, np.finfo(float).tiny)
