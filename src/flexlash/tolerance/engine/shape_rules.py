@@ -110,7 +110,10 @@ def _made(distribution: Distribution, nodes: int) -> ShapeRule:
         return replace(bare, variables=bare.variable(standard), weights=weights)
     variables, weights = bare.variable(distribution.standard_at(score)), np.exp(-score * score / 2)
     step = float(score[1] - score[0])
-    resolved = (2 * np.pi / step - _FITTED) / float(np.abs(np.gradient(variables, step)).max())
+    # What is pulled in has waves of its own.
+    resolved = (
+        (0.5 if heavy else 1.0) * (2 * np.pi / step - _FITTED) / float(np.abs(np.gradient(variables, step)).max())
+    )
     return replace(bare, variables=variables, weights=weights / weights.sum(), resolved=resolved)
 
 
