@@ -19,7 +19,7 @@ def law_of(function, *rows):
     model, inputs = row_model(function), Inputs.of(rows)
     with np.errstate(all="ignore"):
         surrogate = fitted_surrogate(model, inputs, direction_of(model, inputs).vector)
-        return surrogate, SurrogateLaw.of(surrogate, inputs.shapes)
+        return surrogate, SurrogateLaw.of(surrogate, inputs)
 
 
 def test_sum_of_normals():

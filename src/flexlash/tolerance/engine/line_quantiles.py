@@ -173,7 +173,7 @@ class _Search:
             low = np.where(moved > output, output, low)
             high = np.where(moved < output, output, high)
             outside = (moved <= low) | (moved >= high) | (search >= _NEWTON)
-            moved = np.where(outside, (low + high) / 2, moved)
+            moved = np.where(outside & ~near, (low + high) / 2, moved)
             output = np.where(near, output, moved)
         output = np.clip(moved, *self._bounds)
         return output, [front.moved(output, self._lines.lines) for front in fronts]
