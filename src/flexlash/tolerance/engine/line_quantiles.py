@@ -32,6 +32,9 @@ _ROUNDING = 1e-9
 _EXACT = 1e-4
 """Part of the scale by which a quantile may still move; the correction then leaves a small part of that."""
 
+_EXACT_PART = 1e-3
+"""Part of itself by which a probability may still move, likewise."""
+
 _SLOPE_ERROR = 0.1
 """How well the slope of a line is known; a correction leaves at most this part of itself."""
 
@@ -194,7 +197,7 @@ class _Search:
         for _ in range(_ROUNDS):
             live = lines.each(~settled)
             tried = [front.tried(live, lines.lines) for front in fronts]
-            left = self._estimator.left(fronts, tried)
+            left, sure = self._estimator.left(fronts, tried), np.ones(output.shape, dtype=bool)
             if self._level is not None:
                 target, missing = self._moved(output, tried, self._level)
                 target = np.clip(target, *self._bounds)
@@ -202,11 +205,14 @@ class _Search:
                 left = np.maximum(left, np.maximum(np.abs(target - output), missing * exact * lines.scale / _EXACT))
                 output = np.where(settled, output, target)
             else:
-                above = self._estimator.above(tried)[0]
-                left = np.where((above <= LEAST_PROBABILITY) | (above >= 1 - LEAST_PROBABILITY), 0.0, left)
+                above, density = self._estimator.above(tried)
+                rarer = np.minimum(above, 1 - above)
+                left = np.where(rarer <= LEAST_PROBABILITY, 0.0, left)
+                # A steep output may be followed to a small part of its scale, and its rare values not.
+                sure = left * density <= _EXACT_PART * rarer
             fronts = [now.settled(before, live, settled) for now, before in zip(tried, fronts, strict=True)]
             residual = np.where(settled, residual, left)
-            settled = settled | (left <= exact * lines.scale)
+            settled = settled | ((left <= exact * lines.scale) & sure)
             if settled.all():
                 break
         if self._level is not None:
@@ -214,7 +220,11 @@ class _Search:
             residual = np.where(settled, residual, np.maximum(residual, np.abs(output - start)))
             output = np.where(settled, output, start)
         found = self._estimator.estimate(fronts)
-        residual = np.maximum(np.where(settled, _SLOPE_ERROR * residual, residual), _ROUNDING * lines.scale)
+        residual = np.where(settled, _SLOPE_ERROR * residual, residual)
         return LineQuantiles(
-            output=output, above=found.above, above_error=found.error, density=found.density, residual=residual
+            output=output,
+            above=found.above,
+            above_error=found.error + (residual * found.density if self._level is None else 0.0),
+            density=found.density,
+            residual=np.maximum(residual, _ROUNDING * lines.scale),
         )
