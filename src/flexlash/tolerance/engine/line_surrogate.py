@@ -38,6 +38,9 @@ _NODES = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
 _FIT = np.linalg.inv(np.vander(_NODES, increasing=True))
 """From values at the Chebyshev nodes to the coefficients of the polynomial through them."""
 
+_LEAST = 1e-300
+"""Part of the output at the medians that stands for an output without a logarithm."""
+
 _MOMENTS = 4
 
 Bools = npt.NDArray[np.bool_]
@@ -48,8 +51,9 @@ class AdditiveSurrogate:
     """The surrogates of rows alike.
 
     `coefficients` (degree + 1, inputs, rows) of the powers of vᵢ; `centre` (rows,) the model's output at the medians;
-    `logarithmic` (rows,) where h is the logarithm; `fitted` (rows,) where there is a surrogate at all. `outputs` and
-    `totals` (nodes, rows) are those of model and surrogate on the line through the medians, made to rise.
+    `logarithmic` (rows,) where h is the logarithm; `fitted` (rows,) where there is a surrogate at all. `risen`
+    and `totals` (nodes, rows) are h(output) − h(output at the medians) and S on the line through the medians, made to
+    rise.
     """
 
     rules: tuple[ShapeRule, ...]
@@ -58,7 +62,7 @@ class AdditiveSurrogate:
     centre: Array
     logarithmic: Bools
     fitted: Bools
-    outputs: Array
+    risen: Array
     totals: Array
 
     def take(self, rows: Indices) -> AdditiveSurrogate:
@@ -70,7 +74,7 @@ class AdditiveSurrogate:
             centre=self.centre[rows],
             logarithmic=self.logarithmic[rows],
             fitted=self.fitted[rows],
-            outputs=self.outputs[:, rows],
+            risen=self.risen[:, rows],
             totals=self.totals[:, rows],
         )
 
@@ -86,18 +90,18 @@ class AdditiveSurrogate:
         Model and surrogate agree in them on the line through the medians, whatever bends the output: any threshold of
         the surrogate may stand for one of the model, and the nearer both lie, the sharper is their difference.
         """
-        position, slope = crossings(self.outputs, output)
+        risen = _risen(output, self.centre, self.logarithmic)
+        position, slope = crossings(self.risen, risen)
         total, rise = values_at(self.totals, position)
-        beyond = output - np.minimum(np.maximum(output, self.outputs[0]), self.outputs[-1])
-        rate = np.where(self.logarithmic, 1 / self.centre, 1.0)
-        inside = beyond == 0
-        return total + beyond * rate, np.where(inside & (rise > 0), rise / slope, rate)
+        beyond = risen - np.minimum(np.maximum(risen, self.risen[0]), self.risen[-1])
+        rate = np.where((beyond == 0) & (rise > 0), rise / slope, 1.0)
+        return total + beyond, rate * np.where(self.logarithmic, 1 / np.maximum(output, _LEAST * self.centre), 1.0)
 
     def unmatched(self, total: Array) -> Array:
         """Return about which outputs (levels, rows) values of S stand for."""
-        output = values_at(self.outputs, crossings(self.totals, total)[0])[0]
+        risen = values_at(self.risen, crossings(self.totals, total)[0])[0]
         beyond = total - np.minimum(np.maximum(total, self.totals[0]), self.totals[-1])
-        return np.asarray(output + beyond * np.where(self.logarithmic, self.centre, 1.0))
+        return self.output(risen + beyond)
 
     def moments(self, about: Array) -> tuple[Array, ...]:
         """Return the first four moments of the surrogate's output about a value (rows,), (rows,) each.
@@ -165,7 +169,7 @@ def fitted_surrogate(model: RowModel, inputs: Inputs, vector: Array) -> Additive
             centre=centre,
             logarithmic=logarithmic,
             fitted=fitted,
-            outputs=np.maximum.accumulate(central, axis=0),
+            risen=_risen(central, centre, logarithmic),
             totals=totals,
         )
 
@@ -175,15 +179,21 @@ def fitted_surrogate(model: RowModel, inputs: Inputs, vector: Array) -> Additive
     return replace(
         plain,
         coefficients=np.where(better, logarithms.coefficients, plain.coefficients),
+        risen=np.maximum.accumulate(np.where(better, logarithms.risen, plain.risen), axis=0),
         totals=np.maximum.accumulate(np.where(better, logarithms.totals, plain.totals), axis=0),
         logarithmic=better,
     )
 
 
+def _risen(output: Array, centre: Array, logarithmic: Bools) -> Array:
+    """Return h(output) − h(output at the medians) of outputs (..., rows)."""
+    ratio = np.where(logarithmic, np.maximum(output / centre, _LEAST), 1.0)
+    return np.where(logarithmic, np.log(ratio), output - centre)
+
+
 def _coefficients(along: Array, centre: Array, logarithmic: Bools, fitted: Bools) -> Array:
     """Return the coefficients (degree + 1, inputs, rows) through outputs (inputs, nodes, rows) at the nodes."""
-    risen = np.where(logarithmic, np.log(np.where(logarithmic, along / centre, 1.0)), along - centre)
-    risen = np.where(fitted, risen, 0.0)
+    risen = np.where(fitted, _risen(along, centre, logarithmic), 0.0)
     coefficients = np.zeros((DEGREE + 1, len(along), len(centre)))
     for node in range(DEGREE + 1):
         coefficients += _FIT[:, node, None, None] * risen[:, node]
