@@ -106,7 +106,7 @@ class LineControl:
     @property
     def bounds(self) -> tuple[Array, Array]:
         """About the least and the greatest output of each row that its surrogate stands for, (rows,) each."""
-        low, high = (self.surrogate.unmatched(ends[None])[0] for ends in bounds_of(self.table, self._lines.rows))
+        low, high = self.surrogate.unmatched(np.stack(bounds_of(self.table, self._lines.rows)))
         return low, high
 
     def above(self, output: Array) -> Array:

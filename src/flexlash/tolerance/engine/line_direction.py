@@ -171,13 +171,12 @@ def scores_across(direction: LineDirection, net: Array) -> Array:
     squares = vector * vector
     remaining = np.concatenate([np.cumsum(squares[::-1], axis=0)[::-1], np.zeros((1, vector.shape[1]))])
     remaining = np.where(remaining > 0, remaining, 1.0)
-    scores = np.empty((*vector.shape, net.shape[1]))
-    gathered = np.zeros(scores.shape[1:])
-    for index, coordinate in enumerate(net):
-        before, after = remaining[index], remaining[index + 1]
-        scores[index] = np.sqrt(after / before)[:, None] * coordinate - vector[index][:, None] * gathered
-        gathered += (vector[index] / np.sqrt(before * after))[:, None] * coordinate
-    scores[-1] = -vector[-1][:, None] * gathered
+    before, after = remaining[:-2], remaining[1:-1]
+    scores = np.zeros((*vector.shape, net.shape[1]))
+    # What the inputs before have left for one to make up for.
+    np.cumsum((vector[:-1] / np.sqrt(before * after))[:, :, None] * net[:, None], axis=0, out=scores[1:])
+    scores *= -vector[:, :, None]
+    scores[:-1] += np.sqrt(after / before)[:, :, None] * net[:, None]
     sorted_back = np.empty_like(scores)
     np.put_along_axis(sorted_back, direction.order[:, :, None], scores, axis=0)
     return sorted_back
