@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from flexlash.schema.units import ARCMIN
 from flexlash.schema.variant import Limits
 from flexlash.tolerance.cross_check import cross_checked
 from flexlash.tolerance.dimension_limits import distributions
+from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.engine.line_direction import Indices, Inputs
 from flexlash.tolerance.engine.line_statistics import line_statistics
 from flexlash.tolerance.propagate import NOT_LINES
@@ -46,12 +48,17 @@ class TolerancedRow:
     upper_limit: float | None = None
     between: frozenset[str] | None = None
 
+    @cached_property
+    def distributions(self) -> dict[str, Distribution]:
+        """How the dimensions that scatter do so."""
+        return distributions(self.limits)
+
 
 def batches_alike(rows: Sequence[TolerancedRow]) -> Iterator[list[int]]:
     """Yield the indices of rows that are alike, each index once."""
     alike: dict[tuple[Any, ...], list[int]] = {}
     for index, row in enumerate(rows):
-        shapes = tuple((name, distribution.shape) for name, distribution in distributions(row.limits).items())
+        shapes = tuple((name, distribution.shape) for name, distribution in row.distributions.items())
         alike.setdefault((row.model, tuple(row.nominal), tuple(row.limits), shapes, row.between), []).append(index)
     for indices in alike.values():
         for start in range(0, len(indices), _ROWS_PER_BATCH):
@@ -97,7 +104,7 @@ class RowBatch:
         self._model = rows[0].model
         self._between = rows[0].between
         self._upper_limits = [row.upper_limit for row in rows]
-        self.inputs = [distributions(row.limits) for row in rows]
+        self.inputs = [row.distributions for row in rows]
         limits = {name: [row.limits[name] for row in rows] for name in rows[0].limits}
         self.centre = {name: np.array([row.nominal[name] for row in rows]) for name in rows[0].nominal}
         self.centre |= {name: np.array([limit.middle for limit in column]) for name, column in limits.items()}
