@@ -105,8 +105,8 @@ _SAMPLING = {
     "line": (
         "Line sampling: lines run through the tolerances in the direction in which the backlash rises fastest. Where a "
         "line passes a backlash, the part of it beyond is a normal tail; the mean over lines is the share of units.",
-        "What lines say is corrected by a sum of polynomials, one for each tolerance, whose distribution is known exactly: "
-        "its misfit makes numbers less sharp, never wrong.",
+        "What lines say is corrected by a sum of polynomials, one for each tolerance, whose distribution is known "
+        "exactly: its misfit makes numbers less sharp, never wrong.",
         f"Lines are placed by {LINE_REPLICATES} independent scrambled Sobol' nets, whose scatter gives the standard "
         "errors (widened as Student's t asks for so few).",
         "Unless Settings name a number, lines are added until P0.135, P2.5, P50, P97.5 and P99.865 have standard "
