@@ -106,7 +106,9 @@ def test_the_line_through_the_medians_is_one_of_correlated_scores():
     direction = direction_of(model, inputs).vector
     surrogate = fitted_surrogate(model, inputs, direction)
     scores = inputs.correlated(direction)[:, 0]
-    assert surrogate.output(surrogate.risen)[:, 0] == pytest.approx(5 + scores[0] * NODES + stats.norm.cdf(scores[1] * NODES))
+    assert surrogate.output(surrogate.risen)[:, 0] == pytest.approx(
+        5 + scores[0] * NODES + stats.norm.cdf(scores[1] * NODES)
+    )
     assert surrogate.output(surrogate.totals)[:, 0] == pytest.approx(surrogate.output(surrogate.risen)[:, 0], abs=5e-3)
 
 

@@ -31,8 +31,13 @@ _TRIED = np.array([0.00135, 0.025, 0.5, 0.975, 0.99865])
 _BETTER = 0.8
 """The difference must be this much sharper than the model alone."""
 
-_RARE = 0.05
+_RARE = 1.0
 """Part of a probability up to which the law's own residual is let in."""
+
+_CARRIED = np.array([1e-4, 1e-6])
+_CARRIED_RESIDUAL, _CARRIED_PART = 1e-7, 0.3
+"""Probabilities at which it is seen whether lines carry a tail by themselves, the second where the law's residual is no
+more than the first number; they do if they find it to the other part of it."""
 
 _MIDDLE = [len(NODES) // 2]
 _OUTER = [int(np.flatnonzero(score == NODES)[0]) for score in (-4.0, 4.0)]
@@ -63,6 +68,7 @@ class LineControl:
         self.used = needed & surrogate.fitted & rises.reshape(lines.rows, -1).all(axis=1)
         self.table = np.maximum.accumulate(table, axis=0)
         self._apart = self._mismatch()
+        self._carried = self._tails_carried()
         self.used &= self._helps()
 
     def _mismatch(self) -> Array:
@@ -72,6 +78,17 @@ class LineControl:
         matched = self.surrogate.matched(np.moveaxis(tails, 1, 2).reshape(-1, lines.rows))[0]
         matched = np.moveaxis(matched.reshape(len(_OUTER), -1, lines.rows), 1, 2).reshape(len(_OUTER), -1)
         return lines.mean_over_lines(np.abs(matched - self.table[_OUTER]))
+
+    def _tails_carried(self) -> Bools:
+        """Return whether the lines carry each tail (tails, rows) of the surrogate by themselves."""
+        probability = np.concatenate([_CARRIED, 1 - _CARRIED])
+        total = self.law.quantiles(probability)
+        position = self.crossings(self._lines.each(total))[0].reshape(2, len(_CARRIED), -1)
+        below = self.law.below(total)[0].reshape(2, len(_CARRIED), -1)
+        exact = below[0], 1 - below[1]
+        lined = (self._lines.mean_over_lines(ndtr(side * one)) for side, one in zip((1, -1), position, strict=True))
+        found = [np.abs(one - true) <= _CARRIED_PART * true for one, true in zip(lined, exact, strict=True)]
+        return np.where(self.law.residual <= _CARRIED_RESIDUAL, np.stack(found)[:, 1], np.stack(found)[:, 0])
 
     def _helps(self) -> Bools:
         """Return in which rows the difference is sharper known than the model alone, pooled over probabilities."""
@@ -122,7 +139,7 @@ class LineControl:
         return np.asarray(self.used & (self.law.residual <= _RARE * rarer))
 
     def unseen(self, above: Array, density: Array, lined: Array) -> Array:
-        """Return about what no line tells of the probabilities of the model, (levels, rows).
+        """Return about what no line tells of the probabilities of the model where the law is trusted, (levels, rows).
 
         Equation: |p − mean over lines of Φ(−t_surrogate)| · min(1, d f/min(p, 1 − p)), d how far apart model and
             surrogate are in that tail: what the lines miss of the surrogate's own probability may be as far off for
@@ -132,3 +149,11 @@ class LineControl:
         apart = np.where(above < 1 - above, self._apart[1], self._apart[0])
         rarer = np.maximum(np.minimum(above, 1 - above), np.finfo(float).tiny)
         return np.asarray(np.abs(above - lined) * np.minimum(1.0, apart * density / rarer))
+
+    def untold(self, above: Array) -> Array:
+        """Return what lines alone may miss at levels too rare for the law (levels, rows): its residual, at most.
+
+        Nothing where the lines carry that tail of the surrogate by themselves.
+        """
+        carried = np.where(above < 1 - above, self._carried[1], self._carried[0])
+        return np.where(self.used & ~carried, self.law.residual, 0.0)

@@ -101,7 +101,7 @@ class Estimator:
 
     def __init__(self, drawn: DrawnLines, trusted: Bools | None) -> None:
         self._lines = drawn.lines
-        self._control: LineControl | None = drawn.control if trusted is not None and trusted.any() else None
+        self._control: LineControl | None = drawn.control
         self._trusted: Bools = np.zeros((1, drawn.lines.rows), dtype=bool) if trusted is None else trusted
 
     def fronts(self, output: Array) -> list[Front]:
@@ -130,7 +130,11 @@ class Estimator:
         return Estimate(
             above=np.where(self._trusted, above + (1 - below), above),
             density=np.where(self._trusted, density * fronts[1].rate, self._density(fronts)),
-            error=np.where(self._trusted, np.maximum(error, unseen) + self._control.law.residual, error),
+            error=np.where(
+                self._trusted,
+                np.maximum(error, unseen) + self._control.law.residual,
+                error + self._control.untold(above),
+            ),
         )
 
     def left(self, fronts: Sequence[Front], tried: Sequence[Front]) -> Array:

@@ -72,7 +72,7 @@ _FLAT, _HIGH = 1e-12, 0.05
 """A line is flat where it rises less than the one part of its range, and has an edge where two positions on it rises
 more than the other: limits that are approached smoothly take longer."""
 
-_BEYOND, _MOST_BEYOND = 2.0, 20.0
+_BEYOND, _MOST_BEYOND = 2.0, 8.0
 """How many times further from the mean lines beyond an evenly spaced coordinate may be than its last: at least the one
 number, as many as the last is beyond the one before it, at most the other."""
 
