@@ -11,25 +11,23 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from flexlash.schema.arrays import Array
+from flexlash.tolerance.correlated_shares import caused_variance
 from flexlash.tolerance.distributions import Distribution
-from flexlash.tolerance.sampling import UnitPoints, standard_error
+from flexlash.tolerance.sampling import UnitPoints, standard_error, stopping_margin
 from flexlash.tolerance.variance_shares import VarianceShares
 
-__all__ = ["FEWEST_POINTS", "MISSING", "MORE", "SHARE_PRECISION", "STOPPED", "Evaluate", "sampled_shares"]
+__all__ = ["Evaluate", "correlated_sampled_shares", "sampled_shares"]
 
-SHARE_PRECISION = 5e-3
+_SHARE_PRECISION = 5e-3
 """Standard error wanted of every share."""
 
-FEWEST_POINTS = 256
+_FEWEST_POINTS = 256
 """Points of each set in each replicate to begin with."""
 
-MORE = 4
+_MORE = 4
 """How many times more points are crossed where errors are too great."""
 
-STOPPED = 0.3
-"""Part by which errors are widened that stopped just at what was wanted, since some come out small by chance."""
-
-MISSING = 4.0
+_MISSING = 4.0
 """By how many standard errors total indices may fall short of 1 together, which exact ones never do."""
 
 Evaluate = Callable[[Mapping[str, Array]], Array]
@@ -57,18 +55,59 @@ def sampled_shares(
     by_replicate = _variances(inputs, points, deviation)
     variance = by_replicate.mean()
     by_replicate /= variance
-    count = min(FEWEST_POINTS, points.share_count)
+
+    def parts(count: int) -> Array:
+        return np.asarray(_parts(evaluate, inputs, points, values[:, :count]) / variance)
+
+    return VarianceShares.of(inputs, _as_precise_as_wanted(parts, by_replicate, points.share_count))
+
+
+def correlated_sampled_shares(
+    evaluate: Evaluate, inputs: Mapping[str, Distribution], factor: Array, points: UnitPoints, values: Array
+) -> VarianceShares:
+    """Return first-order and total shares of a model of correlated inputs at points.
+
+    Equation: those of `correlated_shares` over Var y
+    Arguments: as for `sampled_shares`, with the `factor` (inputs, inputs) of the inputs' scores.
+    Valid: any model; as many points as the errors take, at most `points.share_count` in each replicate.
+    Source: as `correlated_shares`.
+    """
+    squares = (values - values.mean()) ** 2
+    variance = squares.mean()
+    if variance == 0:
+        return VarianceShares.of(inputs, np.zeros((4, len(inputs))))
+    sets = [points.scores(list(inputs), factor, which) for which in ("leading", "second")]
+
+    def model(scores: Array) -> Array:
+        standard = {name: inputs[name].standard_at(score) for name, score in zip(inputs, scores, strict=True)}
+        return evaluate(standard)[None]
+
+    def parts(count: int) -> Array:
+        first, second = (scores[:, :, :count] for scores in sets)
+        return np.asarray(caused_variance(model, factor @ factor.T, first, second)[:, :, 0] / variance)
+
+    by_replicate = squares.mean(axis=1) / variance
+    return VarianceShares.of(inputs, _as_precise_as_wanted(parts, by_replicate, points.share_count))
+
+
+def _as_precise_as_wanted(parts: Callable[[int], Array], by_replicate: Array, most: int) -> Array:
+    """Return first-order shares, total shares and their standard errors, (4, inputs), by as many points as they take.
+
+    Arguments: what each input causes in each replicate (2, inputs, replicates) by a number of points, over the
+        variance; the variance of each replicate (replicates,) over that of all; the most points in a replicate.
+    """
+    count = min(_FEWEST_POINTS, most)
     while True:
-        parts = _parts(evaluate, inputs, points, values[:, :count]) / variance
-        shares = parts.mean(axis=2)
+        caused = parts(count)
+        shares = caused.mean(axis=2)
         # A share moves with the variance as well as with its part of it.
-        errors = standard_error(parts - shares[:, :, None] * by_replicate)
-        missing = max(1 - shares[1].sum() - MISSING * errors[1].sum(), 0.0)
-        excess = errors.max() / SHARE_PRECISION
-        errors = errors * (1 + STOPPED * min(excess, 1) ** 2) + missing
-        if (missing == 0 and excess <= 1) or count == points.share_count:
-            return VarianceShares.of(inputs, np.clip(np.concatenate([shares, errors]), 0, 1))
-        count = min(MORE * count, points.share_count)
+        errors = standard_error(caused - shares[:, :, None] * by_replicate)
+        missing = max(1 - shares[1].sum() - _MISSING * errors[1].sum(), 0.0)
+        excess = errors.max() / _SHARE_PRECISION
+        if (missing == 0 and excess <= 1) or count == most:
+            errors = errors * stopping_margin(excess) + missing
+            return np.asarray(np.clip(np.concatenate([shares, errors]), 0, 1))
+        count = min(_MORE * count, most)
 
 
 def _variances(inputs: Mapping[str, Distribution], points: UnitPoints, deviation: Array) -> Array:
@@ -101,7 +140,7 @@ def _slopes(off: list[Array], deviation: Array) -> list[float]:
 
     Products of means instead would err by as many parts of all points as there are inputs.
     """
-    leading = [values[:, :FEWEST_POINTS] for values in (*off, deviation)]
+    leading = [values[:, :_FEWEST_POINTS] for values in (*off, deviation)]
     leading = [values - values.mean() for values in leading]
     products = np.array([[(one * other).mean() for other in leading] for one in leading[:-1]])
     slopes, *_ = np.linalg.lstsq(products[:, :-1], products[:, -1], rcond=None)

@@ -16,9 +16,8 @@ from scipy.special import ndtri
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.capability import clopper_pearson
-from flexlash.tolerance.correlated_sampled_shares import correlated_sampled_shares
 from flexlash.tolerance.distributions import Distribution
-from flexlash.tolerance.sampled_shares import sampled_shares
+from flexlash.tolerance.sampled_shares import correlated_sampled_shares, sampled_shares
 from flexlash.tolerance.sampling import REPLICATES, UnitPoints, standard_error, widening
 from flexlash.tolerance.spread import Spread
 from flexlash.tolerance.variance_shares import VarianceShares

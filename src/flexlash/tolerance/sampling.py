@@ -20,7 +20,16 @@ from flexlash.tolerance.digital_nets import scrambled_net
 from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.spread import Method
 
-__all__ = ["DEFAULT_SAMPLES", "REPLICATES", "PointMethod", "SamplingPlan", "UnitPoints", "standard_error", "widening"]
+__all__ = [
+    "DEFAULT_SAMPLES",
+    "REPLICATES",
+    "PointMethod",
+    "SamplingPlan",
+    "UnitPoints",
+    "standard_error",
+    "stopping_margin",
+    "widening",
+]
 
 REPLICATES = 16
 """Independent replicates behind every standard error: 15 degrees of freedom."""
@@ -34,7 +43,11 @@ PointSet = Literal["all", "leading", "second"]
 _SHARE_POINTS = 2048
 """Most points in each replicate behind shares of variance."""
 
+_STOPPED = 0.3
+"""Part by which errors are widened that stopped just at what was wanted."""
+
 _CACHED_SHAPES = 256
+"""Point sets kept for the shapes of inputs that rows share."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,6 +94,21 @@ def standard_error(replicates: Array) -> Array:
     deviation = replicates - np.add.reduce(replicates, axis=-1, keepdims=True) / count
     squares = np.add.reduce(deviation * deviation, axis=-1)
     return np.asarray(np.sqrt(squares / ((count - 1) * count)) * widening(count))
+
+
+def stopping_margin(excess: Array) -> Array:
+    """Return by how much standard errors are widened that were found small enough to stop.
+
+    Equation: 1 + 0.3 min(e, 1)², e the error over the wanted one
+    Arguments: `excess` e, of any shape; above 1 where nothing more can be done.
+    Valid: errors of 8 to 16 replicates: who stops at the first error that is small enough stops at one that is small
+        by chance, the more so the nearer it is to what was wanted.
+    Source: coverage of the ± 1.96 errors over many seeds.
+
+    >>> stopping_margin(np.array([0.0, 0.5, 1.0, 7.0])).tolist()
+    [1.0, 1.075, 1.3, 1.3]
+    """
+    return np.asarray(1 + _STOPPED * np.minimum(excess, 1) ** 2)
 
 
 @cache

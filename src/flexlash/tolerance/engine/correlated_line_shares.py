@@ -13,7 +13,7 @@ from flexlash.tolerance.correlated_shares import ScoreModel, caused_variance
 from flexlash.tolerance.digital_nets import scrambled_net
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES
-from flexlash.tolerance.sampling import standard_error
+from flexlash.tolerance.sampling import standard_error, stopping_margin
 
 __all__ = ["correlated_line_shares"]
 
@@ -25,9 +25,6 @@ FEWEST_POINTS, MOST_POINTS = 256, 1 << 13
 
 _MORE = 4
 """How many times more points a row gets whose errors are too great."""
-
-_STOPPED = 0.3
-"""Part by which errors are widened that stopped just at what was wanted, since some come out small by chance."""
 
 _BLOCK = 1 << 16
 """Numbers of an array that leave room in the cache for a few others."""
@@ -51,7 +48,7 @@ def correlated_line_shares(model: RowModel, inputs: Inputs, variance: tuple[Arra
         found[:, :, pending] /= size
         found[2:, :, pending] = np.hypot(found[2:, :, pending], found[:2, :, pending] * variance[1][pending] / size)
         excess = found[2:, :, pending].max(axis=(0, 1)) / SHARE_PRECISION
-        found[2:, :, pending] *= 1 + _STOPPED * np.minimum(excess, 1) ** 2
+        found[2:, :, pending] *= stopping_margin(excess)
         pending = pending[excess > 1] if points < MOST_POINTS else pending[:0]
         points *= _MORE
     return np.clip(found, 0, 1)

@@ -11,6 +11,7 @@ from flexlash.tolerance.engine.line_drawing import SD_PRECISION
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES
 from flexlash.tolerance.engine.line_quantiles import LineQuantiles
 from flexlash.tolerance.engine.line_tables import Lines
+from flexlash.tolerance.sampling import stopping_margin
 
 __all__ = [
     "DECISIVE",
@@ -39,9 +40,6 @@ PROBABILITY_PRECISION = 0.05
 """Standard error wanted of the probability over a limit, as a part of itself, down to `RAREST_PROBABILITY`."""
 
 RAREST_PROBABILITY = 1e-9
-
-_STOPPED = 0.3
-"""Part by which errors are widened that stopped just at what was wanted."""
 
 _MARGIN = 1.5
 """How much better than wanted the next number of lines should be, since errors are only estimated."""
@@ -83,7 +81,7 @@ def lines_needed(
         counts = (rarer >= RAREST_PROBABILITY) & (True if limited is None else limited)
         relative = over.above_error[0] / np.where(counts, rarer, 1.0) / PROBABILITY_PRECISION
         excess = np.maximum(excess, np.where(counts, relative, 0.0))
-    margin = 1 + _STOPPED * np.minimum(excess, 1) ** 2
+    margin = stopping_margin(excess)
     excess = excess * margin
     further = 2.0 ** np.ceil(np.log2(np.maximum(excess * _MARGIN, 2.0)))
     needed = np.where(excess <= 1, lines.lines, np.minimum(lines.lines * further, MOST_LINES))

@@ -19,7 +19,7 @@ from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES, mirrored_net, normal_density
 from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate
 from flexlash.tolerance.engine.surrogate_shares import missed_variance, surrogate_shares
-from flexlash.tolerance.sampling import standard_error
+from flexlash.tolerance.sampling import standard_error, stopping_margin
 
 __all__ = ["line_shares"]
 
@@ -32,9 +32,6 @@ in each."""
 
 QUADRATURE_POINTS = 64, 256, 1024
 """Points over the other inputs where that is not enough."""
-
-_STOPPED = 0.3
-"""Part by which errors are widened that stopped just at what was wanted."""
 
 _NODES = np.linspace(-6.0, 6.0, 25)[:, None]
 """Scores of one input; beyond them a heavy tail such as that of Student's t with 5 degrees has 1e-5 of its variance."""
@@ -78,7 +75,7 @@ def line_shares(
         pending = pending[found[2:, :, pending].max(axis=(0, 1)) > SHARE_PRECISION]
     # Points were found enough by errors some of which came out small by chance.
     excess = found[2:].max(axis=(0, 1)) / SHARE_PRECISION
-    found[2:] *= 1 + _STOPPED * np.minimum(excess, 1) ** 2
+    found[2:] *= stopping_margin(excess)
     return np.clip(found, 0, 1)
 
 

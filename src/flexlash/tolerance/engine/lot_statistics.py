@@ -21,6 +21,7 @@ from flexlash.tolerance.engine.line_precision import (
 )
 from flexlash.tolerance.engine.lot_inputs import OTHERWISE, LotsAndParts
 from flexlash.tolerance.engine.lot_variance import VarianceSplit
+from flexlash.tolerance.sampling import stopping_margin
 
 __all__ = ["LotPrecision", "LotStatistics", "lot_statistics"]
 
@@ -31,9 +32,6 @@ _MOST_LINES = 1 << 12
 _FURTHER = 4
 _HALF = 0.7
 """Part of the wanted error, of two that are added as squares, from which more lines are taken of one kind."""
-
-_STOPPED = 0.3
-"""Part by which errors are widened that stopped just at what was wanted."""
 
 _BLOCK = 1 << 16
 """Numbers of an array that leave room in the cache for a few others."""
@@ -174,10 +172,10 @@ class _Search:
         rarer = np.minimum(failing.share, 1 - failing.share)
         wanted = np.where(rarer >= RAREST_PROBABILITY, self._precision.failing * rarer, np.inf)
         excess = np.nan_to_num(failing.error / wanted)
-        self.found.fail(rows, failing, _margin(excess))
+        self.found.fail(rows, failing, stopping_margin(excess))
         if self._samples is not None:
             return []
-        short = ((divided > 1) | (excess * _margin(excess) > 1)) & (failing.faults == 0)
+        short = ((divided > 1) | (excess * stopping_margin(excess) > 1)) & (failing.faults == 0)
         lots, parts = (np.fmax(divided, error / wanted) > _HALF for error in (failing.lots_error, failing.parts_error))
         grown = []
         for more_lots, more_parts in ((True, True), (True, False), (False, True)):
@@ -202,7 +200,7 @@ class _Search:
         if wanting.any():
             split = lines.variance()
             excess = np.maximum(split.within_error, split.between_error) / self._precision.sd
-            margin = _margin(excess)
+            margin = stopping_margin(excess)
             excess = np.where(wanting, excess * margin, 0.0)
             chosen = VarianceSplit(**{name: values[wanting] for name, values in vars(split).items()})
             self.found.divide(rows[wanting], chosen, margin[wanting])
@@ -223,11 +221,6 @@ class _Search:
             parts_error=np.where(limited, failing.parts_error, np.nan),
             faults=np.where(limited, failing.faults, lines.faults),
         )
-
-
-def _margin(excess: Array) -> Array:
-    """Return by how much errors are widened that are this part of the wanted ones: chance may have made them small."""
-    return 1 + _STOPPED * np.minimum(excess, 1) ** 2
 
 
 def _blocks(rows: Indices, size: int) -> Iterator[Indices]:
