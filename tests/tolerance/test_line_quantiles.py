@@ -11,7 +11,7 @@ from one_input import ONE_INPUT, PROBABILITIES
 from scipy import stats
 from scipy.special import ndtri
 
-from flexlash.tolerance import Normal, Triangular, Uniform
+from flexlash.tolerance import Normal, Triangular, Uniform, propagate
 from flexlash.tolerance.engine.line_drawing import DrawnLines
 from flexlash.tolerance.engine.line_moments import moments_of
 from flexlash.tolerance.engine.line_quantiles import probability_interval, quantiles_at, quantiles_of
@@ -307,3 +307,15 @@ def test_interval_of_no_share():
     assert (high[:2] <= 1e-14).all()
     assert low[2] >= 1 - 1e-14
     assert high[2] == 1.0
+
+
+@pytest.mark.parametrize("inputs", [1, 2, 5])
+def test_far_quantiles_of_a_steep_output_are_found(inputs):
+    """Far out a steep output rises by many of its scales a score, and yet is followed: e^X of X ~ N(0, 3²)."""
+    names = [f"x{index}" for index in range(inputs)]
+    spread = propagate(
+        lambda **values: np.exp(sum(values.values())), {name: Normal(0.0, 3 / np.sqrt(inputs)) for name in names}
+    )
+    rare = np.array([1e-4, 1e-6, 1e-9])
+    np.testing.assert_allclose(np.log(spread.quantile(1 - rare)), -3 * ndtri(rare), rtol=0, atol=1e-6)
+    assert np.all(spread.standard_error(1 - rare) <= 1e-6 * spread.quantile(1 - rare))

@@ -169,8 +169,8 @@ class _Search:
         near = np.zeros(output.shape, dtype=bool)
         for search in range(_SEARCHES):
             fronts = self._estimator.fronts(output)
-            moved, missing = self._moved(output, fronts, level)
-            near = near | ((np.abs(moved - output) <= _NEAR * self._lines.scale) & (missing <= _NEAR))
+            moved, missing, counts = self._moved(output, fronts, level)
+            near = near | ((np.abs(moved - output) <= _NEAR * counts) & (missing <= _NEAR))
             if near.all():
                 break
             low = np.where(moved > output, output, low)
@@ -181,13 +181,18 @@ class _Search:
         output = np.clip(moved, *self._bounds)
         return output, [front.moved(output, self._lines.lines) for front in fronts]
 
-    def _moved(self, output: Array, fronts: Sequence[Front], level: Array) -> tuple[Array, Array]:
-        """Return outputs nearer to the wanted levels by Newton's rule, and what was missing of these."""
+    def _moved(self, output: Array, fronts: Sequence[Front], level: Array) -> tuple[Array, Array, Array]:
+        """Return outputs nearer to the wanted levels by Newton's rule, what was missing of these, and what counts.
+
+        What counts is the scale, or how far a unit of the levels reaches at outputs that are steeper there: it is what
+        steps are cut at, and what small ones are small beside.
+        """
         above, density = self._estimator.above(fronts)
         now = -ndtri(np.clip(above, LEAST_PROBABILITY / 10, 1 - LEAST_PROBABILITY / 10))
-        scale = self._lines.scale
-        step = np.clip((level - now) * normal_density(now) / positive(density), -scale, scale)
-        return output + step, np.abs(level - now)
+        low, high = self._bounds
+        rise = np.minimum(normal_density(now) / positive(density), high - low)
+        counts = np.maximum(rise, self._lines.scale)
+        return output + np.clip((level - now) * rise, -counts, counts), np.abs(level - now), counts
 
     def corrected(self, output: Array, fronts: list[Front]) -> LineQuantiles:
         """Return the quantiles at outputs, which move to the wanted levels if there are any."""
@@ -199,11 +204,12 @@ class _Search:
             tried = [front.tried(live, lines.lines) for front in fronts]
             left, sure = self._estimator.left(fronts, tried), np.ones(output.shape, dtype=bool)
             if self._level is not None:
-                target, missing = self._moved(output, tried, self._level)
+                target, missing, counts = self._moved(output, tried, self._level)
                 target = np.clip(target, *self._bounds)
                 tried = [front.moved(target, lines.lines) for front in tried]
-                left = np.maximum(left, np.maximum(np.abs(target - output), missing * exact * lines.scale / _EXACT))
+                left = np.maximum(left, np.maximum(np.abs(target - output), missing * exact * counts / _EXACT))
                 output = np.where(settled, output, target)
+                off = missing * counts
             else:
                 above, density = self._estimator.above(tried)
                 rarer = np.minimum(above, 1 - above)
@@ -216,8 +222,9 @@ class _Search:
             if settled.all():
                 break
         if self._level is not None:
+            settled = settled | (left <= exact * counts)
             # What cannot be followed on the model stays what the table says.
-            residual = np.where(settled, residual, np.maximum(residual, np.abs(output - start)))
+            residual = np.where(settled, residual, np.maximum(residual, np.maximum(np.abs(output - start), off)))
             output = np.where(settled, output, start)
         found = self._estimator.estimate(fronts)
         residual = np.where(settled, _SLOPE_ERROR * residual, residual)
