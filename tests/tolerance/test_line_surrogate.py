@@ -1,5 +1,7 @@
 """Surrogates of models that add up, or nearly: their terms, moments, and the values that stand for outputs."""
 
+from math import comb
+
 import numpy as np
 import pytest
 from line_models import row_model, total
@@ -46,6 +48,14 @@ def test_moments_of_a_sum_are_exact():
     assert [float(one[0]) for one in surrogate.moments(np.array([mean]))] == pytest.approx(
         [0, variance, 0, fourth], rel=1e-9, abs=1e-9
     )
+
+
+def test_moments_of_a_lognormal_about_another_value():
+    """About any value the moments of exp of a sum of normals are those of its raw moments exp(k² σ²/2)."""
+    surrogate = surrogate_of(lambda a, b: np.exp(0.1 * a + 0.2 * b), {"a": Normal(0, 1), "b": Normal(0, 1)})
+    raw = [np.exp(power**2 * 0.05 / 2) for power in range(5)]
+    exact = [sum(comb(k, i) * raw[i] * (-0.7) ** (k - i) for i in range(k + 1)) for k in range(1, 5)]
+    assert [float(one[0]) for one in surrogate.moments(np.array([0.7]))] == pytest.approx(exact, rel=1e-8)
 
 
 @pytest.mark.parametrize("part", [0.02, 1e-5])
@@ -95,6 +105,19 @@ def test_values_stand_for_outputs_and_back(function, inputs):
     rates, step = surrogate.matched(between)[1], 1e-5 * between
     change = surrogate.matched(between + step)[0] - surrogate.matched(between - step)[0]
     assert rates == pytest.approx(change / (2 * step), rel=2e-2)
+
+
+def test_beyond_the_line_through_the_medians_values_go_on_as_outputs_do():
+    """Tables rise where polynomials do not follow a step; beyond their ends values of S move by what outputs move."""
+    surrogate = surrogate_of(lambda a, b: np.arctan(3 * a) + 0.1 * b, {"a": Normal(0, 1), "b": Normal(0, 1)})
+    assert (np.diff(surrogate.totals, axis=0) >= 0).all()
+    assert (np.diff(surrogate.totals, axis=0) == 0).any()
+    outputs = np.array([[-12.0], [-11.0], [11.0], [12.0]])
+    with np.errstate(all="ignore"):
+        values, rates = surrogate.matched(outputs)
+        assert surrogate.unmatched(values) == pytest.approx(outputs)
+    assert np.diff(values[:, 0])[[0, 2]] == pytest.approx([1, 1])
+    assert rates[:, 0].tolist() == [1.0] * 4
 
 
 def test_models_that_are_not_finite_have_no_surrogate():

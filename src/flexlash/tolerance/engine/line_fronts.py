@@ -111,31 +111,18 @@ class Estimator:
 
     def above(self, fronts: Sequence[Front]) -> tuple[Array, Array]:
         """Return the probabilities above the outputs of fronts (levels, rows), and the densities there."""
-        above = self._lines.mean_over_lines(self._crossed(fronts))
-        if self._control is None:
-            return above, self._density(fronts)
-        below, density = self._control.law.below(fronts[1].value)
-        density = np.where(self._trusted, density * fronts[1].rate, self._density(fronts))
-        return np.where(self._trusted, above + (1 - below), above), density
+        return self._corrected(fronts, self._crossed(fronts), self._own(fronts))
 
     def estimate(self, fronts: Sequence[Front]) -> Estimate:
         """Return the probabilities above the outputs of fronts with all that is told of them."""
-        crossed = self._crossed(fronts)
-        above, error = self._lines.mean_over_lines(crossed), self._lines.standard_error(crossed)
-        if self._control is None:
-            return Estimate(above=above, density=self._density(fronts), error=error)
-        below, density = self._control.law.below(fronts[1].value)
-        lined = self._lines.mean_over_lines(ndtr(-fronts[1].position))
-        unseen = self._control.unseen(1 - below, density, lined)
-        return Estimate(
-            above=np.where(self._trusted, above + (1 - below), above),
-            density=np.where(self._trusted, density * fronts[1].rate, self._density(fronts)),
-            error=np.where(
-                self._trusted,
-                np.maximum(error, unseen) + self._control.law.residual,
-                error + self._control.untold(above),
-            ),
-        )
+        crossed, own = self._crossed(fronts), self._own(fronts)
+        above, density = self._corrected(fronts, crossed, own)
+        error = self._lines.standard_error(crossed)
+        if self._control is not None:
+            lined = self._lines.mean_over_lines(ndtr(-fronts[1].position))
+            trusted = np.maximum(error, self._control.unseen(*own, lined)) + self._control.law.residual
+            error = np.where(self._trusted, trusted, error + self._control.untold(above))
+        return Estimate(above=above, density=density, error=error)
 
     def left(self, fronts: Sequence[Front], tried: Sequence[Front]) -> Array:
         """Return about how far outputs (levels, rows) are off for what the fronts had to be corrected by."""
@@ -153,8 +140,20 @@ class Estimator:
             return np.asarray(crossed)
         return np.asarray(crossed - np.where(self._lines.each(self._trusted), ndtr(-fronts[1].position), 0.0))
 
-    def _density(self, fronts: Sequence[Front]) -> Array:
-        return self._lines.mean_over_lines(normal_density(fronts[0].position) / fronts[0].slope)
+    def _own(self, fronts: Sequence[Front]) -> tuple[Array, Array]:
+        """Return the surrogate's own exact probabilities above what stands for outputs, and its densities there."""
+        if self._control is None:
+            return np.zeros(1), np.zeros(1)
+        below, density = self._control.law.below(fronts[1].value)
+        return 1 - below, density
+
+    def _corrected(self, fronts: Sequence[Front], crossed: Array, own: tuple[Array, Array]) -> tuple[Array, Array]:
+        """Return what lines and surrogate together say of the probabilities above outputs, and of the densities."""
+        above = self._lines.mean_over_lines(crossed)
+        density = self._lines.mean_over_lines(normal_density(fronts[0].position) / fronts[0].slope)
+        if self._control is None:
+            return above, density
+        return np.where(self._trusted, above + own[0], above), np.where(self._trusted, own[1] * fronts[1].rate, density)
 
 
 def _secant(before: tuple[Array, Array], now: tuple[Array, Array], slope: Array) -> Array:

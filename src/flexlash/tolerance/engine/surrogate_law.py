@@ -177,6 +177,9 @@ def _characteristic(phase: Array, weights: Array, terms: int) -> Waves:
 
 def _waves(phase: Array, terms: int) -> Waves:
     """Return e^{ik·phase} for k from 1 to `terms`, (terms, ...), of phases (...)."""
+    if phase.size == 1:
+        # Complex numbers by themselves are multiplied with other roundings than several side by side.
+        return _waves(np.repeat(phase[None], 2, axis=0), terms)[:, 0]
     waves = np.empty((terms, *phase.shape), dtype=complex)
     waves[0] = np.exp(1j * phase)
     filled = 1
@@ -227,7 +230,7 @@ def _summed(series: _Series, total: Array) -> tuple[Array, Array]:
     inside = np.minimum(np.maximum(part, 0.0), 1.0)
     terms = series.coefficients.shape[1]
     # The terms lie last, so that they add up in the same order however many levels and rows there are.
-    waves = np.ascontiguousarray(np.moveaxis(_waves(np.pi * inside, terms), 0, -1))
+    waves = np.moveaxis(_waves(np.pi * inside, terms), 0, -1).copy()
     probability = inside + np.add.reduce(series.coefficients * waves.imag, axis=2)
     density = 1 + np.add.reduce(series.coefficients * (np.pi * np.arange(1, terms + 1)) * waves.real, axis=2)
     density = np.where((part > 0) & (part < 1), np.maximum(density, 0.0) / series.width, 0.0)
