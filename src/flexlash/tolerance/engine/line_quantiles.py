@@ -170,7 +170,7 @@ class _Search:
         for search in range(_SEARCHES):
             fronts = self._estimator.fronts(output)
             moved, missing, counts = self._moved(output, fronts, level)
-            near = near | ((np.abs(moved - output) <= _NEAR * counts) & (missing <= _NEAR))
+            near = near | ((np.abs(moved - output) <= _NEAR * counts) & (np.abs(missing) <= _NEAR))
             if near.all():
                 break
             low = np.where(moved > output, output, low)
@@ -192,7 +192,7 @@ class _Search:
         low, high = self._bounds
         rise = np.minimum(normal_density(now) / positive(density), high - low)
         counts = np.maximum(rise, self._lines.scale)
-        return output + np.clip((level - now) * rise, -counts, counts), np.abs(level - now), counts
+        return output + np.clip((level - now) * rise, -counts, counts), level - now, counts
 
     def corrected(self, output: Array, fronts: list[Front]) -> LineQuantiles:
         """Return the quantiles at outputs, which move to the wanted levels if there are any."""
@@ -207,9 +207,10 @@ class _Search:
                 target, missing, counts = self._moved(output, tried, self._level)
                 target = np.clip(target, *self._bounds)
                 tried = [front.moved(target, lines.lines) for front in tried]
-                left = np.maximum(left, np.maximum(np.abs(target - output), missing * exact * counts / _EXACT))
+                short = np.abs(missing) * exact * lines.scale / _EXACT
+                left = np.maximum(left, np.maximum(np.abs(target - output), short))
+                off = np.abs(np.clip(output + missing * counts, *self._bounds) - output)
                 output = np.where(settled, output, target)
-                off = missing * counts
             else:
                 above, density = self._estimator.above(tried)
                 rarer = np.minimum(above, 1 - above)
@@ -224,7 +225,7 @@ class _Search:
         if self._level is not None:
             settled = settled | (left <= exact * counts)
             # What cannot be followed on the model stays what the table says.
-            residual = np.where(settled, residual, np.maximum(residual, np.maximum(np.abs(output - start), off)))
+            residual = np.where(settled, residual, np.maximum(residual, np.maximum(off, np.abs(output - start))))
             output = np.where(settled, output, start)
         found = self._estimator.estimate(fronts)
         residual = np.where(settled, _SLOPE_ERROR * residual, residual)
