@@ -15,6 +15,7 @@ import numpy.typing as npt
 from scipy.special import ndtr, ndtri
 
 from flexlash.schema.arrays import Array
+from flexlash.tolerance.distributions import Normal
 from flexlash.tolerance.engine.line_crossings import NODES, crossings
 from flexlash.tolerance.engine.line_points import normal_density
 from flexlash.tolerance.engine.line_surrogate import AdditiveSurrogate
@@ -43,6 +44,9 @@ _MIDDLE = [len(NODES) // 2]
 _OUTER = [int(np.flatnonzero(score == NODES)[0]) for score in (-4.0, 4.0)]
 """Nodes at which model and surrogate are compared for the tails that no line reaches."""
 
+_ALONE = np.arange(0.5, 6.25, 0.5)
+"""Scores at which model and surrogate are compared where one input alone lies that far out."""
+
 _DIP = 1e-9
 """A fall along a line smaller than this part of its range is rounding."""
 
@@ -68,6 +72,7 @@ class LineControl:
         self.used = needed & surrogate.fitted & rises.reshape(lines.rows, -1).all(axis=1)
         self.table = np.maximum.accumulate(table, axis=0)
         self._apart = self._mismatch()
+        self._apart_alone = self._mismatch_alone()
         self._carried = self._tails_carried()
         self.used &= self._helps()
 
@@ -78,6 +83,36 @@ class LineControl:
         matched = self.surrogate.matched(np.moveaxis(tails, 1, 2).reshape(-1, lines.rows))[0]
         matched = np.moveaxis(matched.reshape(len(_OUTER), -1, lines.rows), 1, 2).reshape(len(_OUTER), -1)
         return lines.mean_over_lines(np.abs(matched - self.table[_OUTER]))
+
+    def _mismatch_alone(self) -> Array | None:
+        """Return how far apart both are at most where one input alone lies up to so many scores out, as values of S.
+
+        (tails, `_ALONE`, rows); None where all inputs are bounded or normal, which polynomials follow to their ends.
+        """
+        inputs, rules = self._lines.inputs, self.surrogate.rules
+        ends = np.array([-_ALONE[-1], _ALONE[-1]])
+        long = [
+            index
+            for index, (shape, rule) in enumerate(zip(inputs.shapes, rules, strict=True))
+            if shape.shape != Normal.shape and np.abs(rule.variable(shape.standard_at(ends))).max() > 1 + 1e-9
+        ]
+        if not long:
+            return None
+        scores = np.zeros((len(rules), len(long), 2, len(_ALONE)))
+        for place, index in enumerate(long):
+            scores[index, place] = -_ALONE, _ALONE
+        scores = inputs.correlated(scores.reshape(len(rules), -1))
+        standard = np.stack([shape.standard_at(one) for shape, one in zip(inputs.shapes, scores, strict=True)])[
+            :, :, None
+        ]
+        variable = np.stack([rule.variable(one) for rule, one in zip(rules, standard, strict=True)])
+        total = np.add.reduce(polynomial(self.surrogate.coefficients[:, :, None], variable), axis=0)
+        output = self._lines.outputs_at(inputs.location[:, None] + inputs.scale[:, None] * standard)
+        apart = np.abs(self.matched(output)[0] - total)
+        apart = np.where(np.isfinite(apart), apart, np.inf).reshape(len(long), 2, len(_ALONE), -1)
+        higher = (output > self.surrogate.centre).reshape(apart.shape)
+        tails = [np.where(higher == upper, apart, 0.0).max(axis=(0, 1)) for upper in (False, True)]
+        return np.maximum.accumulate(np.stack(tails), axis=1)
 
     def _tails_carried(self) -> Bools:
         """Return whether the lines carry each tail (tails, rows) of the surrogate by themselves."""
@@ -149,6 +184,25 @@ class LineControl:
         apart = np.where(above < 1 - above, self._apart[1], self._apart[0])
         rarer = np.maximum(np.minimum(above, 1 - above), np.finfo(float).tiny)
         return np.asarray(np.abs(above - lined) * np.minimum(1.0, apart * density / rarer))
+
+    def unmet(self, total: Array, above: Array, crossed: Array) -> Array | float:
+        """Return about what no line tells of the model where one input alone goes far out, (levels, rows).
+
+        Equation: |P(S > s ∓ d) − p| · min(1, m/min(p, 1 − p)), d how far apart both are where one input alone lies as
+            far out as p is rare, m what the lines miss of p: how far their mean is off and may be by chance
+        Arguments: values s of S, exact probabilities p above them, and what each line says of these.
+        Valid: tails in which one input outdoes all others, as those of long-tailed inputs do.
+        """
+        if self._apart_alone is None:
+            return 0.0
+        upper = above < 1 - above
+        rarer = np.maximum(np.minimum(above, 1 - above), np.finfo(float).tiny)
+        # Half a score further than p is rare: what lies just beyond weighs as well.
+        place = np.minimum(np.searchsorted(_ALONE, -ndtri(rarer)) + 1, len(_ALONE) - 1)
+        apart = self._apart_alone[upper.astype(int), place, np.arange(above.shape[1])]
+        moved = 1 - self.law.below(np.where(upper, total - apart, total + apart))[0]
+        missed = np.abs(above - self._lines.mean_over_lines(crossed)) + self._lines.standard_error(crossed)
+        return np.asarray(np.abs(moved - above) * np.minimum(1.0, missed / rarer))
 
     def untold(self, above: Array) -> Array:
         """Return what lines alone may miss at levels too rare for the law (levels, rows): its residual, at most.

@@ -119,8 +119,10 @@ class Estimator:
         above, density = self._corrected(fronts, crossed, own)
         error = self._lines.standard_error(crossed)
         if self._control is not None:
-            lined = self._lines.mean_over_lines(ndtr(-fronts[1].position))
-            trusted = np.maximum(error, self._control.unseen(*own, lined)) + self._control.law.residual
+            on_lines = ndtr(-fronts[1].position)
+            unseen = self._control.unseen(*own, self._lines.mean_over_lines(on_lines))
+            unseen = np.maximum(unseen, self._control.unmet(fronts[1].value, own[0], on_lines))
+            trusted = np.maximum(error, unseen) + self._control.law.residual
             error = np.where(self._trusted, trusted, error + self._control.untold(above))
         return Estimate(above=above, density=density, error=error)
 

@@ -179,6 +179,10 @@ class Lines:
     def _modelled(self, values: Array, lines: slice | Indices) -> Array:
         return self._model(dict(zip(self.inputs.names, values, strict=True)), self._row_of[lines])
 
+    def outputs_at(self, values: Array) -> Array:
+        """Return the outputs (k, rows) at values (inputs, k, rows) of the inputs."""
+        return self._model(dict(zip(self.inputs.names, values, strict=True)), np.arange(self.rows))
+
     def along(self, positions: Array, function: Callable[[Array, slice], Array]) -> Array:
         """Return a function of the inputs (inputs, k, columns), and of the columns they are, along the lines."""
         width = self._origin.shape[1]
