@@ -1,6 +1,9 @@
 """What is known of a shape once for all rows: its variable, and rules that integrate waves and powers of it."""
 
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -79,3 +82,23 @@ def test_kinks_do_not_disturb_the_gauss_rule(mode):
         # E xⁿ = 2 (1 + m + … + mⁿ)/((n + 1)(n + 2)), by integrating both sides of the triangle.
         exact = 2 * sum(mode**part for part in range(power + 1)) / ((power + 1) * (power + 2))
         assert float((weights * found**power).sum()) == pytest.approx(exact, rel=1e-12)
+
+
+def test_rules_are_the_same_however_many_threads_there_are():
+    """Worker processes, which have one thread for linear algebra, find the bits of a process with several."""
+    program = (
+        "import hashlib; from flexlash.tolerance import Triangular; "
+        "from flexlash.tolerance.engine.shape_rules import gauss_rule; "
+        "print(*(hashlib.sha256(one.tobytes()).hexdigest() for one in gauss_rule(Triangular(0, 1), 385)))"
+    )
+    found = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env=os.environ | {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for threads in ("1", "2")
+    }
+    assert len(found) == 1

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import eigh_tridiagonal
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution
@@ -166,5 +167,6 @@ def _stieltjes(values: Array, mass: Array, nodes: int) -> tuple[Array, Array]:
         if order < nodes - 1:
             beside.append(size)
             before, now = now, after / size
-    found, vectors = np.linalg.eigh(np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1))
+    # Implicit QL, the only driver whose bits do not depend on how many threads the linear algebra has.
+    found, vectors = eigh_tridiagonal(diagonal, beside, lapack_driver="stev")
     return middle + half * found, vectors[0] ** 2
