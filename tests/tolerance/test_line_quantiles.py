@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from line_models import lines_of, probability_below, total
 from one_input import ONE_INPUT, PROBABILITIES
-from scipy import stats
+from scipy import integrate, stats
 from scipy.special import ndtri
 
 from flexlash.tolerance import Normal, Triangular, Uniform, propagate
@@ -319,3 +319,21 @@ def test_far_quantiles_of_a_steep_output_are_found(inputs):
     rare = np.array([1e-4, 1e-6, 1e-9])
     np.testing.assert_allclose(np.log(spread.quantile(1 - rare)), -3 * ndtri(rare), rtol=0, atol=1e-6)
     assert np.all(spread.standard_error(1 - rare) <= 1e-6 * spread.quantile(1 - rare))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_steep_outputs_beyond_all_lines_keep_their_probability(seed):
+    """Where bounded inputs end lines early, a steep output goes on beyond them: e^(z + u + v), u and v uniform."""
+    inputs = {"z": Normal(0.0, 0.3), "u": Uniform(-2.0, 2.0), "v": Uniform(-2.0, 2.0)}
+    spread = propagate(lambda **each: np.exp(sum(each.values())), inputs, samples=32, seed=seed)
+    for sum_ in (5.2, 5.4, 5.6):
+        exact = integrate.quad(
+            lambda z, sum_=sum_: stats.norm.pdf(z, scale=0.3) * stats.triang.sf(sum_ - z, 0.5, loc=-4, scale=8),
+            sum_ - 4,
+            sum_,
+            epsabs=0,
+        )[0]
+        low, high = spread.probability_interval(math.exp(sum_))
+        assert low < exact < high < 2 * exact
+        quantile = spread.quantile(1 - exact)
+        assert abs(quantile - math.exp(sum_)) <= 3 * spread.standard_error(1 - exact)

@@ -102,7 +102,7 @@ class Estimator:
     def __init__(self, drawn: DrawnLines, trusted: Bools | None) -> None:
         self._lines = drawn.lines
         self._control: LineControl | None = drawn.control
-        self._trusted: Bools = np.zeros((1, drawn.lines.rows), dtype=bool) if trusted is None else trusted
+        self.trusted: Bools = np.zeros((1, drawn.lines.rows), dtype=bool) if trusted is None else trusted
 
     def fronts(self, output: Array) -> list[Front]:
         """Return the fronts at outputs by the tables."""
@@ -123,7 +123,7 @@ class Estimator:
             unseen = self._control.unseen(*own, self._lines.mean_over_lines(on_lines))
             unseen = np.maximum(unseen, self._control.unmet(fronts[1].value, own[0], on_lines))
             trusted = np.maximum(error, unseen) + self._control.law.residual
-            error = np.where(self._trusted, trusted, error + self._control.untold(above))
+            error = np.where(self.trusted, trusted, error + self._control.untold(above))
         return Estimate(above=above, density=density, error=error)
 
     def left(self, fronts: Sequence[Front], tried: Sequence[Front]) -> Array:
@@ -133,14 +133,14 @@ class Estimator:
         off = [mean(normal_density(was.position) * np.abs(now.gap)) for was, now in zip(fronts, tried, strict=True)]
         if self._control is None:
             return np.asarray(off[0] / density)
-        return np.asarray(np.where(self._trusted, np.maximum(*off), off[0]) / density)
+        return np.asarray(np.where(self.trusted, np.maximum(*off), off[0]) / density)
 
     def _crossed(self, fronts: Sequence[Front]) -> Array:
         """Return what each line adds, (levels, rows × lines)."""
         crossed = ndtr(-fronts[0].position)
         if self._control is None:
             return np.asarray(crossed)
-        return np.asarray(crossed - np.where(self._lines.each(self._trusted), ndtr(-fronts[1].position), 0.0))
+        return np.asarray(crossed - np.where(self._lines.each(self.trusted), ndtr(-fronts[1].position), 0.0))
 
     def _own(self, fronts: Sequence[Front]) -> tuple[Array, Array]:
         """Return the surrogate's own exact probabilities above what stands for outputs, and its densities there."""
@@ -155,7 +155,7 @@ class Estimator:
         density = self._lines.mean_over_lines(normal_density(fronts[0].position) / fronts[0].slope)
         if self._control is None:
             return above, density
-        return np.where(self._trusted, above + own[0], above), np.where(self._trusted, own[1] * fronts[1].rate, density)
+        return np.where(self.trusted, above + own[0], above), np.where(self.trusted, own[1] * fronts[1].rate, density)
 
 
 def _secant(before: tuple[Array, Array], now: tuple[Array, Array], slope: Array) -> Array:

@@ -41,6 +41,9 @@ _SLOPE_ERROR = 0.1
 _NEAR = 5e-3
 """Part of the scale, and of the normal scale, from which the model itself takes over from the table."""
 
+_FAR_LEVEL = 3.5
+"""Levels of Φ beyond which lines may end before an output does."""
+
 _NEWTON = 8
 _SEARCHES = 40
 _ROUNDS = 12
@@ -106,9 +109,9 @@ def quantiles_at(drawn: DrawnLines, output: Array) -> LineQuantiles:
     Source: line sampling, as in `line_tables`; control variates, as in `line_control`.
     """
     lines, control = drawn.lines, drawn.control
-    low, high = bounds = _bounds(drawn)
+    bounds = _bounds(drawn)
     # An output out of reach is crossed as one just beyond it.
-    output = np.clip(output, low - lines.scale, high + lines.scale)
+    output = np.clip(output, *_reach(drawn, bounds, output))
     trusted = None
     if control is not None:
         seen = lines.mean_over_lines(ndtr(-lines.crossings(lines.each(output))[0])), control.above(output)
@@ -151,6 +154,18 @@ def _bounds(drawn: DrawnLines) -> tuple[Array, Array]:
     return np.where(used, np.minimum(low, lower), low), np.where(used, np.maximum(high, higher), high)
 
 
+def _reach(drawn: DrawnLines, bounds: tuple[Array, Array], output: Array) -> tuple[Array, Array]:
+    """Return beyond which outputs (rows,) nothing lies: neither on lines, nor by the laws of the surrogates used."""
+    lines, control = drawn.lines, drawn.control
+    low, high = bounds[0] - lines.scale, bounds[1] + lines.scale
+    if control is None or not ((output < low) | (output > high)).any():
+        return low, high
+    # Inputs that are bounded by themselves may leave lines short of where a steep output still goes.
+    lowest, highest = control.quantiles(np.array([LEAST_PROBABILITY, 1 - LEAST_PROBABILITY]))
+    used = control.used
+    return np.where(used, np.minimum(low, lowest), low), np.where(used, np.maximum(high, highest), high)
+
+
 class _Search:
     """The search for outputs at wanted levels of Φ (levels, 1); without these it only corrects crossings.
 
@@ -162,6 +177,7 @@ class _Search:
         self._lines = lines
         self._level = level
         self._bounds = bounds
+        self._far = False if level is None else np.abs(level) > _FAR_LEVEL
 
     def in_table(self, output: Array, level: Array) -> tuple[Array, list[Front]]:
         """Return outputs near the wanted levels, and the fronts there, by the tables alone."""
@@ -210,6 +226,8 @@ class _Search:
                 short = np.abs(missing) * exact * lines.scale / _EXACT
                 left = np.maximum(left, np.maximum(np.abs(target - output), short))
                 off = np.abs(np.clip(output + missing * counts, *self._bounds) - output)
+                # A law that is trusted goes on beyond the lines, where limits that outputs approach are not told apart.
+                off = np.where(self._estimator.trusted & self._far, np.abs(missing) * counts, off)
                 output = np.where(settled, output, target)
             else:
                 above, density = self._estimator.above(tried)
