@@ -131,7 +131,7 @@ def test_rows_that_take_different_rounds_keep_their_bits():
 
 def test_rows_that_lines_know_take_no_surrogate_beside_rows_that_do():
     """A row of nearly normal output does without a surrogate whatever is beside it, so that its numbers are its own."""
-    rows = [{name: Normal(0, sd) for name in "abcd"} for sd in (1e-3, 0.5)]
+    rows = [{name: Normal(0, sd) for name in "abcd"} for sd in (0.05, 0.5)]
     drawing = drawing_of(lambda a, b, c, d: np.sinh(a) + np.sinh(b) + c + d, *rows)
     with np.errstate(all="ignore"):
         assert drawing.drawn(np.arange(2), 64).control.used.tolist() == [False, True]

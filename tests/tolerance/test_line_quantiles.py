@@ -175,6 +175,8 @@ def test_outputs_out_of_reach():
     found = quantiles_at(lines, np.array([[3.0], [3.5], [1e9], [-1e-9], [-1e9]]))
     assert (found.above[:3] < 1e-15).all()
     assert (found.above[3:] > 1 - 1e-15).all()
+    assert found.above[1:3].tolist() == [[0.0], [0.0]]
+    assert found.above[4].tolist() == [1.0]
     assert (found.above_error <= 1e-15).all()
     assert np.isfinite(found.residual).all()
     assert np.isfinite(found.output_error).all()
@@ -250,6 +252,23 @@ def test_crossings_are_cut_and_widened():
     assert np.array_equal(more.mean, moments.mean)
     assert np.array_equal(more.sd_error, moments.sd_error * [2.0, 1.0])
     assert np.array_equal(more.skewness_error, moments.skewness_error * [2.0, 1.0])
+
+
+def test_told_errors_of_moments_are_how_far_they_scatter():
+    """Over many seeds moments scatter by what is told of them, which is widened by Student's t of seven degrees.
+
+    Skewness and kurtosis go with mean and sd, so that they are known better than third and fourth moment.
+    """
+
+    def output(a, b, c):
+        return np.exp(a) * (3 + b) + 0.3 * c * c + c
+
+    inputs = {"a": Normal(0, 0.5), "b": Uniform(-1, 1), "c": Uniform(-1, 1)}
+    found = [moments_of(sound_lines(output, inputs, lines=64, seed=seed)) for seed in range(240)]
+    for name in ("mean", "sd", "skewness", "kurtosis"):
+        scatter = np.std([getattr(one, name)[0] for one in found], ddof=1)
+        told = np.sqrt(np.mean([getattr(one, f"{name}_error")[0] ** 2 for one in found]))
+        assert 0.7 < scatter / told < 1.0, name
 
 
 @pytest.mark.slow

@@ -44,6 +44,9 @@ def test_sums_of_uniforms_against_irwin_and_hall(widths):
     exact = np.array([probability_below(value, widths) for value in values])
     assert np.abs(below[:, 0] - exact).max() <= law.residual[0] + 1e-12
     assert law.residual[0] < 1e-3
+    ends, _ = law.below(np.linspace(-0.5, 0.5, 401)[:, None] * sum(widths))
+    assert ends.min() == 0
+    assert ends.max() == 1
 
 
 def test_product_is_a_sum_of_logarithms():
