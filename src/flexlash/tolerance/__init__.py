@@ -7,7 +7,8 @@
 
 Limits of a dimension are a `Distribution` that it scatters by; a `SamplingPlan` says how many lines or points are
 taken; a `Spread` is the output's whole distribution, `SpreadStatistics` the numbers of it that are kept for a row, a
-`Curve` what is drawn of it.
+`Curve` what is drawn of it. Inputs may be correlated (`correlation`), and some may be one value for a whole lot of
+parts (`lots`). Lines are the method for models that rise smoothly (`engine`); points serve any model.
 """
 
 from flexlash.tolerance.distributions import Normal, Triangular, Uniform

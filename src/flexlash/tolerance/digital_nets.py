@@ -21,6 +21,7 @@ COORDINATES = 64
 """Coordinates with direction numbers; beyond them points are independent."""
 
 _BITS = 32
+"""Binary digits of a coordinate."""
 
 Words = npt.NDArray[np.uint32]
 

@@ -21,6 +21,8 @@ _TERMS = 160
 """Terms of a series; what the later ones come to at the ends is added there."""
 
 _REACH = 12.0
+"""Scores beyond which no polynomial of the series is above 1e-15, times the normal density."""
+
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 _WIDTH = 1.0
 """Widest piece between two breaks that the nodes integrate; the fastest polynomial has two waves in it."""

@@ -20,8 +20,8 @@ _ROUNDING = 1e-9
 _LEAST = 1e-12
 """Eigenvalues below are taken as this: what lies along them has next to no variance of its own."""
 
-_ROUNDS = 2000
-_SETTLED = 1e-10
+_ROUNDS, _SETTLED = 2000, 1e-10
+"""Most projections, and the change of a correlation from which on they have settled."""
 
 
 def admissible(matrix: Array) -> bool:

@@ -32,6 +32,7 @@ from flexlash.tolerance.spread_statistics import SpreadStatistics, exact_statist
 __all__ = ["RowBatch", "TolerancedRow", "batch_statistics", "batches_alike"]
 
 _ROWS_PER_BATCH = 200
+"""Rows that a worker process takes at a time."""
 
 
 @dataclass(frozen=True, kw_only=True)

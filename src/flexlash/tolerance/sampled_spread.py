@@ -27,6 +27,7 @@ __all__ = ["Model", "SampledSpread"]
 Model = Callable[..., npt.ArrayLike]
 
 _BLOCK = 8192
+"""Points modelled together, so that the model's own arrays stay in the cache."""
 
 _NORMAL_95 = float(ndtri(0.975))
 """Standard errors to both sides of a 95 % interval."""

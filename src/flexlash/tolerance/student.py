@@ -14,6 +14,7 @@ from flexlash.schema.arrays import Array
 __all__ = ["Student"]
 
 _FEWEST = 3.0
+"""Fewest degrees of freedom; with two there is no standard deviation."""
 
 
 @dataclass(frozen=True)

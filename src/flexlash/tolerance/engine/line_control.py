@@ -179,7 +179,8 @@ class LineControl:
         Equation: |p − mean over lines of Φ(−t_surrogate)| · min(1, d f/min(p, 1 − p)), d how far apart model and
             surrogate are in that tail: what the lines miss of the surrogate's own probability may be as far off for
             the model as that is
-        Arguments: exact probabilities p above values of S, the densities f there, the mean over lines of the same.
+        Arguments: exact probabilities p above values of S, the densities f there, the mean over lines of the same,
+            (levels, rows) each.
         """
         apart = np.where(above < 1 - above, self._apart[1], self._apart[0])
         rarer = np.maximum(np.minimum(above, 1 - above), np.finfo(float).tiny)

@@ -9,6 +9,8 @@ from flexlash.schema.arrays import Array
 __all__ = ["FAR", "NODES", "STEP", "crossings", "values_at"]
 
 STEP = 0.5
+"""Step of the nodes; what cubics between them miss is corrected on the curves themselves."""
+
 NODES = np.arange(-8.0, 8.0 + STEP / 2, STEP)
 """Positions on each line at which curves are tabulated."""
 

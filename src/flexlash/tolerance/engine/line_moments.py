@@ -26,7 +26,6 @@ _FINE = 192, 128
 _ROUNDING = 1e-9
 """Part of the scale of an output below which its numbers are rounding."""
 
-
 _END_DENSITY = float(normal_density(NODES[-1]))
 """What is left beyond an end of a line, at most, of an output that grows there by less than e⁷ a score."""
 
@@ -71,18 +70,11 @@ def moments_of(drawn: DrawnLines) -> Moments:
         (np.abs(lines.mean_over_lines(fine - wide)) / 3 + lines.mean_over_lines(beyond))[0]
         for fine, wide, beyond in zip(lined, coarse, _beyond(rules[0], lines.each(mean[None])), strict=True)
     ]
-    first, second, third, fourth = lined
     sd = np.sqrt(np.maximum(variance, 0.0))
     scale = np.where(sd > 0, sd, 1.0)
     skewness, peak = cube / scale**3, square / scale**4
-    each = lines.each
-    # The skewness moves with mean and sd as well as with the third moment.
-    skewing = third / each(scale[None] ** 3) - 3 * first / each(scale[None])
-    skewing -= 1.5 * each(skewness[None]) * second / each(scale[None] ** 2)
-    # So does the kurtosis, and with the skewness where mean and third moment meet.
-    peaking = fourth / each(scale[None] ** 4) - 4 * each(skewness[None]) * first / each(scale[None])
-    peaking -= 2 * each(peak[None]) * second / each(scale[None] ** 2)
-    errors = [lines.standard_error(one)[0] for one in (first, second, skewing, peaking)]
+    standardised = _standardised(lined, *(lines.each(one[None]) for one in (scale, skewness, peak)))
+    errors = [lines.standard_error(one)[0] for one in (*lined[:2], *standardised)]
     return Moments(
         mean=mean + off,
         sd=sd,
@@ -93,6 +85,23 @@ def moments_of(drawn: DrawnLines) -> Moments:
         skewness_error=errors[2] + steps[2] / scale**3 + _ROUNDING,
         kurtosis_error=errors[3] + steps[3] / scale**4 + 2 * peak * steps[1] / scale**2 + _ROUNDING,
     )
+
+
+def _standardised(lined: list[Array], scale: Array, skewness: Array, peak: Array) -> tuple[Array, Array]:
+    """Return what each line adds to skewness and kurtosis, (1, rows × lines) each.
+
+    Equation: δγ = δm₃/σ³ − 3 δm₁/σ − 3/2 γ δm₂/σ²; δκ = δm₄/σ⁴ − 4 γ δm₁/σ − 2 κ δm₂/σ²
+    Arguments: what each line adds to the first four moments mₖ about the mean; sd σ, skewness γ and fourth moment κ
+        over σ⁴ of its row, (1, rows × lines) each.
+    Valid: changes that are small beside the moments: the delta rule.
+    Source: derivatives of m₃/m₂^(3/2) and m₄/m₂² with moments about a mean that moves.
+    """
+    first, second, third, fourth = lined
+    skewing = third / scale**3 - 3 * first / scale
+    skewing -= 1.5 * skewness * second / scale**2
+    peaking = fourth / scale**4 - 4 * skewness * first / scale
+    peaking -= 2 * peak * second / scale**2
+    return skewing, peaking
 
 
 Rule: TypeAlias = tuple[Array, Array]

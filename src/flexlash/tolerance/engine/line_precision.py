@@ -27,11 +27,11 @@ __all__ = [
     "unresolved",
 ]
 
-FEWEST_LINES = 64
-FEWEST_ROW_LINES = 32
+FEWEST_LINES, FEWEST_ROW_LINES = 64, 32
 """Fewest lines of a model, and of rows of a table: their model is known, that of a single call may hold surprises."""
 
 MOST_LINES = 1 << 14
+"""Most lines of a row; what they do not reach is told by its errors and a note."""
 
 DECISIVE = (0.00135, 0.025, 0.5, 0.975, 0.99865)
 """Probabilities whose quantiles decide how many lines are enough."""
@@ -40,6 +40,7 @@ PROBABILITY_PRECISION = 0.05
 """Standard error wanted of the probability over a limit, as a part of itself, down to `RAREST_PROBABILITY`."""
 
 RAREST_PROBABILITY = 1e-9
+"""Rarer probabilities need not be known to a part of themselves."""
 
 _MARGIN = 1.5
 """How much better than wanted the next number of lines should be, since errors are only estimated."""

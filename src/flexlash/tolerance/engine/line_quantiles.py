@@ -44,9 +44,11 @@ _NEAR = 5e-3
 _FAR_LEVEL = 3.5
 """Levels of Φ beyond which lines may end before an output does."""
 
-_NEWTON = 8
-_SEARCHES = 40
+_NEWTON, _SEARCHES = 8, 40
+"""Steps of a search in the tables: by Newton's rule, then halvings, which leave 1e-9 of the range."""
+
 _ROUNDS = 12
+"""Most corrections on the model itself; what they leave is told."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -26,7 +26,7 @@ from flexlash.tolerance.engine.term_rules import TermRule, polynomial, term_rule
 __all__ = ["DEGREE", "RULE_NODES", "AdditiveSurrogate", "fitted_surrogate"]
 
 DEGREE = 6
-"""Degree of each polynomial."""
+"""Degree of each polynomial, which takes seven evaluations an input."""
 
 RULE_NODES = 41
 """Nodes of the rule by which expectations of terms are taken."""
@@ -35,6 +35,8 @@ _CORNERS = [int(np.flatnonzero(score == NODES)[0]) for score in (-2.0, 2.0)]
 """Nodes at which logarithm and output are tried for which adds up better."""
 
 _NODES = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
+"""Chebyshev nodes, between −1 and 1, at which terms are fitted."""
+
 _FIT = np.linalg.inv(np.vander(_NODES, increasing=True))
 """From values at the Chebyshev nodes to the coefficients of the polynomial through them."""
 
@@ -42,6 +44,7 @@ _LEAST = 1e-300
 """Part of the output at the medians that stands for an output without a logarithm."""
 
 _MOMENTS = 4
+"""Powers whose moments are told: those behind the kurtosis."""
 
 Bools = npt.NDArray[np.bool_]
 
@@ -108,6 +111,7 @@ class AdditiveSurrogate:
 
         Equation: with δᵢ = e^{sᵢ} − 1, X ← X (1 + δᵢ) + δᵢ from X = 0 makes output = centre · (1 + X);
             with δᵢ = sᵢ, X ← X + δᵢ makes output = centre + X; E Xᵏ follows from E δᵢʲ without cancelling
+        Arguments: `about` (rows,) in the unit of the output.
         Valid: terms that are independent, those of a cluster being one; a rule that resolves e^{4 sᵢ}.
         Source: moments of sums and products of independent factors.
         """

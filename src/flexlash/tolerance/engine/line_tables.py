@@ -80,6 +80,7 @@ _LOOKED_AT = 64
 """Lines of a row that are looked at closely where its table is uneven."""
 
 _BLOCK = 1 << 15
+"""Numbers of one input that are modelled together, so that the model's own arrays stay in the cache."""
 
 Number = TypeVar("Number", bound=np.generic)
 

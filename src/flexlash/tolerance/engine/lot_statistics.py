@@ -28,8 +28,9 @@ __all__ = ["LotPrecision", "LotStatistics", "lot_statistics"]
 _SEPARABLE, _ENTANGLED = LineNumbers(64, 32), LineNumbers(16, 16)
 """Lines to begin with; where each through the lots meets all those through the parts, far fewer."""
 
-_MOST_LINES = 1 << 12
-_FURTHER = 4
+_MOST_LINES, _FURTHER = 1 << 12, 4
+"""Most lines of either kind, and how many times more are taken where they are not enough."""
+
 _HALF = 0.7
 """Part of the wanted error, of two that are added as squares, from which more lines are taken of one kind."""
 

@@ -24,6 +24,7 @@ _REACH = 1.5
 """Tails that go further than this, in half ranges, are heavy: no polynomial is to be asked so far from its nodes."""
 
 _PULL = float(np.tanh(1.0))
+"""What makes −1 and 1 stay where heavy tails are pulled in."""
 
 _OUTER = 8.0
 """Scores at which the trapezoidal rule ends; beyond lies 1e-15."""
@@ -36,6 +37,7 @@ _PANELS, _PER_PANEL = 249, 16
 
 _RULES: dict[tuple[object, ...], ShapeRule | tuple[Array, Array]] = {}
 _MOST_RULES = 512
+"""Rules that are kept for the next rows of their shapes; more are made anew."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -51,6 +51,7 @@ _CELLS = 64
 """Cells of the grid from which quantiles start."""
 
 _NEWTON = 1
+"""Newton steps from the grid to a quantile from which a search starts."""
 
 
 Waves = npt.NDArray[np.complex128]

@@ -23,8 +23,11 @@ __all__ = ["missed_variance", "surrogate_shares"]
 
 _SCORES = np.linspace(-8.3, 8.3, 1661)
 _MASS = normal_density(_SCORES) / normal_density(_SCORES).sum()
+"""A fine rule in the score, by which variances of variables are taken."""
+
 _VARIANCES: dict[tuple[str | float, ...], float] = {}
 _MOST_VARIANCES = 256
+"""Variances that are kept by shape for the next rows."""
 
 Departures: TypeAlias = tuple[Array, Array, Array]
 """Departures at points (inputs, rows, points), their variances (inputs, rows), the mean of the surrogate (rows,)."""

@@ -34,6 +34,7 @@ _MOST_NODES = {1: 769, 2: 145}
 
 _RULES: dict[tuple[object, ...], tuple[TermRule, ...]] = {}
 _MOST_RULES = 64
+"""Rules that are kept for the next rows of their inputs; the oldest makes room."""
 
 
 @dataclass(frozen=True, kw_only=True)
