@@ -129,6 +129,28 @@ def test_rows_that_take_different_rounds_keep_their_bits():
                 assert one.above_error[0, 0] == several[1].above_error[level, row]
 
 
+@pytest.mark.parametrize(
+    ("function", "end", "lines"),
+    [
+        (steep, 1, 64),
+        (lambda a, b, c: np.sinh(4 * a) + b + c, 1, 64),
+        (lambda a, b, c: 0.1 * a + 3 * b + c, 3, 16),
+    ],
+    ids=["steep", "sinh", "not found"],
+)
+def test_levels_that_take_many_searches_keep_their_bits(function, end, lines):
+    """A quantile that is found at once is the same bit for bit beside others that are searched for by halving."""
+    inputs = {"a": Normal(0, 1), "b": Uniform(-1, 1), "c": Triangular(-end, end)}
+    drawn = drawn_of(function, inputs, lines=lines, seed=1)
+    probability = np.array([1e-9, 1e-6, *PROBABILITIES, 1 - 1e-6, 1 - 1e-9])
+    with np.errstate(all="ignore"):
+        every = quantiles_of(drawn, probability)
+        for level in range(len(probability)):
+            alone = quantiles_of(drawn, probability[[level]])
+            for name, values in vars(alone).items():
+                assert values[0, 0] == getattr(every, name)[level, 0], (level, name)
+
+
 def test_rows_that_lines_know_take_no_surrogate_beside_rows_that_do():
     """A row of nearly normal output does without a surrogate whatever is beside it, so that its numbers are its own."""
     rows = [{name: Normal(0, sd) for name in "abcd"} for sd in (0.05, 0.5)]
