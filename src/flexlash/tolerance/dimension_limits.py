@@ -34,6 +34,7 @@ _ROUNDING = 1e-12
 """Decimals become binary with a relative error below this; limits that close count as reached."""
 
 _DOUBT = 1e3 * _ROUNDING
+"""Nearer to a limit than this, decimals themselves are compared."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -35,12 +35,13 @@ _BETTER = 0.8
 _RARE = 1.0
 """Part of a probability up to which the law's own residual is let in."""
 
-_CARRIED = np.array([1e-4, 1e-6])
-_CARRIED_RESIDUAL, _CARRIED_PART = 1e-7, 0.3
+_CARRIED, _CARRIED_RESIDUAL, _CARRIED_PART = np.array([1e-4, 1e-6]), 1e-7, 0.3
 """Probabilities at which it is seen whether lines carry a tail by themselves, the second where the law's residual is no
 more than the first number; they do if they find it to the other part of it."""
 
 _MIDDLE = [len(NODES) // 2]
+"""The node of the medians along a line."""
+
 _OUTER = [int(np.flatnonzero(score == NODES)[0]) for score in (-4.0, 4.0)]
 """Nodes at which model and surrogate are compared for the tails that no line reaches."""
 
@@ -181,6 +182,8 @@ class LineControl:
             the model as that is
         Arguments: exact probabilities p above values of S, the densities f there, the mean over lines of the same,
             (levels, rows) each.
+        Valid: an order of size, not a bound: model and surrogate are compared where lines still pass.
+        Source: coverage of the told intervals against exact probabilities.
         """
         apart = np.where(above < 1 - above, self._apart[1], self._apart[0])
         rarer = np.maximum(np.minimum(above, 1 - above), np.finfo(float).tiny)

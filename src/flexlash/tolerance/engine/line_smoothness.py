@@ -34,6 +34,7 @@ _WINDOW = 0.01 * np.array([-1.0, -0.4, 0.15, 1.0])
 """Points of a window about a position; unevenly, so that no width of steps fits them all."""
 
 _SPAN = float(_WINDOW[-1] - _WINDOW[0])
+"""Width of a window, in scores."""
 
 _FAR_OUT, _PLACES = 2.9, 2
 """How far out the windows are spread, and how many lie on each line that is looked at."""

@@ -179,7 +179,11 @@ def fitted_surrogate(model: RowModel, inputs: Inputs, vector: Array) -> Additive
 
     logarithms, plain = with_logarithm(positive), with_logarithm(np.zeros_like(positive))
     off, plain_off = (np.abs(one.output(one.totals) - central)[_CORNERS].max(axis=0) for one in (logarithms, plain))
-    better = positive & (off <= plain_off)
+    return _chosen(positive & (off <= plain_off), logarithms, plain)
+
+
+def _chosen(better: Bools, logarithms: AdditiveSurrogate, plain: AdditiveSurrogate) -> AdditiveSurrogate:
+    """Return the surrogates by logarithms in the rows where these are better, with tables that only rise."""
     return replace(
         plain,
         coefficients=np.where(better, logarithms.coefficients, plain.coefficients),

@@ -40,6 +40,7 @@ _ENTANGLED = 1e-7
 """Part of the range of the probed outputs that a sum or a product may miss: far below every precision wanted."""
 
 _ROUNDING = 64 * np.finfo(float).eps
+"""Part of the greatest probed output below which differences are rounding."""
 
 
 class LotsAndParts:

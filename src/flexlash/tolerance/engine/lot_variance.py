@@ -36,6 +36,7 @@ _CHEAPER = 16
 
 _TINY = np.finfo(float).tiny
 _BLOCK = 1 << 19
+"""Outputs of lots crossed with parts that are looked at together."""
 
 
 @dataclass(frozen=True, kw_only=True)
