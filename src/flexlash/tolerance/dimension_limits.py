@@ -34,7 +34,7 @@ _ROUNDING = 1e-12
 """Decimals become binary with a relative error below this; limits that close count as reached."""
 
 _DOUBT = 1e3 * _ROUNDING
-"""Nearer to a limit than this, decimals themselves are compared."""
+"""Part of the numbers of a comparison within which its outcome is in doubt."""
 
 
 @dataclass(frozen=True, kw_only=True)
