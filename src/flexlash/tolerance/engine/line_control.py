@@ -32,7 +32,7 @@ _TRIED = np.array([0.00135, 0.025, 0.5, 0.975, 0.99865])
 _BETTER = 0.8
 """The difference must be this much sharper than the model alone."""
 
-_RARE = 1.0
+_RARE, _RARE_UNCARRIED = 0.05, 1.0
 """Part of a probability up to which the law's own residual is let in."""
 
 _CARRIED, _CARRIED_RESIDUAL, _CARRIED_PART = np.array([1e-4, 1e-6]), 1e-7, 0.3
@@ -172,7 +172,8 @@ class LineControl:
 
     def trusted(self, rarer: Array) -> Bools:
         """Return at which levels (levels, rows), of this lesser probability, the law is sharp enough to be used."""
-        return np.asarray(self.used & (self.law.residual <= _RARE * rarer))
+        carried = self._carried.all(axis=0)
+        return np.asarray(self.used & (self.law.residual <= np.where(carried, _RARE, _RARE_UNCARRIED) * rarer))
 
     def unseen(self, above: Array, density: Array, lined: Array) -> Array:
         """Return about what no line tells of the probabilities of the model where the law is trusted, (levels, rows).

@@ -79,8 +79,8 @@ number, as many as the last is beyond the one before it, at most the other."""
 _LOOKED_AT = 64
 """Lines of a row that are looked at closely where its table is uneven."""
 
-_BLOCK = 1 << 15
-"""Numbers of one input that are modelled together, so that the model's own arrays stay in the cache."""
+_BLOCK = 1 << 13
+"""Numbers of one input that are modelled together, so that what is made of all inputs stays in the cache."""
 
 Number = TypeVar("Number", bound=np.generic)
 
