@@ -225,8 +225,12 @@ def test_error_of_sobol_points_falls_faster():
 
 @pytest.mark.parametrize(("probability", "factor"), [(0.5, 1.253), (0.95, 2.113), (0.975, 2.671), (0.99865, 8.284)])
 def test_standard_errors_of_plain_monte_carlo(probability, factor):
-    """The mean standard error of a quantile over 60 seeds is k·s/√M, with k for the normal, within 15 %."""
-    spreads = [propagate(model, SCATTER, method="random", samples=2**12, seed=seed) for seed in range(60)]
+    """The mean standard error of a quantile over 30 seeds is k·s/√M, with k for the normal, within 15 %.
+
+    Far out it takes so many points that some dozen lie beyond: of fewer the farther side is told.
+    """
+    size = 2**16 if probability > 0.99 else 2**12
+    spreads = [propagate(model, SCATTER, method="random", samples=size, seed=seed) for seed in range(30)]
     errors = [spread.standard_error(probability) for spread in spreads]
-    expected = factor * 0.0201213 / math.sqrt(2**12)
+    expected = factor * 0.0201213 / math.sqrt(size)
     assert math.sqrt(np.mean(np.square(errors))) == pytest.approx(expected, rel=0.25 if probability > 0.99 else 0.15)

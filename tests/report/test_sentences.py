@@ -51,7 +51,7 @@ def test_the_study_in_words(outcome):
     )
     assert told["Which fail"].endswith(" 8 are green.")
     # Its 95 % interval is narrower than the digits that words tell, so that none is told.
-    assert re.search(r"“B3-160 case 4 r_m 80” 99\.453 %\. With every dimension", told["How sure"])
+    assert re.search(r"“B3-160 case 4 r_m 80” 99\.452 %\. With every dimension", told["How sure"])
     shares = (100 * worst["main_contributor_share"], "Young's modulus")
     assert told["Why"].startswith(f"The spread of “B3-160 case 5” comes from {shares[1]} {shares[0]:.0f} % and ")
     assert told["Why"].endswith("Main contributor of all 11 variants: Young's modulus.")

@@ -30,7 +30,7 @@ def decided(excess, *, lines=FEWEST_LINES, share=None, relative=0.0, limited=Non
     over = None
     if share is not None:
         error = np.array([[relative * PROBABILITY_PRECISION * min(share, 1 - share)]])
-        over = SimpleNamespace(above=np.array([[share]]), above_error=error)
+        over = SimpleNamespace(above=np.array([[share]]), above_error=error, blunt=np.zeros((1, 1)))
     row = SimpleNamespace(lines=lines, scale=np.array([scale]))
     (needed,), (margin,) = lines_needed(row, decisive, over, limited)
     return int(needed), float(margin)

@@ -35,9 +35,9 @@ _BETTER = 0.8
 _RARE, _RARE_UNCARRIED = 0.05, 1.0
 """Part of a probability up to which the law's own residual is let in."""
 
-_CARRIED, _CARRIED_RESIDUAL, _CARRIED_PART = np.array([1e-4, 1e-6]), 1e-7, 0.3
-"""Probabilities at which it is seen whether lines carry a tail by themselves, the second where the law's residual is no
-more than the first number; they do if they find it to the other part of it."""
+_CARRIED, _CARRIED_PART = np.array([1e-4, 1e-5, 1e-6]), 0.3
+"""Probabilities at which it is seen whether lines carry a tail by themselves, the least of them that the law's residual
+does not reach; they do if they find it to this part of it."""
 
 _MIDDLE = [len(NODES) // 2]
 """The node of the medians along a line."""
@@ -124,7 +124,8 @@ class LineControl:
         exact = below[0], 1 - below[1]
         lined = (self._lines.mean_over_lines(ndtr(side * one)) for side, one in zip((1, -1), position, strict=True))
         found = [np.abs(one - true) <= _CARRIED_PART * true for one, true in zip(lined, exact, strict=True)]
-        return np.where(self.law.residual <= _CARRIED_RESIDUAL, np.stack(found)[:, 1], np.stack(found)[:, 0])
+        rarest = np.maximum((_CARRIED[:, None] >= self.law.residual).sum(axis=0) - 1, 0)
+        return np.stack(found)[:, rarest, np.arange(self._lines.rows)]
 
     def _helps(self) -> Bools:
         """Return in which rows the difference is sharper known than the model alone, pooled over probabilities."""

@@ -89,11 +89,15 @@ class Front:
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """Probabilities above outputs, their densities and standard errors, (levels, rows) each."""
+    """Probabilities above outputs, their densities and standard errors, (levels, rows) each.
+
+    `blunt` is the part of the errors that more lines would not remove.
+    """
 
     above: Array
     density: Array
     error: Array
+    blunt: Array
 
 
 class Estimator:
@@ -117,14 +121,14 @@ class Estimator:
         """Return the probabilities above the outputs of fronts with all that is told of them."""
         crossed, own = self._crossed(fronts), self._own(fronts)
         above, density = self._corrected(fronts, crossed, own)
-        error = self._lines.standard_error(crossed)
+        error, blunt = self._lines.standard_error(crossed), np.zeros_like(above)
         if self._control is not None:
             on_lines = ndtr(-fronts[1].position)
             unseen = self._control.unseen(*own, self._lines.mean_over_lines(on_lines))
             unseen = np.maximum(unseen, self._control.unmet(fronts[1].value, own[0], on_lines))
-            trusted = np.maximum(error, unseen) + self._control.law.residual
-            error = np.where(self.trusted, trusted, error + self._control.untold(above))
-        return Estimate(above=above, density=density, error=error)
+            blunt = np.where(self.trusted, self._control.law.residual, self._control.untold(above))
+            error = np.where(self.trusted, np.maximum(error, unseen), error) + blunt
+        return Estimate(above=above, density=density, error=error, blunt=blunt)
 
     def left(self, fronts: Sequence[Front], tried: Sequence[Front]) -> Array:
         """Return about how far outputs (levels, rows) are off for what the fronts had to be corrected by."""

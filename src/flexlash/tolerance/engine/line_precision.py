@@ -80,7 +80,7 @@ def lines_needed(
     if over is not None:
         rarer = np.minimum(over.above, 1 - over.above)[0]
         counts = (rarer >= RAREST_PROBABILITY) & (True if limited is None else limited)
-        relative = over.above_error[0] / np.where(counts, rarer, 1.0) / PROBABILITY_PRECISION
+        relative = (over.above_error - over.blunt)[0] / np.where(counts, rarer, 1.0) / PROBABILITY_PRECISION
         excess = np.maximum(excess, np.where(counts, relative, 0.0))
     margin = stopping_margin(excess)
     excess = excess * margin

@@ -55,12 +55,13 @@ _ROUNDS = 12
 class LineQuantiles:
     """Outputs (levels, rows), the probability `above` each, its standard error, and the density there.
 
-    `residual` is the part of the outputs' error that more lines would not remove.
+    `blunt` is the part of the probabilities' error that more lines would not remove, `residual` that of the outputs'.
     """
 
     output: Array
     above: Array
     above_error: Array
+    blunt: Array
     density: Array
     residual: Array
 
@@ -253,6 +254,7 @@ class _Search:
             output=output,
             above=found.above,
             above_error=found.error + (residual * found.density if self._level is None else 0.0),
+            blunt=found.blunt,
             density=found.density,
             residual=np.maximum(residual, _ROUNDING * lines.scale),
         )
