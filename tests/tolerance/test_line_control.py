@@ -6,10 +6,13 @@ from line_models import row_model, total
 from scipy.special import ndtr
 
 from flexlash.tolerance import Normal, Triangular, Uniform
-from flexlash.tolerance.engine.line_direction import Inputs
+from flexlash.tolerance.engine.line_control import LineControl
+from flexlash.tolerance.engine.line_direction import Inputs, direction_of
 from flexlash.tolerance.engine.line_drawing import LineDrawing
 from flexlash.tolerance.engine.line_moments import moments_of
 from flexlash.tolerance.engine.line_quantiles import quantiles_at, quantiles_of
+from flexlash.tolerance.engine.line_surrogate import fitted_surrogate
+from flexlash.tolerance.engine.surrogate_law import SurrogateLaw
 
 PROBABILITIES = np.array([0.00135, 0.025, 0.5, 0.975, 0.99865])
 
@@ -88,6 +91,19 @@ def test_a_law_blunter_than_the_lines_stays_out():
     inputs = {"y": Uniform(-100, 100), "x": Uniform(-1, 1), "z": Uniform(-1, 1), "u": Normal(0, 0.1)}
     assert drawn_of(total, inputs).control is None
     assert drawn_of(total, inputs | {"y": Uniform(-10, 10)}).control is not None
+
+
+@pytest.mark.parametrize(("bend", "used"), [(0.0, True), (-1.0, True), (-2.5, False)])
+def test_a_surrogate_that_falls_on_a_line_is_not_used(bend, used):
+    """A surrogate that falls far out on its lines has no one crossing there: it is left out though it would help."""
+    row = {"a": Normal(0, 3), "b": Uniform(-3, 3), "c": Uniform(-3, 3)}
+    inputs = Inputs.of([row])
+    with np.errstate(all="ignore"):
+        lines = drawn_of(total, row, lines=16).lines
+        surrogate = fitted_surrogate(row_model(total), inputs, direction_of(row_model(total), inputs).vector)
+        surrogate.coefficients[-1, 0] += bend
+        control = LineControl(lines, surrogate, SurrogateLaw.of(surrogate, inputs), np.ones(1, dtype=bool))
+    assert control.used.tolist() == [used]
 
 
 def test_what_no_line_tells_is_told_of_the_tail_where_model_and_surrogate_part():
