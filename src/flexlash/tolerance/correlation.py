@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.nearest_correlation import admissible, admissible_interval, nearest_correlations
@@ -128,6 +127,8 @@ def clusters_of(matrix: Array) -> list[list[int]]:
     >>> clusters_of(np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.0], [0.5, 0.0, 1.0]]))
     [[0, 2]]
     """
+    from scipy.sparse.csgraph import connected_components
+
     count, label = connected_components(matrix != 0, directed=False)
     clusters = [np.flatnonzero(label == number).tolist() for number in range(count)]
     return [cluster for cluster in clusters if len(cluster) > 1]

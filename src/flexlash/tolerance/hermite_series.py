@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import brentq
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution
@@ -97,6 +96,8 @@ def score_correlation(first: Distribution, second: Distribution, of_values: floa
     >>> round(score_correlation(Uniform(0, 1), Uniform(2, 5), 0.5), 6)
     0.517638
     """
+    from scipy.optimize import brentq
+
     if of_values == 0:
         return 0.0
     if first.shape == second.shape == ("normal",):

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import nnls
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.correlation import correlated_scores
@@ -147,6 +146,8 @@ def _with_every_input(rise: Array, factor: Array, alone: Array) -> Array:
     Valid: rows whose rise is finite; one along which no input goes the wrong way stays as it is.
     Source: projection on a polyhedral cone by its dual (Moreau 1962), non-negative least squares (Lawson and Hanson).
     """
+    from scipy.optimize import nnls
+
     nearest = rise.copy()
     inverse = np.linalg.pinv(factor, rcond=_SINGULAR)
     for row, (wanted, own) in enumerate(zip(rise.T, alone.T, strict=True)):

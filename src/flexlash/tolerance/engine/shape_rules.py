@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import eigh_tridiagonal
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.distributions import Distribution
@@ -38,6 +37,9 @@ _PANELS, _PER_PANEL = 249, 16
 _RULES: dict[tuple[object, ...], ShapeRule | tuple[Array, Array]] = {}
 _MOST_RULES = 512
 """Rules that are kept for the next rows of their shapes; more are made anew."""
+
+_FEW_NODES = 100
+"""Nodes up to which one thread serves NumPy's own linear algebra; SciPy's takes 0.1 s and 20 MB to load."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -169,6 +171,17 @@ def _stieltjes(values: Array, mass: Array, nodes: int) -> tuple[Array, Array]:
         if order < nodes - 1:
             beside.append(size)
             before, now = now, after / size
+    found, vectors = _eigen(diagonal, beside)
+    return middle + half * found, vectors[0] ** 2
+
+
+def _eigen(diagonal: list[float], beside: list[float]) -> tuple[Array, Array]:
+    """Return eigenvalues and eigenvectors of a symmetric tridiagonal matrix."""
+    if len(diagonal) <= _FEW_NODES:
+        by_numpy = np.linalg.eigh(np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1))
+        return by_numpy[0].astype(np.float64), by_numpy[1].astype(np.float64)
+    from scipy.linalg import eigh_tridiagonal
+
     # Implicit QL, the only driver whose bits do not depend on how many threads the linear algebra has.
     found, vectors = eigh_tridiagonal(diagonal, beside, lapack_driver="stev")
-    return middle + half * found, vectors[0] ** 2
+    return found, vectors
