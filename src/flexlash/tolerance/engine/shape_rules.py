@@ -8,6 +8,7 @@ bounded             a shape whose standard value no longer moves at great scores
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
@@ -178,8 +179,8 @@ def _stieltjes(values: Array, mass: Array, nodes: int) -> tuple[Array, Array]:
 def _eigen(diagonal: list[float], beside: list[float]) -> tuple[Array, Array]:
     """Return eigenvalues and eigenvectors of a symmetric tridiagonal matrix."""
     if len(diagonal) <= _FEW_NODES:
-        by_numpy = np.linalg.eigh(np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1))
-        return by_numpy[0].astype(np.float64), by_numpy[1].astype(np.float64)
+        matrix = np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1)
+        return cast("tuple[Array, Array]", np.linalg.eigh(matrix))
     from scipy.linalg import eigh_tridiagonal
 
     # Implicit QL, the only driver whose bits do not depend on how many threads the linear algebra has.
