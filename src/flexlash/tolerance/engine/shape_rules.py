@@ -179,10 +179,8 @@ def _stieltjes(values: Array, mass: Array, nodes: int) -> tuple[Array, Array]:
 def _eigen(diagonal: list[float], beside: list[float]) -> tuple[Array, Array]:
     """Return eigenvalues and eigenvectors of a symmetric tridiagonal matrix."""
     if len(diagonal) <= _FEW_NODES:
-        matrix = np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1)
-        return cast("tuple[Array, Array]", np.linalg.eigh(matrix))
+        return np.linalg.eigh(np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1))
     from scipy.linalg import eigh_tridiagonal
 
     # Implicit QL, the only driver whose bits do not depend on how many threads the linear algebra has.
-    found, vectors = eigh_tridiagonal(diagonal, beside, lapack_driver="stev")
-    return found, vectors
+    return cast("tuple[Array, Array]", eigh_tridiagonal(diagonal, beside, lapack_driver="stev"))
