@@ -356,3 +356,18 @@ def test_steep_outputs_beyond_all_lines_keep_their_probability(seed):
         assert low < exact < high < 2 * exact
         quantile = spread.quantile(1 - exact)
         assert abs(quantile - math.exp(sum_)) <= 3 * spread.standard_error(1 - exact)
+
+
+@pytest.mark.parametrize("sd", [1.0, 2.0])
+def test_moments_of_a_steep_output_are_told_as_unsure_as_they_are(sd):
+    """Of exp of two wide normals, whose fourth power still rises where lines end, no moment is told too surely."""
+    row = {"a": Normal(0, sd), "b": Normal(0, sd)}
+    moments = moments_of(sound_lines(lambda a, b: np.exp(a + b), row))
+    growth = math.exp(2 * sd**2)
+    exact = {
+        "sd": math.sqrt(growth * (growth - 1)),
+        "skewness": (growth + 2) * math.sqrt(growth - 1),
+        "kurtosis": growth**4 + 2 * growth**3 + 3 * growth**2 - 6,
+    }
+    for name, value in exact.items():
+        assert abs(getattr(moments, name)[0] - value) <= 1.96 * getattr(moments, f"{name}_error")[0], name

@@ -10,10 +10,11 @@ from functools import cache
 from typing import TypeAlias
 
 import numpy as np
+from scipy.special import ndtr
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.engine.line_control import LineControl
-from flexlash.tolerance.engine.line_crossings import NODES
+from flexlash.tolerance.engine.line_crossings import NODES, STEP
 from flexlash.tolerance.engine.line_drawing import DrawnLines
 from flexlash.tolerance.engine.line_points import normal_density
 from flexlash.tolerance.engine.line_tables import REACH, Lines
@@ -28,6 +29,9 @@ _ROUNDING = 1e-9
 
 _END_DENSITY = float(normal_density(NODES[-1]))
 """What is left beyond an end of a line, at most, of an output that grows there by less than e⁷ a score."""
+
+_MOST_RISE = 30.0
+"""Greatest rise of what is integrated, in powers of e a score, that is followed beyond a line's end."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +72,7 @@ def moments_of(drawn: DrawnLines) -> Moments:
     # A third of what twice the spacing changes is the error of a kink, and more than that of a smooth output.
     steps = [
         (np.abs(lines.mean_over_lines(fine - wide)) / 3 + lines.mean_over_lines(beyond))[0]
-        for fine, wide, beyond in zip(lined, coarse, _beyond(rules[0], lines.each(mean[None])), strict=True)
+        for fine, wide, beyond in zip(lined, coarse, _beyond(lines, rules[0], lines.each(mean[None])), strict=True)
     ]
     sd = np.sqrt(np.maximum(variance, 0.0))
     scale = np.where(sd > 0, sd, 1.0)
@@ -141,13 +145,23 @@ def _fine_rule(breaks: tuple[float, ...], count: int) -> tuple[Array, Array]:
     return positions, products / products.sum()
 
 
-def _beyond(rule: Rule, centre: Array) -> list[Array]:
-    """Return about what the first four moments miss beyond the ends of each line, (1, rows × lines) each."""
-    ends = np.abs(rule[0][[0, -1]] - centre)
+def _beyond(lines: Lines, rule: Rule, centre: Array) -> list[Array]:
+    """Return about what the first four moments miss beyond the ends of each line, (1, rows × lines) each.
+
+    Equation: d^k φ(8) ∫ e^{rs − s²/2} ds over s > 0, r = k g − 8: a deviation d that goes on growing by e^g a score
+    Arguments: lines of rows alike, the outputs of a rule along them, the centres (1, rows × lines).
+    Valid: at least d^k φ(8), which is enough unless what is integrated still rises at the end.
+    Source: completing the square.
+    """
+    ends, before = np.abs(rule[0][[0, -1]] - centre), np.abs(lines.table[[1, -2]] - centre)
+    outer = np.abs(lines.table[[0, -1]] - centre)
+    growth = np.log(np.where((before > 0) & (outer > 0), outer / np.where(before > 0, before, 1.0), 1.0)) / STEP
     power, moments = np.full(ends.shape, _END_DENSITY), []
-    for _ in range(4):
+    for order in range(1, 5):
         power = power * ends
-        moments.append(np.add.reduce(power, axis=0, keepdims=True))
+        rise = np.minimum(order * growth + NODES[0], _MOST_RISE)
+        going_on = np.where(rise > 0, ndtr(rise) / normal_density(rise), 1.0)
+        moments.append(np.add.reduce(power * going_on, axis=0, keepdims=True))
     return moments
 
 
