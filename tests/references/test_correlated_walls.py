@@ -7,19 +7,11 @@ thicknesses, that of their normal scores being 2 sin(π ρ/6). Backlash 2U: sd i
 import math
 
 import pytest
+from reference_inputs import SCATTER
 
 from flexlash.mechanics.flexspline import backlash
-from flexlash.tolerance import Normal, Uniform, propagate
+from flexlash.tolerance import propagate
 
-SCATTER = {
-    "cylinder_length": Uniform(low=0.1598, high=0.1602),
-    "wall_thickness": Uniform(low=0.00155, high=0.00165),
-    "disk_thickness": Uniform(low=0.00155, high=0.00165),
-    "mean_radius": Normal(mean=0.080, sd=2e-5),
-    "disk_inner_radius": Uniform(low=0.03985, high=0.04015),
-    "youngs_modulus": Normal(mean=211e9, sd=2.11e9),
-    "poisson_ratio": Uniform(low=0.28, high=0.32),
-}
 PAIR = ("wall_thickness", "disk_thickness")
 REFERENCES = {
     0.0: (2.01204, 1.112602, 1.131560),

@@ -9,10 +9,11 @@ import math
 
 import numpy as np
 import pytest
+from reference_inputs import SCATTER
 
 from flexlash.mechanics.flexspline import backlash
 from flexlash.pipeline import run
-from flexlash.tolerance import Normal, Uniform, propagate
+from flexlash.tolerance import propagate
 
 MILLIRAD = 1e-3 * 180 * 60 / math.pi
 """Printed unit of the reference in arcmin."""
@@ -44,15 +45,6 @@ SHARES = {
     "disk_inner_radius": 0.0174,
     "cylinder_length": 0.0005,
     "mean_radius": 0.0004,
-}
-SCATTER = {
-    "cylinder_length": Uniform(low=0.1598, high=0.1602),
-    "wall_thickness": Uniform(low=0.00155, high=0.00165),
-    "disk_thickness": Uniform(low=0.00155, high=0.00165),
-    "mean_radius": Normal(mean=0.080, sd=2e-5),
-    "disk_inner_radius": Uniform(low=0.03985, high=0.04015),
-    "youngs_modulus": Normal(mean=211e9, sd=2.11e9),
-    "poisson_ratio": Uniform(low=0.28, high=0.32),
 }
 METHODS = ("line", "sobol", "random")
 
