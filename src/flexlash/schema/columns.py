@@ -17,9 +17,13 @@ from flexlash.schema.column import FACTOR, PERCENT, POSITIVE, STRESS, Column
 from flexlash.schema.variant_columns import VARIANTS
 
 __all__ = [
+    "CORRELATIONS",
     "DIMENSIONS",
     "ENTRY_SHEETS",
+    "LOT_DIMENSIONS",
     "MATERIALS",
+    "MEASUREMENTS",
+    "OPTIONAL_SHEETS",
     "SETTINGS",
     "SETTINGS_SHEET",
     "TOLERANCES",
@@ -32,6 +36,8 @@ __all__ = [
 _material: Callable[..., Column] = partial(Column.entry, "Materials")
 _tolerance: Callable[..., Column] = partial(Column.entry, "Tolerances")
 _setting: Callable[..., Column] = partial(Column.entry, "Settings")
+_measurement: Callable[..., Column] = partial(Column.entry, "Measurements", since=4)
+_correlation: Callable[..., Column] = partial(Column.entry, "Correlations", since=4)
 
 MATERIALS = (
     _material(
@@ -157,12 +163,27 @@ SETTINGS = (
         **FACTOR,
         usual=(0.5, 2.5),
     ),
+    _setting(
+        "requirement",
+        "acceptable_ppm",
+        "acceptable_ppm",
+        "Units of one lot over the limit, per million, above which the whole lot counts as failing.",
+        **POSITIVE,
+        maximum=999_999,
+        default=1350,
+        usual=(1, 100_000),
+        since=4,
+    ),
 )
 
 DIMENSIONS: dict[str, Column] = {
     column.dimension: column for column in (*VARIANTS, *MATERIALS, *SETTINGS) if column.role == "dimension"
 }
 """Every dimension that may have a tolerance, with the column its nominal value stands in."""
+
+LOT_DIMENSIONS = frozenset(name for name, column in DIMENSIONS.items() if column.sheet != "Variants")
+"""Dimensions that are one value for a whole lot of parts unless Tolerances says otherwise: elastic constants, which a
+heat of steel shares, and calibrations, which are one unknown number."""
 
 TOLERANCES = (
     _tolerance(
@@ -178,9 +199,8 @@ TOLERANCES = (
         "identity",
         "dimension",
         "Dimension",
-        "The dimension that varies. A dimension without a row is exact.",
+        "The dimension that varies. A dimension without a row is exact. Blank only beside Based on class.",
         type="choice",
-        required=True,
         choices=tuple(DIMENSIONS),
     ),
     _tolerance(
@@ -219,7 +239,7 @@ TOLERANCES = (
         "Distribution",
         "How parts scatter between the limits. Blank means normal.",
         type="choice",
-        choices=("normal", "truncated normal", "uniform", "triangular"),
+        choices=("normal", "truncated normal", "uniform", "triangular", "measured"),
         default="normal",
     ),
     _tolerance(
@@ -231,6 +251,139 @@ TOLERANCES = (
         maximum=100,
         default=3,
         usual=(1, 12),
+    ),
+    _tolerance(
+        "requirement",
+        "mean_shift",
+        "Mean shift",
+        "Normal distributions: what the mean of the process lies above the middle of the limits, signed, in the "
+        "deviation unit.",
+        since=4,
+    ),
+    _tolerance(
+        "requirement",
+        "standard_deviation",
+        "Standard deviation",
+        "Normal distributions: that of the process, in the deviation unit, instead of Limits at ± sigma.",
+        **POSITIVE,
+        since=4,
+    ),
+    _tolerance(
+        "requirement",
+        "cp",
+        "Cp",
+        "Normal distributions: width of the limits over six standard deviations, instead of Limits at ± sigma.",
+        **POSITIVE,
+        maximum=100,
+        usual=(0.3, 4),
+        since=4,
+    ),
+    _tolerance(
+        "requirement",
+        "cpk",
+        "Cpk",
+        "Beside Cp: the mean lies (Cp − Cpk) · 3 standard deviations off the middle of the limits, to the side that "
+        "raises the backlash unless a mean shift is given.",
+        maximum=100,
+        usual=(0, 4),
+        since=4,
+    ),
+    _tolerance(
+        "identity",
+        "sample",
+        "Sample",
+        "Name of a sample of Measurements: mean and standard deviation are those of its values.",
+        type="text",
+        since=4,
+    ),
+    _tolerance(
+        "requirement",
+        "scatters_between",
+        "Scatters between",
+        "parts: every part has a value of its own. lots: one value for a whole lot. Blank: lots for elastic constants "
+        "and calibrations, else parts.",
+        type="choice",
+        choices=("parts", "lots"),
+        since=4,
+    ),
+    _tolerance(
+        "identity",
+        "based_on",
+        "Based on class",
+        "In a row without a dimension: the class takes over every row of this class that it does not have itself.",
+        type="text",
+        since=4,
+    ),
+)
+
+MEASUREMENTS = (
+    _measurement(
+        "identity",
+        "sample",
+        "Sample",
+        "Name that the Tolerances sheet refers to; one row for each measured part.",
+        type="text",
+        required=True,
+    ),
+    _measurement("remark", "part", "Part", "Number or name of the measured part.", type="text"),
+    _measurement(
+        "requirement",
+        "use_as",
+        "Use as",
+        "value: the measured values themselves. deviation: what was measured above the entered value.",
+        type="choice",
+        choices=("value", "deviation"),
+        default="value",
+    ),
+    *(
+        Column(
+            sheet="Measurements",
+            role="requirement",
+            key=column.key,
+            label=column.label,
+            help=f"{column.plain_name} of each measured part; blank where it was not measured.",
+            unit=column.unit,
+            quantity=column.quantity,
+            since=4,
+            also_called=column.also_called,
+        )
+        for column in VARIANTS
+        if column.role == "dimension"
+    ),
+)
+
+CORRELATIONS = (
+    _correlation(
+        "identity",
+        "tolerance_class",
+        "Tolerance class",
+        "The class whose dimensions scatter together; one row per pair.",
+        type="text",
+        required=True,
+    ),
+    *(
+        _correlation(
+            "identity",
+            f"dimension_{number}",
+            f"Dimension {number}",
+            f"The {which} dimension of the pair.",
+            type="choice",
+            required=True,
+            choices=tuple(DIMENSIONS),
+        )
+        for number, which in ((1, "first"), (2, "second"))
+    ),
+    _correlation(
+        "requirement",
+        "correlation",
+        "Correlation",
+        "From -1 to 1, of the normal scores: 0 is independent, 1 is large with large.",
+        required=True,
+        minimum=-1,
+        maximum=1,
+    ),
+    _correlation(
+        "remark", "reason", "Reason", "Why they scatter together: cut in one set-up, for example.", type="text"
     ),
 )
 
@@ -252,7 +405,12 @@ ENTRY_SHEETS = {
     "Materials": MATERIALS,
     "Tolerances": TOLERANCES,
     "Settings": SETTINGS_SHEET,
+    "Measurements": MEASUREMENTS,
+    "Correlations": CORRELATIONS,
 }
+
+OPTIONAL_SHEETS = ("Measurements", "Correlations")
+"""Entry sheets that a template has only where they are asked for."""
 
 
 @cache

@@ -198,6 +198,32 @@ RESULTS = (
     _result("spread_method", "Spread by", "line, sobol or random: what made the spread of this row.", type="text"),
     _result("spread_points", "Lines or points", "Lines (method line) or points behind the spread of this row."),
     _result("spread_note", "Note on the spread", "Why not lines, or which precision was not reached.", type="text"),
+    _angle("within_lot_sd", "Within-lot sd", "Standard deviation of the parts of one lot, over all lots.", minimum=0),
+    _error("within_lot_sd", "Within-lot sd"),
+    _angle("between_lots_sd", "Between-lots sd", "Standard deviation of the means of lots.", minimum=0),
+    _error("between_lots_sd", "Between-lots sd"),
+    _share(
+        "lots_failing",
+        "Lots failing",
+        "Share of lots with more units over the limit than acceptable (Settings: acceptable_ppm), a fraction.",
+    ),
+    _result("lots_failing_standard_error", "Lots failing standard error", "Standard error of that share."),
+    _share(
+        "probability_over_limit_sample_low",
+        "Probability by measured parts low",
+        "Lower end of the 95 % interval of the probability over limit that the number of measured parts leaves.",
+    ),
+    _share(
+        "probability_over_limit_sample_high",
+        "Probability by measured parts high",
+        "Upper end of that interval.",
+    ),
+    _angle(
+        "p99_865_sample_low",
+        "P99.865 by measured parts low",
+        "Lower end of the 95 % interval of P99.865 that the number of measured parts leaves.",
+    ),
+    _angle("p99_865_sample_high", "P99.865 by measured parts high", "Upper end of that interval."),
     _result("notes", "Notes", "Notes as submitted.", type="text", role="remark"),
     _result(
         "findings", "Findings", "Codes and cells of the errors and warnings of this row.", type="text", role="remark"

@@ -3,11 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, TypeAlias
 
 from flexlash.schema.columns import SETTINGS
 
-__all__ = ["FAR", "Limits", "Material", "Settings", "ToleranceRow", "Variant"]
+__all__ = [
+    "FAR",
+    "CorrelationRow",
+    "Limits",
+    "Material",
+    "MeasuredDimension",
+    "ScattersBetween",
+    "Settings",
+    "ToleranceRow",
+    "Variant",
+]
+
+ScattersBetween: TypeAlias = Literal["parts", "lots"]
+"""Whether every part has a value of its own, or a whole lot one."""
 
 FAR = 8.3
 """Beyond this many standard deviations a normal has no weight in double precision."""
@@ -46,10 +59,29 @@ class Variant:
 
 
 @dataclass(frozen=True, kw_only=True)
+class MeasuredDimension:
+    """What was measured of one dimension in a sample [SI]: values in the order of the sheet, of at least five parts.
+
+    `are_deviations` says that they are what was measured above the entered value. `parts` are the rows of Measurements
+    that the values come from, so that values of one part can be told in two dimensions.
+    """
+
+    sample: str
+    dimension: str
+    values: tuple[float, ...]
+    parts: tuple[int, ...]
+    are_deviations: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
 class ToleranceRow:
     """One row of Tolerances: deviations in SI (or a fraction when relative), or a grade.
 
     `mean_shift` and `sd` of a normal process are in the unit of the deviations, so that they are relative, too.
+    `harmful_shift` says instead which share of the width of the limits the mean lies off their middle, to the side
+    that raises the backlash. `sample` is what was measured of the dimension: its mean and standard deviation are those
+    of the process. `scatters_between` says whether it is one value for a whole lot. A row that a class takes over from
+    another keeps the name and the row number of that class.
     """
 
     row: int
@@ -63,6 +95,9 @@ class ToleranceRow:
     limits_sigma: float = 3.0
     mean_shift: float = 0.0
     sd: float | None = None
+    harmful_shift: float = 0.0
+    sample: MeasuredDimension | None = None
+    scatters_between: ScattersBetween = "parts"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -71,7 +106,9 @@ class Limits:
 
     `low` and `high` are the drawing's, whatever the process does. A normal or truncated normal process has its mean
     `mean_shift` off the middle of the limits, and the standard deviation `sd`; without one the limits lie `sigma`
-    standard deviations from the middle. Raises ValueError for a shift or sd of what is not normal or does not scatter.
+    standard deviations from the middle. A process that was measured has its `sample`, and mean and sd as given: a
+    measured one has the shape of the sample's values. Raises ValueError for a shift or sd of what is not normal or
+    measured, or does not scatter.
     """
 
     low: float
@@ -81,9 +118,12 @@ class Limits:
     mean_shift: float = 0.0
     sd: float | None = None
     cut: tuple[float, float] | None = None
+    sample: MeasuredDimension | None = None
+    scatters_between: ScattersBetween = "parts"
 
     def __post_init__(self) -> None:
-        if (self.mean_shift or self.sd is not None) and not (self.low < self.high and "normal" in self.distribution):
+        has_mean = "normal" in self.distribution or self.distribution == "measured"
+        if (self.mean_shift or self.sd is not None) and not (self.low < self.high and has_mean):
             raise ValueError("mean_shift and sd are those of a normal distribution between limits that differ")
 
     @property
@@ -111,6 +151,17 @@ class Limits:
 
 
 @dataclass(frozen=True, kw_only=True)
+class CorrelationRow:
+    """One row of Correlations: Pearson's correlation of the normal scores of two dimensions of a class."""
+
+    row: int
+    tolerance_class: str
+    first: str
+    second: str
+    correlation: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Settings:
     """What holds for all variants of a submission."""
 
@@ -119,6 +170,7 @@ class Settings:
     method: Literal["line", "sobol", "random"] = "line"
     samples: int | None = None
     lost_motion_percent: float = 4.0
+    acceptable_ppm: float = 1350.0
     calibrations: dict[str, float] = field(
         default_factory=lambda: {column.key: 1.0 for column in SETTINGS if column.role == "dimension"}
     )

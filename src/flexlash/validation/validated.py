@@ -10,7 +10,7 @@ from flexlash.reading.raw import RawValue
 from flexlash.reading.whole_table import WholeTable
 from flexlash.schema.cell_addresses import CellAddress, cell_ranges
 from flexlash.schema.findings import Finding
-from flexlash.schema.variant import Material, Settings, ToleranceRow
+from flexlash.schema.variant import CorrelationRow, Material, MeasuredDimension, Settings, ToleranceRow
 from flexlash.validation.variant_rows import VariantRows
 
 if TYPE_CHECKING:
@@ -128,8 +128,10 @@ class Validated:
 
     `file` is its name; `findings` are those of validation alone, as they were made; `blocked` is what they spoil.
     `unit_mistakes` are the cells whose unit is mistaken, by sheet, row and column. `table` is Variants as read, one row
-    per submitted variant; `tolerances` is Tolerances, None where the built-in class is used; `variants` are the rows of
-    Variants without an error; `header_rows` the row of each entry sheet's headers.
+    per submitted variant; `tolerances` is Tolerances, None where the built-in class is used; `measurements` and
+    `correlations` are those sheets, None where there are none, `correlation_rows` the sound rows of the latter,
+    `measured` what was measured, by plain name of the sample and dimension; `variants` are the rows of Variants without
+    an error; `header_rows` the row of each entry sheet's headers.
     """
 
     file: str = ""
@@ -138,6 +140,10 @@ class Validated:
     unit_mistakes: Mapping[tuple[str, int, str], UnitMistake] = field(default_factory=dict)
     table: Table | None = None
     tolerances: Table | None = None
+    measurements: Table | None = None
+    correlations: Table | None = None
+    correlation_rows: Sequence[CorrelationRow] = ()
+    measured: Mapping[str, Mapping[str, MeasuredDimension]] = field(default_factory=dict)
     variants: VariantRows = field(default_factory=VariantRows)
     classes: Mapping[str, Sequence[ToleranceRow]] = field(default_factory=dict)
     materials: Mapping[str, Material] = field(default_factory=dict)

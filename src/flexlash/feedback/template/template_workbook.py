@@ -24,7 +24,7 @@ from flexlash.feedback.template.entry_rules import (
 from flexlash.feedback.template.filling import Entries, Filling, study
 from flexlash.feedback.template.status_formulas import COMPLETE, status_formula, status_names
 from flexlash.feedback.template.stored_status import listed_name, stored_statuses
-from flexlash.schema.columns import ENTRY_SHEETS, SETTINGS, Column
+from flexlash.schema.columns import ENTRY_SHEETS, OPTIONAL_SHEETS, SETTINGS, Column
 from flexlash.validation.headers import STATUS_HEADER
 from flexlash.validation.template_versions import TEMPLATE_VERSION
 
@@ -46,6 +46,8 @@ TITLES = {
 
 _PRINTED_ROWS = 100
 _OWN_WIDTH = 16
+_PLAIN = tuple(name for name in ENTRY_SHEETS if name not in OPTIONAL_SHEETS)
+
 _DATE = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=None)
 
 _WIDTHS = {
@@ -112,11 +114,11 @@ class _Template:
                 "wrap": {**base, "text_wrap": True, "valign": "top"},
             }.items()
         }
-        self.sheets = {name: workbook.add_worksheet(name) for name in (*ENTRY_SHEETS, "Dictionary", "Lists")}
+        self.sheets = {name: workbook.add_worksheet(name) for name in (*_PLAIN, "Dictionary", "Lists")}
 
     def write(self) -> None:
         """Write all sheets."""
-        entries = {name: self.filling.entries(name) for name in ENTRY_SHEETS}
+        entries = {name: self.filling.entries(name) for name in _PLAIN}
         materials, tolerances = entries["Materials"], entries["Tolerances"]
         names = [listed_name(row.get("material")) for row in materials.rows]
         classes = [listed_name(row.get("tolerance_class")) for row in tolerances.rows]
