@@ -22,7 +22,7 @@ from flexlash.pipeline import run
 from flexlash.reading.raw import ErrorCell, Unstored
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema import tables
-from flexlash.schema.columns import SETTINGS, VARIANTS
+from flexlash.schema.columns import CORRELATIONS, MEASUREMENTS, SETTINGS, TOLERANCES, VARIANTS, Column
 from flexlash.schema.finding_explanations import EXAMPLES, findings_page
 from flexlash.schema.findings import CATALOGUE
 from flexlash.schema.units import ARCMIN
@@ -174,10 +174,10 @@ def calibrated() -> Filling:
     )
 
 
-def column_table() -> str:
-    """Return the README's table of the Variants columns."""
+def column_table(columns: tuple[Column, ...] = VARIANTS) -> str:
+    """Return the table of a sheet's columns."""
     lines = ["| column | required | holds | meaning |", "|---|---|---|---|"]
-    for column in VARIANTS:
+    for column in columns:
         required = "yes" if column.required else ""
         lines.append(f"| {column.label} | {required} | {column.requirement} | {column.help} |")
     return "\n".join(lines)
@@ -224,21 +224,23 @@ def proof_table() -> str:
     return "\n".join(lines)
 
 
-def readme() -> bytes:
-    """Return the README with its generated tables."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    for name, table in (
-        ("columns", column_table()),
-        ("settings", settings_table()),
-        ("limits", limits_table()),
-        ("proof", proof_table()),
-    ):
+def measurements_table() -> str:
+    """Return the table of the columns of Measurements; those of the dimensions are one line."""
+    named = tuple(column for column in MEASUREMENTS if not column.unit)
+    sizes = "| any dimension of Variants |  | a number | What was measured of each part; blank where it was not. |"
+    return f"{column_table(named)}\n{sizes}"
+
+
+def document(path: str, **tables: str) -> bytes:
+    """Return a document with its generated tables."""
+    text = (ROOT / path).read_text(encoding="utf-8")
+    for name, table in tables.items():
         pattern = rf"(<!-- {name}: generated -->\n)(?:(?!<!-- ).)*(<!-- end -->)"
         text, found = re.subn(
             pattern, lambda match, table=table: f"{match[1]}{table}\n{match[2]}", text, flags=re.DOTALL
         )
         if found != 1:
-            raise ValueError(f"README.md has no place for its table of {name}")
+            raise ValueError(f"{path} has no place for its table of {name}")
     return text.encode()
 
 
@@ -266,7 +268,15 @@ def generated() -> dict[str, bytes]:
         "data/needs-fixing.xlsx": template_bytes(needs_fixing()),
         "data/b3-160-proof.xlsx": template_bytes(proof()),
         "data/b3-160-calibrated.xlsx": template_bytes(calibrated()),
-        "README.md": readme(),
+        "README.md": document(
+            "README.md", columns=column_table(), settings=settings_table(), limits=limits_table(), proof=proof_table()
+        ),
+        "docs/tolerances.md": document(
+            "docs/tolerances.md",
+            tolerances=column_table(TOLERANCES),
+            measurements=measurements_table(),
+            correlations=column_table(CORRELATIONS),
+        ),
         f"src/flexlash/schema/tables/{EXAMPLES}.csv": _as_table(messages()),
         "docs/findings.md": findings_page(messages()).encode(),
     }
