@@ -75,6 +75,7 @@ def limits_of(variant: Variant, rows: Iterable[ToleranceRow]) -> tuple[dict[str,
                 sigma=row.limits_sigma,
                 mean_shift=row.mean_shift * unit,
                 sd=None if row.sd is None else row.sd * abs(unit),
+                scatters_between=row.scatters_between,
             )
         elif found[0]:
             limits[row.dimension] = Limits(low=nominal + found[0], high=nominal + found[1])

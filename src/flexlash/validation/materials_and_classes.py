@@ -9,11 +9,11 @@ from typing import Any
 from flexlash.reading.raw import RawSheet, RawValue
 from flexlash.schema import tables
 from flexlash.schema.column import Column
-from flexlash.schema.columns import DIMENSIONS, ENTRY_SHEETS, MATERIALS, TOLERANCES
+from flexlash.schema.columns import DIMENSIONS, ENTRY_SHEETS, LOT_DIMENSIONS, MATERIALS, TOLERANCES
 from flexlash.schema.spellings import plain
 from flexlash.schema.tolerance_grades import is_grade
 from flexlash.schema.units import find_unit
-from flexlash.schema.variant import Material, ToleranceRow
+from flexlash.schema.variant import Material, ScattersBetween, ToleranceRow
 from flexlash.validation.cell_values import is_no_value, no_value_facts
 from flexlash.validation.grade_texts import meant_grade
 from flexlash.validation.ledger import Ledger
@@ -163,8 +163,14 @@ def _tolerance_row(record: Mapping[str, Any]) -> ToleranceRow:
         dimension=record["dimension"],
         relative=relative,
         grade=record["grade"],
+        scatters_between=record.get("scatters_between") or _usual_scatter(record["dimension"]),
         **given,
     )
+
+
+def _usual_scatter(dimension: str) -> ScattersBetween:
+    """Return between what a dimension scatters where Tolerances does not say."""
+    return "lots" if dimension in LOT_DIMENSIONS else "parts"
 
 
 def tolerance_classes_of(table: Table, ledger: Ledger) -> dict[str, list[ToleranceRow]]:
