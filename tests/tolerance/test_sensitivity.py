@@ -258,3 +258,15 @@ def test_the_uncertainty_is_rounded_in_decimal_as_it_is_printed(uncertainty, hal
     for part, valid in ((0.999, True), (1.001, False)):
         reach = 1.959963984540054 * uncertainty
         assert first_order_valid(0.0, uncertainty, (part * half_unit - reach, reach), 0.95) == valid
+
+
+def test_first_order_sd_of_inputs_that_cancel_is_no_root_of_a_negative():
+    """Inputs that follow one another and undo each other leave 0 up to rounding, never NaN."""
+    for factor in np.linspace(0.1, 3.0, 40):
+        found = first_order_sd(
+            lambda a, b, factor=factor: factor * a - b / 3,
+            {"a": 7.3, "b": 2.9},
+            {"a": 3 / factor, "b": 9.0},
+            [("a", "b", 1.0)],
+        )
+        assert 0 <= found < 1e-6

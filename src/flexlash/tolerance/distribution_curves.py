@@ -103,7 +103,7 @@ def _level(output: float) -> Curve:
 @np.errstate(all="ignore")
 def _of_lines(batch: RowBatch, number: int, seed: int, median_errors: Sequence[float]) -> Iterator[Curve]:
     """Yield the curves that so many lines give; their errors are widened as those of the rows' medians were."""
-    drawing = LineDrawing(batch.outputs_of, Inputs.of(batch.inputs), seed)
+    drawing = LineDrawing(batch.outputs_of, Inputs.of(batch.inputs, batch.factor), seed)
     drawn = drawing.drawn(np.arange(len(batch.inputs)), number)
     quantiles, median = quantiles_of(drawn, _PROBABILITIES), quantiles_of(drawn, _MEDIAN)
     for row, (median_error, plain_error) in enumerate(zip(median_errors, median.output_error[0].tolist(), strict=True)):

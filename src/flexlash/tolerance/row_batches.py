@@ -1,7 +1,8 @@
 """The statistics of many rows: rows alike together, each with the bits that it has alone.
 
 row                 a model of the output, its nominal dimensions, their limits, the greatest output allowed
-rows alike          rows with the same model, dimensions and shapes of distribution: one array holds them all
+rows alike          rows with the same model, dimensions, shapes of distribution and ties: one array holds them all
+tie                 two dimensions that scatter and the correlation of their normal scores
 batch               rows alike, few enough for one piece of work
 """
 
@@ -17,11 +18,14 @@ import numpy as np
 from flexlash.schema.arrays import Array
 from flexlash.schema.units import ARCMIN
 from flexlash.schema.variant import Limits
+from flexlash.tolerance.correlated_inputs import correlation_factor
+from flexlash.tolerance.correlation import Entry
 from flexlash.tolerance.cross_check import cross_checked
 from flexlash.tolerance.dimension_limits import distributions
-from flexlash.tolerance.distributions import Distribution
+from flexlash.tolerance.distributions import Distribution, Normal
 from flexlash.tolerance.engine.line_direction import Indices, Inputs
 from flexlash.tolerance.engine.line_statistics import line_statistics
+from flexlash.tolerance.hermite_series import value_correlation
 from flexlash.tolerance.propagate import NOT_LINES
 from flexlash.tolerance.row_lots import with_lots
 from flexlash.tolerance.sampled_spread import SampledSpread
@@ -40,7 +44,8 @@ class TolerancedRow:
     """A row to be spread [SI]: the model of its output, entered dimensions, their limits, the greatest output allowed.
 
     `model` takes dimensions by name, floats or arrays of one shape. Dimensions without limits are exact. `between`
-    names the dimensions that are one value for a whole lot; without it nothing is told of lots.
+    names the dimensions that are one value for a whole lot; without it nothing is told of lots. `correlation` ties the
+    normal scores of pairs of dimensions, each pair once; of those that do not both scatter it says nothing.
     """
 
     model: Callable[[Mapping[str, Array | float]], Array]
@@ -48,11 +53,30 @@ class TolerancedRow:
     limits: Mapping[str, Limits]
     upper_limit: float | None = None
     between: frozenset[str] | None = None
+    correlation: tuple[Entry, ...] = ()
 
     @cached_property
     def distributions(self) -> dict[str, Distribution]:
         """How the dimensions that scatter do so."""
         return distributions(self.limits)
+
+    @cached_property
+    def ties(self) -> tuple[Entry, ...]:
+        """The correlations between dimensions that scatter."""
+        scattering = self.distributions
+        return tuple(tie for tie in self.correlation if tie[2] and tie[0] in scattering and tie[1] in scattering)
+
+    @property
+    def value_ties(self) -> tuple[Entry, ...]:
+        """The same as Pearson's correlations of the values, which are those of the scores where both are normal."""
+        return tuple((first, second, self._of_values(first, second, scores)) for first, second, scores in self.ties)
+
+    def _of_values(self, first: str, second: str, scores: float) -> float:
+        """Return a correlation of scores as that of the values, without the last digits that linear algebra moves."""
+        one, other = self.distributions[first], self.distributions[second]
+        if one.shape == other.shape == Normal.shape:
+            return scores
+        return round(value_correlation(one, other)(scores), 12)
 
 
 def batches_alike(rows: Sequence[TolerancedRow]) -> Iterator[list[int]]:
@@ -60,7 +84,8 @@ def batches_alike(rows: Sequence[TolerancedRow]) -> Iterator[list[int]]:
     alike: dict[tuple[Any, ...], list[int]] = {}
     for index, row in enumerate(rows):
         shapes = tuple((name, distribution.shape) for name, distribution in row.distributions.items())
-        alike.setdefault((row.model, tuple(row.nominal), tuple(row.limits), shapes, row.between), []).append(index)
+        key = row.model, tuple(row.nominal), tuple(row.limits), shapes, row.between, row.ties
+        alike.setdefault(key, []).append(index)
     for indices in alike.values():
         for start in range(0, len(indices), _ROWS_PER_BATCH):
             yield indices[start : start + _ROWS_PER_BATCH]
@@ -77,7 +102,7 @@ def batch_statistics(rows: Sequence[TolerancedRow], plan: SamplingPlan) -> list[
     notes = dict.fromkeys(range(len(rows)), "")
     if plan.method == "line":
         limit = np.array([np.nan if row.upper_limit is None else row.upper_limit for row in rows])
-        for index, result in line_statistics(batch.outputs_of, Inputs.of(batch.inputs), limit, plan):
+        for index, result in line_statistics(batch.outputs_of, Inputs.of(batch.inputs, batch.factor), limit, plan):
             if isinstance(result, SpreadStatistics):
                 statistics[index] = result
             else:
@@ -98,7 +123,8 @@ def batch_statistics(rows: Sequence[TolerancedRow], plan: SamplingPlan) -> list[
 class RowBatch:
     """Rows alike as arrays by dimension: `centre` (rows,) at mid-limits, `limits` of the dimensions that scatter.
 
-    `inputs` are the distributions of each row's scattering dimensions.
+    `inputs` are the distributions of each row's scattering dimensions; `factor` makes their correlated scores, None
+    where they are independent. Raises ValueError for correlations that contradict one another.
     """
 
     def __init__(self, rows: Sequence[TolerancedRow]) -> None:
@@ -106,6 +132,9 @@ class RowBatch:
         self._between = rows[0].between
         self._upper_limits = [row.upper_limit for row in rows]
         self.inputs = [row.distributions for row in rows]
+        self._ties = rows[0].value_ties
+        ties = {(first, second): scores for first, second, scores in rows[0].ties}
+        self.factor = correlation_factor(ties, "scores", self.inputs[0]) if ties else None
         limits = {name: [row.limits[name] for row in rows] for name in rows[0].limits}
         self.centre = {name: np.array([row.nominal[name] for row in rows]) for name in rows[0].nominal}
         self.centre |= {name: np.array([limit.middle for limit in column]) for name, column in limits.items()}
@@ -127,13 +156,14 @@ class RowBatch:
         def model(**varied: Array) -> Array:
             return self.outputs_of(varied, np.array([row]))
 
-        return SampledSpread(model=model, inputs=self.inputs[row], points=points)
+        return SampledSpread(model=model, inputs=self.inputs[row], points=points, factor=self.factor)
 
     def with_lots(self, statistics: list[SpreadStatistics], plan: SamplingPlan) -> list[SpreadStatistics]:
         """Return the rows' statistics with what lots and parts have of them, where it is said what lots share."""
         if self._between is None:
             return statistics
-        return with_lots(self.outputs_of, self.inputs, self._between, statistics, self._upper_limits, plan=plan)
+        inputs = Inputs.of(self.inputs, self.factor)
+        return with_lots(self.outputs_of, inputs, self._between, statistics, self._upper_limits, plan=plan)
 
     @property
     def _estimate(self) -> dict[str, Array]:
@@ -161,7 +191,7 @@ class RowBatch:
         }
         worst = worst_case(model, ends)
         sds = {name: np.array([inputs[name].standard_deviation for inputs in self.inputs]) for name in self.limits}
-        first_order = first_order_sd(model, {name: self.centre[name] for name in self.limits}, sds)
+        first_order = first_order_sd(model, {name: self.centre[name] for name in self.limits}, sds, self._ties)
         low, high = (
             np.array([row.numbers[f"coverage_{end}"] for row in statistics], dtype=float) for end in ("low", "high")
         )

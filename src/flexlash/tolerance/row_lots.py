@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from scipy.special import ndtri
 
-from flexlash.tolerance.distributions import Distribution
 from flexlash.tolerance.engine.line_direction import Indices, Inputs, RowModel
 from flexlash.tolerance.engine.lot_inputs import LotsAndParts
 from flexlash.tolerance.engine.lot_statistics import lot_statistics
 from flexlash.tolerance.lots import AllLots, AllParts, Division, Lots
+from flexlash.tolerance.nested_lots import require_lots_apart
 from flexlash.tolerance.point_lots import PointLots
 from flexlash.tolerance.sampling import SamplingPlan
 from flexlash.tolerance.spread_statistics import SpreadStatistics
@@ -26,7 +26,7 @@ _REACH = 2 * float(ndtri(0.975))
 
 def with_lots(
     model: RowModel,
-    inputs: Sequence[Mapping[str, Distribution]],
+    inputs: Inputs,
     between: frozenset[str],
     statistics: Sequence[SpreadStatistics],
     limits: Sequence[float | None],
@@ -37,15 +37,18 @@ def with_lots(
 
     Arguments: model and inputs of rows alike; the names of the inputs that are one value for a lot; statistics and
         limit of each row, none for no limit.
+
+    Raises ValueError where an input that is one value for a lot is correlated with one that is not.
     """
-    names = frozenset(inputs[0]) & between
-    if not names or len(names) == len(inputs[0]):
+    names = frozenset(inputs.names) & between
+    if not names or len(names) == len(inputs.names):
         lots: Lots = AllLots() if names else AllParts()
         return [
             _told(row, lots.division, _asked(lots, row, limit, plan))
             for row, limit in zip(statistics, limits, strict=True)
         ]
-    split = LotsAndParts(model, Inputs.of(inputs), names)
+    require_lots_apart(inputs, names)
+    split = LotsAndParts(model, inputs, names)
     found: dict[int, SpreadStatistics] = {}
     if plan.method == "line":
         by_lines = np.flatnonzero([row.texts["spread_method"] == "line" for row in statistics])

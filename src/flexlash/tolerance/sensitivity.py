@@ -5,7 +5,7 @@ Inputs are scalars or arrays (rows,); the model then meets arrays with one more 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,24 +49,35 @@ def gradient(model: Model, centre: Mapping[str, Number], steps: Mapping[str, Num
     }
 
 
-def first_order_sd(model: Model, middle: Mapping[str, Number], sds: Mapping[str, Number]) -> Number:
+def first_order_sd(
+    model: Model,
+    middle: Mapping[str, Number],
+    sds: Mapping[str, Number],
+    ties: Iterable[tuple[str, str, Number]] = (),
+) -> Number:
     """Return the first-order standard uncertainty at mid-limits, in the unit of the model.
 
-    Equation: u = √Σ (∂y/∂xᵢ · sdᵢ)²
-    Arguments: the model of keyword arrays; middle of the limits and each input's true sd, scalars or (rows,).
-    Valid: independent inputs, a model close to linear over their spread (`first_order_valid`).
-    Source: GUM (JCGM 100) 5.1.2.
+    Equation: u² = Σ uᵢ² + 2 Σ rᵢⱼ uᵢ uⱼ, uᵢ = ∂y/∂xᵢ · sdᵢ
+    Arguments: the model of keyword arrays; middle of the limits and each input's true sd, scalars or (rows,); Pearson's
+        correlations r of the values of two inputs, each pair once.
+    Valid: inputs independent but for these; a model close to linear over their spread (`first_order_valid`).
+    Source: GUM (JCGM 100) 5.1.2, 5.2.2.
 
     >>> model = lambda a, b: a + b * b
     >>> round(float(first_order_sd(model, {"a": 0.0, "b": 2.0}, {"a": 3.0, "b": 1.0})), 9)
     5.0
+    >>> round(float(first_order_sd(model, {"a": 0.0, "b": 2.0}, {"a": 3.0, "b": 1.0}, [("a", "b", -1.0)])), 9)
+    1.0
     """
     steps = {name: np.maximum(1e-3 * sd, 1e-6 * np.abs(middle[name])) for name, sd in sds.items()}
     slopes = gradient(model, middle, steps)
     total = 0.0
     for name, sd in sds.items():
         total = total + (slopes[name] * sd) * (slopes[name] * sd)
-    return np.sqrt(total)
+    for first, second, correlation in ties:
+        total = total + 2 * correlation * (slopes[first] * sds[first]) * (slopes[second] * sds[second])
+    # Where inputs that follow one another cancel out, rounding may leave less than nothing.
+    return np.sqrt(np.maximum(total, 0.0))
 
 
 def first_order_valid(
