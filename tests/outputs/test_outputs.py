@@ -439,11 +439,12 @@ def test_own_columns_keep_a_csv_ours(tmp_path, table, sound):
 
 
 def test_json_is_one_object_with_a_stamp(tmp_path, table, sound):
-    """JSON holds rows and findings; the stamp says what it is."""
+    """JSON holds rows, the tolerances used for them and findings; the stamp says what it is."""
     run(table([sound, {**sound, "variant": "b", "torque_Nm": ""}]), tmp_path / "x.json", **FEW)
     found = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
-    assert list(found) == ["results", "findings", "stamp"]
+    assert list(found) == ["results", "tolerances", "findings", "stamp"]
     assert [row["backlash_rad"] is None for row in found["results"]] == [False, True]
+    assert {row["variant"] for row in found["tolerances"]} == {found["results"][0]["variant"]}
     assert [one["code"] for one in found["findings"]] == ["E201"]
     assert stamp_at(tmp_path / "x.json") == "results"
 

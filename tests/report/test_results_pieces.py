@@ -9,6 +9,7 @@ import polars as pl
 import pytest
 from filled import SOUND
 
+from flexlash.analysis.used_tolerances import used_tolerances
 from flexlash.pipeline import run
 from flexlash.report.output import outcome_bytes
 from flexlash.report.results_pieces import PIECES, blank_piece, joined, piece
@@ -38,8 +39,18 @@ def _joined(outcome, ending, size, folder):
         paths[-1].write_bytes(piece(table[start : start + size], ending))
     findings = {"findings": [found.as_dictionary() for found in outcome.findings]}
     file = io.BytesIO()
-    joined(ending, paths, paths[0], table.columns, findings)(file)
+    used = _used_pieces(outcome, size, folder) if ending == ".json" else []
+    joined(ending, paths, paths[0], table.columns, used=used, further=findings)(file)
     return file.getvalue()
+
+
+def _used_pieces(outcome, size, folder):
+    table, paths = used_tolerances(outcome.computed.values()), []
+    assert table.height > 11
+    for start in range(0, table.height, size):
+        paths.append(folder / f"{start}.used")
+        paths[-1].write_bytes(piece(table[start : start + size], ".json"))
+    return paths
 
 
 @pytest.mark.parametrize("ending", PIECES)
@@ -60,7 +71,7 @@ def test_a_blank_row_keeps_its_place(outcome, ending, tmp_path):
         path.write_bytes(data)
     joined_path = tmp_path / f"joined{ending}"
     with joined_path.open("wb") as file:
-        joined(ending, paths, paths[0], table.columns, {})(file)
+        joined(ending, paths, paths[0], table.columns, further={})(file)
     if ending == ".json":
         found = json.loads(joined_path.read_text(encoding="utf-8"))["results"]
     else:

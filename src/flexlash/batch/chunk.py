@@ -136,10 +136,14 @@ class ChunkSummary:
 
 @dataclass(frozen=True, kw_only=True)
 class ChunkAnswer(Travelling):
-    """What came of a chunk: its summary, its part of Results in the form that is wanted, its part of the findings."""
+    """What came of a chunk: its summary, its part of Results in the form that is wanted, its part of the findings.
+
+    `tolerances` is its part of Tolerances used, where that form is JSON.
+    """
 
     summary: bytes
     results: bytes = b""
+    tolerances: bytes = b""
     findings: bytes = b""
 
 

@@ -13,6 +13,7 @@ from flexlash.analysis.options import Options
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_result import outcome_of
 from flexlash.analysis.run_summary import SpreadNotes, by_rule, to_fix
+from flexlash.analysis.used_tolerances import used_tolerances
 from flexlash.analysis.whole_batch import DRAWN, verdicts_of, worst_rows
 from flexlash.batch.chunk import (
     FIRST_CELLS,
@@ -75,13 +76,14 @@ def answered(task: ChunkTask) -> ChunkAnswer:
         waiting=tuple(waiting_rows(table, outcome.blocked)) if table else (),
         all_wait=table is not None and outcome.blocked.everything and table.has_entries,
     )
-    results = b""
+    results = tolerances = b""
     if task.spread:
         summary = _with_spread(summary, outcome, table)
     if task.ending and table:
         rows = _of_all_columns(results_table(outcome), task.options)
         results, summary = piece(rows, task.ending), replace(summary, columns=tuple(rows.columns))
-    return ChunkAnswer(summary=summary.as_bytes(), results=results, findings=findings_rows(own))
+        tolerances = piece(used_tolerances(outcome.computed.values()), ".json") if task.ending == ".json" else b""
+    return ChunkAnswer(summary=summary.as_bytes(), results=results, tolerances=tolerances, findings=findings_rows(own))
 
 
 def _outcome(task: ChunkTask) -> Outcome:

@@ -153,7 +153,8 @@ class LargeOutputs:
         model = next(part["results"] for part in self.parts if "results" in part)
         findings = [found.as_dictionary() for found in self.totals.findings]
         further = {"findings": findings, "findings_by_rule": dict(sorted(self.totals.rules.items()))}
-        return joined(self.ending, pieces, model, self.totals.columns, further)
+        used = [part["tolerances"] for part in self.parts if "tolerances" in part]
+        return joined(self.ending, pieces, model, self.totals.columns, used=used, further=further)
 
     def _report(self, worst: Source, files: Files) -> bytes:
         """Return the report of the worst rows."""

@@ -151,7 +151,7 @@ class _Piece(NamedTuple):
         summary = ChunkSummary.of(answer.summary)
         if summary.refusal is not None:
             raise _RefusedError(summary)
-        parts = {"summary": answer.summary, "results": answer.results, "findings": answer.findings}
+        parts = {what: getattr(answer, what) for what in ("summary", "results", "tolerances", "findings")}
         return cls(summary, {what: part for what, part in parts.items() if part})
 
 

@@ -18,8 +18,9 @@ def schema(*, as_json: bool) -> None:
     from flexlash.schema.columns import ENTRY_SHEETS
     from flexlash.schema.part_rules import PART_RULES
     from flexlash.schema.result_columns import FINDINGS, RESULTS
+    from flexlash.schema.used_columns import TOLERANCES_USED
 
-    sheets = {**ENTRY_SHEETS, "Results": RESULTS, "Findings": FINDINGS}
+    sheets = {**ENTRY_SHEETS, "Results": RESULTS, "Tolerances used": TOLERANCES_USED, "Findings": FINDINGS}
     columns = [column for sheet in sheets.values() for column in sheet]
     if as_json:
         click.echo(json.dumps([column.as_dictionary() for column in columns], ensure_ascii=False, indent=1))

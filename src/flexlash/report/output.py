@@ -7,6 +7,7 @@ import json
 from typing import TYPE_CHECKING
 
 from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.used_tolerances import used_tolerances
 from flexlash.report.results_table import csv_text, results_table
 from flexlash.schema.stamps import placeholder
 
@@ -47,9 +48,10 @@ def _as_parquet(outcome: Outcome) -> bytes:
 
 
 def _as_json(outcome: Outcome) -> bytes:
-    """Return the Results and the findings as one JSON object, the stamp last."""
+    """Return Results, Tolerances used and the findings as one JSON object, the stamp last."""
     content = {
         "results": results_table(outcome).to_dicts(),
+        "tolerances": used_tolerances(outcome.computed.values()).to_dicts(),
         "findings": [content.as_dictionary() for content in outcome.findings],
         "stamp": placeholder(ROLE),
     }

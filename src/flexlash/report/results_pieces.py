@@ -1,5 +1,7 @@
 """Results in pieces: what some rows of a submission add to Results in each form, and how the pieces become one file.
 
+JSON also has Tolerances used, in pieces of its own beside those of Results.
+
 A file that is joined from pieces has the bytes that it would have in one piece, whatever the pieces are.
 """
 
@@ -23,6 +25,8 @@ __all__ = ["PIECES", "blank_piece", "joined", "piece"]
 _BEFORE_ROWS, _AFTER_ROWS = '{\n "results": [\n', "\n ]\n}"
 """What stands before and after the rows of an object of JSON that holds Results alone."""
 
+_USED = ' "tolerances": '
+
 
 def piece(table: pl.DataFrame, ending: str) -> bytes:
     """Return what some rows of Results add to the file of all: Parquet, or lines of CSV or JSON; nothing for none."""
@@ -37,11 +41,18 @@ def blank_piece(known: Mapping[str, str], columns: Sequence[str], ending: str) -
 
 
 def joined(
-    ending: str, pieces: Sequence[Path], model: Path, columns: Sequence[str], further: Mapping[str, Any]
+    ending: str,
+    pieces: Sequence[Path],
+    model: Path,
+    columns: Sequence[str],
+    *,
+    used: Sequence[Path] = (),
+    further: Mapping[str, Any],
 ) -> Callable[[BinaryIO], None]:
     """Return what writes the pieces in order as one file, piece by piece.
 
-    `model` is a piece that has all `columns`; `further` follows the rows in JSON.
+    `model` is a piece that has all `columns`; in JSON the rows are followed by those of Tolerances used, of which
+    `used` are the pieces, and by what is `further`.
     """
 
     def fill(file: BinaryIO) -> None:
@@ -54,7 +65,9 @@ def joined(
             rest = json.dumps({**further, "stamp": placeholder(ROLE)}, ensure_ascii=False, indent=1)
             file.write(_BEFORE_ROWS.encode())
             _copy(file, pieces, b",\n")
-            file.write(f"{_AFTER_ROWS[:-2]},\n{rest[2:]}\n".encode())
+            file.write(f"{_AFTER_ROWS[:-2]},\n{_USED}[".encode())
+            _copy_used(file, used)
+            file.write(f"],\n{rest[2:]}\n".encode())
 
     return fill
 
@@ -86,6 +99,14 @@ def _write_parquet(file: BinaryIO, pieces: Sequence[Path], model: Path) -> None:
     """Write pieces as one table, with room for the stamp in the metadata; columns that a piece lacks are blank."""
     rows = pl.scan_parquet([*pieces], schema=pl.read_parquet_schema(model), missing_columns="insert")
     rows.sink_parquet(file, row_group_size=ROWS_TOGETHER, metadata={"flexlash": placeholder(ROLE)})
+
+
+def _copy_used(file: BinaryIO, used: Sequence[Path]) -> None:
+    """Write the pieces of Tolerances used between the brackets of their list, which is empty without any."""
+    if used:
+        file.write(b"\n")
+        _copy(file, used, b",\n")
+        file.write(b"\n ")
 
 
 def _copy(file: BinaryIO, pieces: Sequence[Path], between: bytes) -> None:

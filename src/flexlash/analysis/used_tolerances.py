@@ -1,0 +1,73 @@
+"""Computed variants → Tolerances used: limits, mean and scatter of each of their dimensions, and their source."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import polars as pl
+
+from flexlash.analysis.computed import Computed
+from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.spellings import plain
+from flexlash.schema.units import as_entered
+from flexlash.schema.used_columns import TOLERANCES_USED
+from flexlash.schema.variant import Limits, ToleranceRow
+from flexlash.tolerance.dimension_limits import distribution_of
+
+__all__ = ["source_words", "used_tolerances"]
+
+_SCHEMA = {column.key: pl.Float64() if column.is_number else pl.String() for column in TOLERANCES_USED}
+
+
+def used_tolerances(variants: Iterable[Computed]) -> pl.DataFrame:
+    """Return one row for each dimension that scatters or is shifted, of every variant in this order.
+
+    Numbers are in the unit of the dimension's own column.
+    """
+    return pl.DataFrame([row for one in variants for row in _rows_of(one)], schema=_SCHEMA, orient="row")
+
+
+def _rows_of(one: Computed) -> Iterator[dict[str, Any]]:
+    """Yield the rows of a variant in the order of its limits."""
+    variant, shares = one.variant, one.spread.shares if one.spread else {}
+    rows = {row.dimension: row for row in one.among.validated.classes[plain(variant.tolerance_class)]}
+    for name, limits in one.limits.items():
+        column = DIMENSIONS[name]
+        numbers = {"nominal": variant.dimensions[name], **_numbers(limits)}
+        yield {
+            "variant": variant.name,
+            "dimension": name,
+            "unit": column.unit,
+            **{key: as_entered(number, column.si_unit.si) for key, number in numbers.items()},
+            "distribution": limits.distribution if limits.low < limits.high else None,
+            "scatters_between": limits.scatters_between if limits.low < limits.high else None,
+            "share": shares.get(name),
+            "source": source_words(rows[name], variant.tolerance_class),
+        }
+
+
+def _numbers(limits: Limits) -> dict[str, float]:
+    """Return limits, mean and standard deviation [SI]; of what does not scatter the value and 0."""
+    ends = {"lower": limits.low, "upper": limits.high}
+    if not limits.low < limits.high:
+        return {**ends, "mean": limits.low, "standard_deviation": 0.0}
+    spread = distribution_of(limits)
+    return {**ends, "mean": spread.expectation, "standard_deviation": spread.standard_deviation}
+
+
+def source_words(row: ToleranceRow, tolerance_class: str) -> str:
+    """Return where the tolerance of a variant of this class comes from.
+
+    >>> source_words(ToleranceRow(row=7, tolerance_class="full", dimension="wall_thickness"), "shop")
+    'class shop, taken over from class full, row 7'
+    >>> source_words(ToleranceRow(row=0, tolerance_class="standard", dimension="wall_thickness"), "standard")
+    'class standard, built in'
+    """
+    words = [f"class {tolerance_class}"]
+    if plain(row.tolerance_class) != plain(tolerance_class):
+        words.append(f"taken over from class {row.tolerance_class}")
+    words.append(f"row {row.row}" if row.row else "built in")
+    if row.sample:
+        words.append(f"sample {row.sample.sample} ({len(row.sample.values)} parts)")
+    return ", ".join(words)
