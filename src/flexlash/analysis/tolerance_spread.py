@@ -8,6 +8,7 @@ from functools import partial
 from typing import TypeAlias, overload
 
 from flexlash.analysis.computed import Computed, ComputedRows, Spread
+from flexlash.analysis.measured_uncertainty import with_measured_uncertainty
 from flexlash.analysis.options import Options
 from flexlash.analysis.spread_rows import SpreadRows
 from flexlash.mechanics.flexspline import backlash
@@ -66,7 +67,7 @@ def _of_piece(rows: Sequence[TolerancedRow], plan: SamplingPlan) -> list[SpreadS
     found: dict[int, SpreadStatistics] = {}
     for batch in batches_alike(rows):
         found |= zip(batch, batch_statistics([rows[index] for index in batch], plan), strict=True)
-    return [found[index] for index in range(len(rows))]
+    return with_measured_uncertainty(rows, [found[index] for index in range(len(rows))], plan)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,156 @@
+"""What measured parts leave open of the spread of rows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+from grids import for_each
+from toleranced import every_number, plan, row
+
+from flexlash.analysis.measured_uncertainty import with_measured_uncertainty
+from flexlash.analysis.tolerance_spread import row_statistics
+from flexlash.mechanics.flexspline import backlash
+from flexlash.schema.variant import Limits, MeasuredDimension
+from flexlash.tolerance.row_batches import batch_statistics
+
+KEYS = [f"{key}_sample_{end}" for key in ("probability_over_limit", "p99_865") for end in ("low", "high")]
+CUP = partial(backlash, "cup")
+SIZES = {
+    "torque": 800.0,
+    "cylinder_length": 0.16,
+    "mean_radius": 0.08,
+    "wall_thickness": 1.6e-3,
+    "youngs_modulus": 209e9,
+    "poisson_ratio": 0.29,
+    "disk_inner_radius": 0.037,
+    "disk_outer_radius": 0.08,
+    "disk_thickness": 1.6e-3,
+    "cylinder_calibration": 1.0,
+    "disk_calibration": 1.0,
+}
+
+
+def sampled(name, low, high, count):
+    """Return limits of a dimension of which so many parts were measured, with an eighth of the limits as their sd."""
+    sd = (high - low) / 8
+    values = np.random.default_rng(count).standard_normal(count)
+    values = (low + high) / 2 + sd * (values - values.mean()) / values.std(ddof=1)
+    sample = MeasuredDimension(sample="s", dimension=name, values=tuple(values), parts=tuple(range(count)))
+    return Limits(low=low, high=high, sd=sd, sample=sample)
+
+
+def cup(count=60, limit=1.01, **others):
+    """Return a cup of which the wall, and others if so given, were measured."""
+    limits = {
+        "cylinder_length": Limits(low=0.1599, high=0.1601),
+        "wall_thickness": sampled("wall_thickness", 1.58e-3, 1.62e-3, count),
+        "youngs_modulus": Limits(low=209e9 * 0.995, high=209e9 * 1.005),
+    }
+    ordered = {name: (limits | others)[name] for name in SIZES if name in limits | others}
+    return row(CUP, SIZES, ordered, float(CUP(SIZES)) * limit)
+
+
+def told(*rows, sampling=None, jobs=1):
+    """Return what the spread stage tells of rows."""
+    found = dict(row_statistics(rows, sampling or plan(), jobs))
+    return [found[index] for index in range(len(rows))]
+
+
+def interval(statistics):
+    """Return the ends of both intervals."""
+    return [statistics.numbers[key] for key in KEYS]
+
+
+def test_rows_without_samples_keep_every_bit():
+    """What was not measured is told nothing, and nothing of it changes, beside measured rows or not."""
+    limits = {name: replace(limit, sample=None) for name, limit in cup().limits.items()}
+    plain = replace(cup(), limits=limits)
+    (alone,) = batch_statistics([plain], plan())
+    _, beside = told(cup(), plain)
+    assert every_number(beside) == every_number(alone)
+    assert not {*KEYS} & {*beside.numbers}
+
+
+def test_a_measured_row_keeps_what_the_calculation_says():
+    """The sample adds its interval to the row and changes no other number."""
+    (alone,) = batch_statistics([cup()], plan())
+    (found,) = told(cup())
+    assert {key: value for key, value in found.numbers.items() if key not in KEYS} == alone.numbers
+    low, high, least, most = interval(found)
+    assert 0 < low < found.numbers["probability_over_limit"] < high < 1
+    assert least < found.numbers["p99_865"] < most
+
+
+def test_the_bits_do_not_depend_on_other_rows():
+    """A row has the same interval alone, beside rows like it and unlike it, in any order."""
+    rows = [
+        cup(),
+        cup(20),
+        cup(60, 1.02),
+        cup(disk_thickness=sampled("disk_thickness", 1.58e-3, 1.62e-3, 30)),
+        cup(200),
+    ]
+    together, backwards = told(*rows), told(*rows[::-1])[::-1]
+    for one, first, second in zip(rows, together, backwards, strict=True):
+        assert interval(told(one)[0]) == interval(first) == interval(second)
+
+
+def test_more_parts_leave_less():
+    """The interval shrinks as the root of the number of parts does."""
+    widths = [np.log(high / low) for low, high, *_ in map(interval, told(cup(25), cup(100), cup(400)))]
+    assert widths[0] / widths[1] == pytest.approx(2, rel=0.2)
+    assert widths[1] / widths[2] == pytest.approx(2, rel=0.1)
+
+
+def test_a_second_sample_widens_it():
+    """What a second measured dimension leaves open comes on top."""
+    both = cup(disk_thickness=sampled("disk_thickness", 1.58e-3, 1.62e-3, 60))
+    known = cup(disk_thickness=replace(both.limits["disk_thickness"], sample=None))
+    (first, second) = told(known, both)
+    assert first.numbers["probability_over_limit"] == second.numbers["probability_over_limit"]
+    widths = [np.log(high / low) for low, high, *_ in map(interval, (first, second))]
+    assert 1.05 * widths[0] < widths[1] < 1.5 * widths[0]
+
+
+@for_each("method", ("sobol", "random"))
+def test_points_leave_the_interval_to_lines(method):
+    """By points, which would count no unit over a far limit, the interval is that of lines."""
+    one = cup(limit=1.03)
+    by_lines, by_points = told(one)[0], told(one, sampling=plan(method, samples=512))[0]
+    assert by_points.texts["spread_method"] == method
+    assert interval(by_points) == interval(by_lines)
+
+
+def test_without_a_limit_only_the_percentile_is_told():
+    """A row without a limit has an interval of its percentile."""
+    one = replace(cup(), upper_limit=None)
+    (found,) = told(one)
+    assert [key for key in KEYS if key in found.numbers] == KEYS[2:]
+
+
+def test_limits_that_coincide_do_not_scatter():
+    """A sample of a dimension whose limits coincide moves nothing, since it does not scatter."""
+    fixed = replace(cup(), limits={"wall_thickness": Limits(low=1.6e-3, high=1.6e-3)})
+    sample = cup().limits["wall_thickness"].sample
+    measured = replace(fixed, limits={"wall_thickness": replace(fixed.limits["wall_thickness"], sample=sample)})
+    statistics = batch_statistics([measured], plan())
+    assert with_measured_uncertainty([measured], statistics, plan()) == statistics
+
+
+def test_a_dimension_that_does_nothing_leaves_nothing_open():
+    """Where the measured dimension has no part in the output, no interval is told rather than a wrong one."""
+
+    def constant(dimensions):
+        return 0.0 * dimensions["torque"]
+
+    one = row(constant, {"torque": 0.0}, {"torque": sampled("torque", -4.0, 4.0, 60)}, 1.0)
+    assert not {*KEYS} & {*told(one)[0].numbers}
+
+
+def test_lots_do_not_change_it():
+    """What lots share is no matter of how many parts were measured."""
+    one = cup()
+    assert interval(told(replace(one, between=frozenset({"youngs_modulus"})))[0]) == interval(told(one)[0])
