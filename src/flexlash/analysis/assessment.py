@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import polars as pl
 
+from flexlash.analysis.backlash_models import BACKLASH_OF
 from flexlash.analysis.computed import ComputedRows, Nominal
 from flexlash.mechanics.nominal import nominal_numbers
 from flexlash.mechanics.nominal_record import NominalNumbers
@@ -90,7 +91,7 @@ def _limits_are_fine(validated: Validated, arrays: VariantArrays) -> npt.NDArray
     with np.errstate(all="ignore"):
         for flexspline_type, owner, places, sizes in arrays.alike(validated.variants.classes):
             rows = validated.classes[owner]
-            limits = limits_alike(sizes, rows)
+            limits = limits_alike(sizes, rows, BACKLASH_OF[flexspline_type])
             fine[places] = beyond_doubt(flexspline_type, sizes, limits) & _widths_are_usual(sizes, limits, rows)
     return fine
 
@@ -142,7 +143,7 @@ _LOOKED_AT = (
 def _report_all_limits(ledger: Ledger, variant: Variant, classes: Mapping[str, Sequence[ToleranceRow]]) -> None:
     """Record all that is to be said of a variant's limits."""
     rows = classes[plain(variant.tolerance_class)]
-    found, untabulated = limits_of(variant, rows)
+    found, untabulated = limits_of(variant, rows, BACKLASH_OF[variant.flexspline_type])
     problems = (*untabulated, *shape_problems(variant, found)[1])
     for problem in problems:
         _report_limits(ledger, variant, problem)
@@ -246,8 +247,9 @@ def _report_exact(validated: Validated, arrays: VariantArrays, ledger: Ledger) -
     if table is None:
         return
     exact: dict[str, set[str]] = defaultdict(set)
-    for _, owner, _, sizes in arrays.alike(validated.variants.classes):
-        scattered = {name for name, one in limits_alike(sizes, standard).items() if one.given.any()}
+    for flexspline_type, owner, _, sizes in arrays.alike(validated.variants.classes):
+        limits = limits_alike(sizes, standard, BACKLASH_OF[flexspline_type])
+        scattered = {name for name, one in limits.items() if one.given.any()}
         exact[owner] |= scattered - {row.dimension for row in validated.classes[owner]}
     for row, name in table.frame.select("row", "tolerance_class").iter_rows():
         if left := exact.pop(plain(name or ""), None):

@@ -56,10 +56,12 @@ class Computed:
     @cached_property
     def limits(self) -> Mapping[str, Limits]:
         """The limits of its dimensions, far tails cut."""
+        from flexlash.analysis.backlash_models import BACKLASH_OF
         from flexlash.tolerance.dimension_limits import limits_of, shape_problems
 
         rows = self.among.validated.classes[plain(self.variant.tolerance_class)]
-        return shape_problems(self.variant, limits_of(self.variant, rows)[0])[0]
+        limits, _ = limits_of(self.variant, rows, BACKLASH_OF[self.variant.flexspline_type])
+        return shape_problems(self.variant, limits)[0]
 
     @cached_property
     def nominal(self) -> NominalNumbers:

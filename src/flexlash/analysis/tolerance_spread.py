@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TypeAlias, overload
 
+from flexlash.analysis.backlash_models import BACKLASH_OF
 from flexlash.analysis.computed import Computed, ComputedRows, Spread
 from flexlash.analysis.measured_uncertainty import with_measured_uncertainty
 from flexlash.analysis.options import Options
 from flexlash.analysis.spread_rows import SpreadRows
-from flexlash.mechanics.flexspline import backlash
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.variant import Limits, Settings
 from flexlash.tolerance.distribution_curves import Curve, curves_of
@@ -21,8 +21,6 @@ from flexlash.tolerance.spread_statistics import SpreadStatistics
 from flexlash.workers import mapped
 
 __all__ = ["drawn_curves", "row_curves", "row_statistics", "spread_again", "spread_of"]
-
-_MODELS = {kind: partial(backlash, kind) for kind in ("cup", "hat", "cylinder")}
 
 Found: TypeAlias = tuple[int, SpreadStatistics]
 """A row's index, or its number, with its statistics."""
@@ -138,7 +136,7 @@ def _plan(settings: Settings, options: Options) -> SamplingPlan:
 def _toleranced(variant: Computed) -> TolerancedRow:
     """Return what the spread of a variant takes."""
     return TolerancedRow(
-        model=_MODELS[variant.variant.flexspline_type],
+        model=BACKLASH_OF[variant.variant.flexspline_type],
         nominal=variant.variant.dimensions,
         limits=variant.limits,
         upper_limit=variant.variant.backlash_limit,

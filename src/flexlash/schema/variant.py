@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal, TypeAlias
 
 from flexlash.schema.columns import SETTINGS
@@ -71,6 +73,25 @@ class MeasuredDimension:
     values: tuple[float, ...]
     parts: tuple[int, ...]
     are_deviations: bool = False
+
+    @cached_property
+    def mean(self) -> float:
+        """Mean of the values."""
+        return math.fsum(self.values) / len(self.values)
+
+    @cached_property
+    def standard_deviation(self) -> float:
+        """Standard deviation of the values (n − 1), about their rounded mean."""
+        return math.sqrt(math.fsum((value - self.mean) ** 2 for value in self.values) / (len(self.values) - 1))
+
+    @cached_property
+    def _digest(self) -> int:
+        # Of numbers alone, whose hashes are alike in every process.
+        return hash((self.values, self.parts, self.are_deviations))
+
+    def __hash__(self) -> int:
+        """Return a hash that is worked out once, since a sample may have thousands of values."""
+        return self._digest
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,7 +164,7 @@ class Limits:
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Smallest and largest value that the distribution can produce."""
+        """Smallest and largest value of a normal, or between limits; a measured shape alone tells how far it goes."""
         if self.distribution == "normal":
             far = FAR * self.standard_deviation
             return self.mean - far, self.mean + far

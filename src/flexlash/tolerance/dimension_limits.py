@@ -16,6 +16,8 @@ from flexlash.schema.tolerance_grades import deviations, deviations_of
 from flexlash.schema.variant import FAR, Limits, ToleranceRow, Variant
 from flexlash.tolerance.distributions import Distribution, Normal, Triangular, Uniform
 from flexlash.tolerance.gaps import Gap, gaps
+from flexlash.tolerance.placed import Placed
+from flexlash.tolerance.processes import Output, harmful_sides, measured_ends, measured_shape, process_of
 from flexlash.tolerance.truncated_normal import TruncatedNormal
 
 __all__ = [
@@ -56,30 +58,54 @@ def _deviations(row: ToleranceRow, nominal: float) -> tuple[float, float] | None
     return (row.lower * nominal, row.upper * nominal) if row.relative else (row.lower, row.upper)
 
 
-def limits_of(variant: Variant, rows: Iterable[ToleranceRow]) -> tuple[dict[str, Limits], tuple[LimitsProblem, ...]]:
-    """Return the limits of the dimensions that vary, in the order of `DIMENSIONS`, and what is wrong."""
+def limits_of(
+    variant: Variant, rows: Iterable[ToleranceRow], output: Output | None = None
+) -> tuple[dict[str, Limits], tuple[LimitsProblem, ...]]:
+    """Return the limits of the dimensions that vary, in the order of `DIMENSIONS`, and what is wrong.
+
+    `output` is the model that tells which side of the limits is harmful, where a row asks for that.
+    """
     limits = {}
     problems = []
     for row in sorted(rows, key=_turn):
         nominal = variant.dimensions.get(row.dimension)
         if nominal is None:
             continue
-        found, unit = _deviations(row, nominal), nominal if row.relative else 1.0
+        found = _deviations(row, nominal)
         if found is None:
             problems.append(LimitsProblem(kind="untabulated", dimension=row.dimension, detail=row.grade or "", row=row))
         elif found[0] < found[1]:
+            low, high = nominal + found[0], nominal + found[1]
+            shift, sd = process_of(row, nominal, low, high, _harmful_side(variant, row, low, high, output))
             limits[row.dimension] = Limits(
-                low=nominal + found[0],
-                high=nominal + found[1],
+                low=low,
+                high=high,
                 distribution=row.distribution,
                 sigma=row.limits_sigma,
-                mean_shift=row.mean_shift * unit,
-                sd=None if row.sd is None else row.sd * abs(unit),
+                mean_shift=shift,
+                sd=sd,
+                sample=row.sample,
                 scatters_between=row.scatters_between,
             )
         elif found[0]:
-            limits[row.dimension] = Limits(low=nominal + found[0], high=nominal + found[1])
+            low, high = nominal + found[0], nominal + found[1]
+            limits[row.dimension] = Limits(low=low, high=high, scatters_between=row.scatters_between)
     return limits, tuple(problems)
+
+
+def _harmful_side(variant: Variant, row: ToleranceRow, low: float, high: float, output: Output | None) -> float:
+    """Return the side of the limits of a row that raises the output, as it is found for many variants at once."""
+    sizes = {name: np.array([size]) for name, size in variant.dimensions.items()} if row.harmful_shift else {}
+    return float(_sides(row, sizes, np.array([low]), np.array([high]), output)[0])
+
+
+def _sides(row: ToleranceRow, sizes: Mapping[str, Array], low: Array, high: Array, output: Output | None) -> Array:
+    """Return the side of the limits of a row that raises the output; 1 where the row does not ask for it."""
+    if not row.harmful_shift:
+        return np.ones(len(low))
+    if output is None:
+        raise LookupError(f"which limit of {row.dimension} is harmful takes a model of the output")
+    return harmful_sides(row.dimension, sizes, low, high, output)
 
 
 _TURNS = {name: turn for turn, name in enumerate(DIMENSIONS)}
@@ -92,19 +118,24 @@ def _turn(row: ToleranceRow) -> int:
 class LimitArrays(NamedTuple):
     """The limits of a dimension of many variants [SI], each of shape (variants,).
 
-    `least` and `most` are the ends of what the limits and the parts reach; `given` says where `limits_of` gives the
-    dimension limits. What a grade does not tabulate is NaN.
+    `mean` and `sd` are those of a normal or measured process, before any cut; `least` and `most` the ends of what the
+    limits and the parts reach; `given` says where `limits_of` gives the dimension limits. What a grade does not
+    tabulate is NaN.
     """
 
     low: Array
     high: Array
+    mean: Array
+    sd: Array
     least: Array
     most: Array
     given: npt.NDArray[np.bool_]
 
 
-def limits_alike(sizes: Mapping[str, Array], rows: Iterable[ToleranceRow]) -> dict[str, LimitArrays]:
-    """Return the limits of variants that have the same dimensions, given by name, in one class."""
+def limits_alike(
+    sizes: Mapping[str, Array], rows: Iterable[ToleranceRow], output: Output | None = None
+) -> dict[str, LimitArrays]:
+    """Return the limits of variants that have the same dimensions, given by name, in one class; else as `limits_of`."""
     limits = {}
     for row in rows:
         if (nominal := sizes.get(row.dimension)) is None:
@@ -117,17 +148,23 @@ def limits_alike(sizes: Mapping[str, Array], rows: Iterable[ToleranceRow]) -> di
                 side * nominal if row.relative else np.full(len(nominal), side) for side in (row.lower, row.upper)
             )
         low, high = nominal + lower, nominal + upper
-        least, most = _reached(row, nominal, low, high) if row.distribution == "normal" else (low, high)
-        limits[row.dimension] = LimitArrays(low, high, least, most, (lower < upper) | (abs(lower) > 0))
+        shift, own_sd = process_of(row, nominal, low, high, _sides(row, sizes, low, high, output))
+        mean = (low + high) / 2 + shift
+        sd = np.broadcast_to((high - low) / (2 * row.limits_sigma) if own_sd is None else own_sd, low.shape)
+        least, most = _reached(row, low, high, mean, sd)
+        limits[row.dimension] = LimitArrays(low, high, mean, sd, least, most, (lower < upper) | (abs(lower) > 0))
     return limits
 
 
-def _reached(row: ToleranceRow, nominal: Array, low: Array, high: Array) -> tuple[Array, Array]:
-    """Return the least and greatest of the limits and of a normal's values."""
-    unit = nominal if row.relative else np.ones(1)
-    mean = (low + high) / 2 + row.mean_shift * unit
-    far = FAR * ((high - low) / (2 * row.limits_sigma) if row.sd is None else row.sd * abs(unit))
-    return np.minimum(low, mean - far), np.maximum(high, mean + far)
+def _reached(row: ToleranceRow, low: Array, high: Array, mean: Array, sd: Array) -> tuple[Array, Array]:
+    """Return the least and greatest of the limits and of what a normal or measured process produces."""
+    if row.distribution == "measured" and row.sample is not None:
+        first, last = measured_ends(row.sample)
+    elif row.distribution == "normal":
+        first, last = -FAR, FAR
+    else:
+        return low, high
+    return np.minimum(low, mean + first * sd), np.maximum(high, mean + last * sd)
 
 
 def beyond_doubt(
@@ -190,22 +227,34 @@ def _bounds(name: str) -> tuple[float, float]:
 
 
 def _beyond_bounds(limits: Mapping[str, Limits]) -> Iterator[LimitsProblem]:
-    """Yield the dimensions whose own limits leave the valid region."""
+    """Yield the dimensions whose own limits, or measured values, leave the valid region."""
     for name, limit in limits.items():
-        low, high = _bounds(name)
-        slack = _ROUNDING * (abs(limit.low) + abs(limit.high))
-        if limit.low <= low + slack:
-            yield LimitsProblem(kind="impossible", dimension=name, detail="0")
-        elif limit.high > high + slack:
-            yield LimitsProblem(
-                kind="impossible", dimension=name, detail="180°" if name == "disk_cone_angle" else "0.5"
-            )
+        (low, high), (least, most) = _bounds(name), _ends_of(limit)
+        slack = _ROUNDING * (abs(least) + abs(most))
+        if least > low + slack and most <= high + slack:
+            continue
+        detail = "0" if least <= low + slack else "180°" if name == "disk_cone_angle" else "0.5"
+        if limit.low > low + slack and limit.high <= high + slack:
+            detail += " with what its sample shows"
+        yield LimitsProblem(kind="impossible", dimension=name, detail=detail)
+
+
+def _ends_of(limits: Limits) -> tuple[float, float]:
+    """Smallest and largest value that must make a part: the limits, and what a measured process produces.
+
+    A measured shape ends where its sample can tell nothing more, so that no far tail of it is cut.
+    """
+    if limits.distribution != "measured" or limits.sample is None:
+        return limits.low, limits.high
+    first, last = measured_ends(limits.sample)
+    mean, sd = limits.mean, limits.standard_deviation
+    return min(limits.low, mean + first * sd), max(limits.high, mean + last * sd)
 
 
 def _ends(variant: Variant, limits: Mapping[str, Limits], name: str) -> tuple[float, float]:
-    """Smallest and largest limit of a dimension that may be exact."""
+    """Smallest and largest value that must make a part, of a dimension that may be exact."""
     if name in limits:
-        return limits[name].low, limits[name].high
+        return _ends_of(limits[name])
     return variant.dimensions[name], variant.dimensions[name]
 
 
@@ -259,6 +308,10 @@ def distribution_of(limits: Limits) -> Distribution:
         return Uniform(limits.low, limits.high)
     if limits.distribution == "triangular":
         return Triangular(limits.low, limits.high)
+    if limits.distribution == "measured":
+        if limits.sample is None:
+            raise LookupError("a measured distribution without its sample")
+        return Placed(measured_shape(limits.sample), limits.mean, limits.standard_deviation)
     if limits.distribution == "truncated normal":
         return TruncatedNormal(limits.mean, limits.standard_deviation, limits.low, limits.high)
     if limits.cut:
