@@ -33,6 +33,7 @@ SAID = {
     "Contributions": "A2",
     "Trace": "A2",
     "Sensitivity": "A3",
+    "Tolerances used": "A4",
     "Sections": "A3",
     "Strength": "A6",
     "Submission": "A1",

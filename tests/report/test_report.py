@@ -23,8 +23,8 @@ from flexlash.tolerance.distribution_curves import CURVE_SCORES
 
 SHEETS = [
     "Summary", "Results", "Explorer", "Compare", "Ranking", "Contributions", "Trace", "Sensitivity",
-    "Sections", "Strength", "Findings", "Submission", "Materials", "Tolerances", "Settings", "About", "Curves",
-    "Compared", "Inputs", "Trace steps", "Carried",
+    "Tolerances used", "Sections", "Strength", "Findings", "Submission", "Materials", "Tolerances", "Settings",
+    "About", "Curves", "Compared", "Inputs", "Trace steps", "Carried",
 ]  # fmt: skip
 
 _FINEST_UNIT = 1e-8

@@ -34,6 +34,7 @@ SHEETS = {
     "Trace": "One variant worked through in formulas, from its inputs to backlash and stress; inputs can be changed.",
     "Trace steps": "The sums over points and the search behind single lines of Trace.",
     "Sensitivity": "Which dimension causes the spread: tornado of the worst variant, shares of all.",
+    "Tolerances used": "Limits, mean and scatter of every dimension of every variant, and where these are from.",
     "Sections": "Where along the part the nominal backlash arises.",
     "Strength": "Stress in each section, when it yields or buckles, how stiff the part is.",
     "Elasticity": "The formula beside two-dimensional elasticity.",
@@ -235,6 +236,7 @@ def _of_large(extent: Extent) -> dict[str, str]:
     worst = f"the {extent.words} variants" if extent.is_part else f"all {grouped(extent.total)} variants"
     texts = {
         "Sensitivity": f"Which dimension causes the spread: tornado of the worst variant, shares of {worst}.",
+        "Tolerances used": f"Limits, mean and scatter of every dimension of {worst}, and where these are from.",
         "Findings": f"What was found: each rule with its mend and count, then the first {MOST_FINDINGS} findings.",
         "Submission": f"Sheet Variants as read, of {worst}, worst first behind their row numbers.",
     }

@@ -30,6 +30,7 @@ from flexlash.report.summary.summary_sheet import write_summary
 from flexlash.report.trace.inputs import INPUTS_NOTE, stored_inputs
 from flexlash.report.trace.trace_sheet import trace_sheet, write_trace
 from flexlash.report.trace.trace_steps import STEPS
+from flexlash.report.used_sheet import write_used
 
 __all__ = ["report_bytes"]
 
@@ -57,6 +58,7 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     write_contributions(book, outcome, drawn, compared)
     trace = trace_sheet(book)
     write_sensitivity(book, outcome, drawn)
+    write_used(book, outcome, drawn)
     write_sections(book, drawn, extent)
     write_strength(book, drawn, extent)
     if "elasticity_windup_rad" in outcome.results.columns:
