@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import openpyxl
+from measured_parts import HEADERS, measured_rows, samples_of
 from openpyxl.packaging.custom import StringProperty
 from small_workbook import MAIN, OLE2, WORKBOOK, archive_of, parts_of
 
@@ -249,6 +250,20 @@ def _elastic(folder: Path) -> Made:
     return _file(folder, _text(rows), elasticity=True)
 
 
+def _measured(folder: Path) -> Made:
+    """Write samples of which none is as it should be."""
+    rows = [HEADERS, *measured_rows(), *measured_rows(15, "few"), *measured_rows(3, "fewer"), *measured_rows(6, "rest")]
+    rows += [["coarse", number, None, 1.6, None] for number in range(1, 13)]
+    rows += [["round", number, None, wall, None] for number, wall in enumerate([1.6, 1.61] * 20)]
+    rows += [["above", number, None, wall, None] for number, wall in enumerate([0.02, -0.01, 0.0, -0.015, 0.01])]
+    rows[5][3], rows[6][0], rows[7][2], rows[9][1] = 16.07, "wal", "deviation", 8
+    names = ("wall", "few", "fewer", "coarse", "round", "above")
+    variants = _numbered(*({"tolerance_class": name} for name in names))
+    tolerances = samples_of(*((name, "wall_thickness", name) for name in names))
+    sheets = {"Variants": _lines(variants), "Tolerances": tolerances, "Measurements": rows}
+    return _book(folder, {**sheets, "Correlations": [["of prices", 0.3]]})
+
+
 def _mended(folder: Path) -> Made:
     """Write a table and what was mended in it."""
     original = _file(folder, _text([CUP]))[0]
@@ -289,6 +304,7 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "overlooked": _overlooked,
     "percentages": _percentages,
     "elastic": _elastic,
+    "measured": _measured,
     "numbers as text": lambda folder: _book(folder, {"Variants": _lines([CUP | {"torque_Nm": "800"}])}),
     "report": _marked("flexlash", "report"),
     "no report": lambda folder: (_file(folder, _text([CUP]))[0], {"from_report": True}),

@@ -596,6 +596,38 @@ CATALOGUE = _rules(
         "memory, not of the file.",
     ),
     (
+        "E340",
+        "too few measured parts",
+        "{place}: sample {value} has {found} of {dimension}; at least 5 are required.",
+        "Measure more parts, or enter what is known of the process as Standard deviation or Cp instead.",
+        "So few parts tell next to nothing of how a dimension scatters: of two, the true standard deviation may be "
+        "thirty times what was found. Rows whose class uses the sample are not computed.",
+    ),
+    (
+        "E341",
+        "measured values without scatter",
+        "{place}: all {found} of {dimension} in sample {value} are {detail}; values that differ are required.",
+        "Measure with a finer gauge; for an exact dimension enter 0 for both deviations and no sample.",
+        "Parts that scatter less than a gauge shows all measure the same. That says how coarse the gauge is, and "
+        "nothing of the process.",
+    ),
+    (
+        "E342",
+        "values and deviations in one sample",
+        '{place} {name} = "{value}" ({detail}), but most rows of sample {found} hold a {other}.',
+        "Write the same under Use as in every row of a sample; blank means value.",
+        "The rows of a sample are parts of one process and are worked up together: either all hold what was measured, "
+        "or all hold what was measured above the entered value.",
+    ),
+    (
+        "E343",
+        "deviations taken for values",
+        "{place}: {found} values of {name} in sample {other} are not above 0 ({detail}), as only deviations can be.",
+        "Write deviation under Use as in every row of the sample, or mend the values.",
+        "A dimension of a part is greater than 0. What was measured above and below the entered value is a deviation, "
+        "which flexlash must be told.",
+    ),
+    (
         "W401",
         "disk does not meet the wall",
         "{place} {name} = {value} mm differs from the mean radius {other} mm.",
@@ -882,6 +914,39 @@ CATALOGUE = _rules(
         "measured: often a deviation in metres in a column of millimetres.",
     ),
     (
+        "W445",
+        "few measured parts",
+        "{place}: sample {value} has only {found} of {dimension}; the standard deviation may be {detail} of it.",
+        "Measure at least 20 parts, better 50.",
+        "What a few parts tell of a process is uncertain. The report shows the interval that their number leaves "
+        "beside every figure that hangs on it.",
+    ),
+    (
+        "W446",
+        "measured value far from the others",
+        "{place} {name} = {value}: the other values of sample {other} lie within {detail}.",
+        "Compare with the record of the measurement; mend the cell, or leave the value if the part is as it says.",
+        "One slip of a point, a unit or two digits makes the standard deviation many times what the process has. A "
+        "value is told when it lies more than eight standard deviations from the median, as the middle half of the "
+        "sample shows them. It is used as it stands.",
+    ),
+    (
+        "W452",
+        "sheet without a table",
+        "{place}: this sheet has the name of an entry sheet, but no header row of {other}; nothing of it is used.",
+        "Copy the header row of the template above the data (flexlash template --with), or rename the sheet.",
+        "Sheets Measurements and Correlations are read wherever they are. A sheet of such a name that holds something "
+        "else does no harm.",
+    ),
+    (
+        "W453",
+        "sample resembles another",
+        '{place} {name} = "{value}": no class uses this sample.',
+        "Mend the spelling in every row of the sample, or delete these rows.",
+        "Rows of a misspelt sample are missing from the one that was meant. A sample with a name of its own that no "
+        "class uses is no fault.",
+    ),
+    (
         "I501",
         "unit converted",
         "{place}: {name} is given in {value} and was converted to {unit}.",
@@ -1011,5 +1076,20 @@ CATALOGUE = _rules(
         "{file} is a table of results written by flexlash, not a submission; it was skipped.",
         "Submit the filled template or table from which it was computed.",
         "A table whose header row is that of Results holds what flexlash computed, not what it computes from.",
+    ),
+    (
+        "I529",
+        "sample not used",
+        "{place}: no row of Tolerances uses sample {value}.",
+        "Nothing to do; to use it, write its name under Sample in a row of Tolerances.",
+        "Measured parts take part in the calculation only where a tolerance class names their sample.",
+    ),
+    (
+        "I530",
+        "part measured more than once",
+        "{place}: part {value}{found} stands more than once in sample {other} ({detail}); each row counts as a part.",
+        "Nothing to do if these are different parts; else keep one row of each part.",
+        "Measuring one part again tells of the gauge, not of the process: the sample looks larger than it is, and its "
+        "interval narrower.",
     ),
 )

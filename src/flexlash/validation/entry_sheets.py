@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from flexlash.reading.raw import RawSheet, Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.cell_addresses import CellAddress
-from flexlash.schema.columns import ENTRY_SHEETS, columns_of
+from flexlash.schema.columns import ENTRY_SHEETS, OPTIONAL_SHEETS, columns_of
 from flexlash.schema.spellings import closest, plain
-from flexlash.validation.headers import count_headings
+from flexlash.validation.headers import known_headings
 from flexlash.validation.ledger import Ledger
 
-__all__ = ["entry_sheets", "report_other_names", "report_second_tables", "sheet_names"]
+__all__ = ["entry_sheets", "report_other_names", "report_second_tables", "sheet_names", "with_tables"]
 
 _RESEMBLING = 0.75
 """Likeness of names from which on a sheet with headers of a missing one is taken for it."""
 
 _TELLING = 4
 """Headers by which a sheet is recognised whatever its name."""
+
+_OWN = {
+    "Variants": frozenset({"variant", "material", "flexspline_type"}),
+    "Measurements": frozenset({"sample"}),
+    "Correlations": frozenset({"dimension_1", "dimension_2", "correlation"}),
+}
+"""Headers that tell sheets apart which share the others: dimensions stand in Variants and in Measurements."""
+
+_FEWEST = 2
+"""Headers without which a sheet holds no table."""
 
 _LISTED = 5
 
@@ -74,11 +85,30 @@ def _meant(submission: Submission, schema: str) -> list[str]:
     if submission.kind != "workbook":
         return []
     others = [name for name in submission.sheets if plain(name) not in map(plain, ENTRY_SHEETS)]
-    counts = {name: count_headings(submission.sheets[name], schema) for name in others}
-    telling = min(_TELLING, len(columns_of(schema)))
-    sure = [name for name in others if counts[name] >= telling]
+    counts = {name: _headings(submission.sheets[name], schema) for name in others}
+    sure = [name for name in others if counts[name] >= _telling(schema)]
     like = closest(schema, [name for name in others if counts[name] > 1], _RESEMBLING)
     return sure or [like] * bool(like)
+
+
+def _telling(schema: str) -> int:
+    """Return how many headers tell a sheet of another name; of an optional one those of its own are among them."""
+    return _TELLING - 1 if schema in OPTIONAL_SHEETS else min(_TELLING, len(columns_of(schema)))
+
+
+def _headings(sheet: RawSheet, schema: str) -> int:
+    """Return how many headers of a schema a sheet has, none where they belong to a table of another kind.
+
+    Dimensions beside a sample, without variants and materials, are measurements; what has neither, as a table that lost
+    its first columns, may be variants alone.
+    """
+    known = known_headings(sheet, schema)
+    if schema == "Variants" and not known & _OWN[schema]:
+        return 0 if "sample" in known_headings(sheet, "Measurements") else len(known)
+    if schema in OPTIONAL_SHEETS:
+        is_own = known >= _OWN[schema] and not known_headings(sheet, "Variants") & _OWN["Variants"]
+        return len(known) if is_own else 0
+    return len(known)
 
 
 def report_other_names(submission: Submission, present: dict[str, RawSheet], ledger: Ledger) -> set[str]:
@@ -94,7 +124,7 @@ def report_other_names(submission: Submission, present: dict[str, RawSheet], led
         read = {sheet.name for sheet in present.values()}
         if meant := [name for name in _meant(submission, schema) if name not in read]:
             ledger.add("E127", sheet=meant[0], **_several(meant, schema))
-            ledger.everything = True
+            ledger.everything |= schema not in OPTIONAL_SHEETS
             unclear.add(schema)
     return unclear
 
@@ -106,6 +136,23 @@ def report_second_tables(submission: Submission, present: dict[str, RawSheet], l
         if name in read or submission.kind != "workbook":
             continue
         for schema in present:
-            if count_headings(sheet, schema) >= min(_TELLING, len(columns_of(schema))):
+            if _headings(sheet, schema) >= _telling(schema):
                 ledger.add("W428", sheet=name, cell=CellAddress(row=min(sheet.rows), column=1), other=schema)
                 break
+
+
+def with_tables(sheets: Mapping[str, RawSheet], ledger: Ledger) -> dict[str, RawSheet]:
+    """Return the entry sheets without optional ones that have no more than the name of one, with a warning of each.
+
+    Before these sheets were read, engineers could have sheets of their own under such names. A file that was given as
+    a table is one.
+    """
+    left = dict(sheets)
+    for schema in OPTIONAL_SHEETS:
+        sheet = sheets.get(schema)
+        if sheet and sheet.dialect is None and len(known_headings(sheet, schema)) < _FEWEST:
+            del left[schema]
+            if sheet.rows:
+                cell = CellAddress(row=min(sheet.rows), column=1)
+                ledger.add("W452", sheet=sheet.name, cell=cell, other=schema)
+    return left

@@ -17,7 +17,7 @@ from flexlash.validation.likely_headers import likely_headers
 from flexlash.validation.other_headers import radius_of_diameter, tolerance_columns
 from flexlash.validation.validated import Heading
 
-__all__ = ["STATUS_HEADER", "closest", "count_headings", "find_headings", "plain"]
+__all__ = ["STATUS_HEADER", "closest", "count_headings", "find_headings", "known_headings", "plain"]
 
 STATUS_HEADER = "Row status"
 """Header of the template's own formula column, which is never data."""
@@ -62,7 +62,12 @@ def find_headings(sheet: RawSheet, schema: str, ledger: Ledger) -> Heading | Non
 
 def count_headings(sheet: RawSheet, schema: str) -> int:
     """Return how many headers of a schema stand in one of a sheet's first rows."""
-    return max(_Recogniser(sheet, schema, Ledger("")).known_by_row().values(), default=0)
+    return len(known_headings(sheet, schema))
+
+
+def known_headings(sheet: RawSheet, schema: str) -> set[str]:
+    """Return the keys of a schema whose headers stand in that of a sheet's first rows which has most of them."""
+    return max(_Recogniser(sheet, schema, Ledger("")).keys_by_row().values(), key=len, default=set())
 
 
 class _Recogniser:
@@ -96,8 +101,14 @@ class _Recogniser:
 
     def known_by_row(self) -> dict[int, int]:
         """Return how many columns each of the first rows names; a header that stands there twice counts once."""
+        return {number: len(keys) for number, keys in self.keys_by_row().items()}
+
+    def keys_by_row(self) -> dict[int, set[str]]:
+        """Return which columns each of the first rows names."""
         rows = {number: cells for number, cells in self.sheet.rows.items() if number <= LAST_HEADER_ROW}
-        return {number: len(set(map(self._known, cells.values())) - {None}) for number, cells in rows.items()}
+        return {
+            number: {key for cell in cells.values() if (key := self._known(cell))} for number, cells in rows.items()
+        }
 
     def _known(self, cell: RawValue) -> str | None:
         """Return the column that a cell names as its header, None for another."""

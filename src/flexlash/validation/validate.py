@@ -9,7 +9,7 @@ from typing import Any
 
 import polars as pl
 
-from flexlash.reading.raw import Submission
+from flexlash.reading.raw import RawSheet, Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import columns_of
@@ -17,7 +17,12 @@ from flexlash.schema.spellings import affordable, misspelt, plain, spelt_alike, 
 from flexlash.schema.variant import Material, Settings, ToleranceRow
 from flexlash.validation.cell_values import is_no_value, no_value_facts
 from flexlash.validation.csv_findings import report_dialect
-from flexlash.validation.entry_sheets import entry_sheets, report_other_names, report_second_tables
+from flexlash.validation.entry_sheets import (
+    entry_sheets,
+    report_other_names,
+    report_second_tables,
+    with_tables,
+)
 from flexlash.validation.hidden_content import report_hidden_content
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.materials_and_classes import (
@@ -26,11 +31,13 @@ from flexlash.validation.materials_and_classes import (
     standard_class,
     tolerance_classes_of,
 )
+from flexlash.validation.measured_samples import Samples, measured_samples
 from flexlash.validation.row_checks import check_cells, check_relations
 from flexlash.validation.settings_table import settings_of
 from flexlash.validation.template_versions import TEMPLATE_VERSION, check_version
 from flexlash.validation.typed_columns import tabulate
 from flexlash.validation.unused_classes import report_unused_classes
+from flexlash.validation.used_samples import report_used_samples
 from flexlash.validation.validated import Table, Validated
 from flexlash.validation.variant_rows import VariantRows
 
@@ -55,16 +62,11 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     sheets = entry_sheets(submission, limits or ReadingLimits())
     unclear = report_other_names(submission, sheets, ledger)
     report_second_tables(submission, sheets, ledger)
-    tables: dict[str, Table] = {}
-    for schema, sheet in sheets.items():
-        table = tabulate(sheet, schema, ledger)
-        if table is not None:
-            report_hidden_content(sheet, table, ledger)
-            check_cells(table, ledger)
-            tables[schema] = table
+    sheets = with_tables(sheets, ledger)
+    tables, samples = _tables(sheets, ledger)
     for sheet in sheets.values():
         report_dialect(sheet, ledger)
-    used = _used(submission, sheets.keys() | unclear, tables, ledger)
+    used = _used(submission, sheets.keys() | unclear, tables, samples, ledger)
     variants = tables.get("Variants")
     if variants is not None:
         _check_rows(variants, used, ledger)
@@ -78,12 +80,41 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
         unit_mistakes=ledger.unit_mistakes,
         table=variants,
         tolerances=tables.get("Tolerances"),
+        measurements=tables.get("Measurements"),
+        measured=samples.dimensions,
         variants=VariantRows(frame=sound, materials=used.materials, settings=used.settings),
         classes=used.classes,
         materials=used.materials,
         settings=used.settings,
         header_rows={schema: table.heading.row for schema, table in tables.items()},
     )
+
+
+def _tables(sheets: Mapping[str, RawSheet], ledger: Ledger) -> tuple[dict[str, Table], Samples]:
+    """Return the typed tables of the entry sheets that have one, and what was measured."""
+    tables: dict[str, Table] = {}
+    samples = Samples()
+    for schema, sheet in sheets.items():
+        if schema == "Measurements":
+            # What is wrong there spoils what is taken from it alone.
+            own = Ledger(ledger.file)
+            samples = measured_samples(_typed(sheet, schema, own), own)
+            ledger.findings += own.findings
+            table = samples.table
+        else:
+            table = _typed(sheet, schema, ledger)
+        if table is not None:
+            tables[schema] = table
+    return tables, samples
+
+
+def _typed(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
+    """Return a typed table whose cells were checked one by one, None where there is no header row."""
+    table = tabulate(sheet, schema, ledger)
+    if table is not None:
+        report_hidden_content(sheet, table, ledger)
+        check_cells(table, ledger)
+    return table
 
 
 def _sound(frame: pl.DataFrame, faulty: Collection[int]) -> pl.DataFrame:
@@ -101,7 +132,13 @@ class _Used:
     settings: Settings
 
 
-def _used(submission: Submission, present: Collection[str], tables: Mapping[str, Table], ledger: Ledger) -> _Used:
+def _used(
+    submission: Submission,
+    present: Collection[str],
+    tables: Mapping[str, Table],
+    samples: Samples,
+    ledger: Ledger,
+) -> _Used:
     """Return materials, tolerance classes and settings of the submission, else the built-in ones."""
     is_workbook = submission.kind == "workbook"
     materials = materials_of(tables["Materials"], ledger) if "Materials" in tables else {}
@@ -116,6 +153,7 @@ def _used(submission: Submission, present: Collection[str], tables: Mapping[str,
         classes["standard"] = standard_class()
         if is_workbook:
             ledger.add("I505", value="rows for tolerance class standard", other="class")
+    report_used_samples(samples, classes, tables.get("Tolerances"), ledger)
     settings = settings_of(tables["Settings"], ledger) if "Settings" in tables else Settings()
     return _Used(materials=materials, classes=classes, settings=settings)
 

@@ -1,0 +1,87 @@
+"""What tolerance classes take of Measurements: samples that are too small, without scatter, spoilt or left over."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from flexlash.schema.columns import DIMENSIONS, columns_of
+from flexlash.schema.entry_words import inner_name
+from flexlash.schema.spellings import affordable, misspelt, plain
+from flexlash.schema.variant import MeasuredDimension, ToleranceRow
+from flexlash.validation.ledger import Ledger
+from flexlash.validation.measured_samples import Samples
+from flexlash.validation.validated import Table
+
+__all__ = ["FEWEST_PARTS", "report_used_samples"]
+
+FEWEST_PARTS = 5
+"""Fewest values of a dimension that a class may use."""
+
+
+def report_used_samples(
+    samples: Samples, classes: Mapping[str, Sequence[ToleranceRow]], tolerances: Table | None, ledger: Ledger
+) -> None:
+    """Report what classes, by plain name and with inherited rows, use of the samples and cannot; and what is not used.
+
+    A class is spoilt by what it inherits, too, but a row is told once, where it stands.
+    """
+    told: dict[tuple[int, str], bool] = {}
+    for key, rows in classes.items():
+        for row in rows:
+            if row.sample is None or tolerances is None:
+                continue
+            place = (row.row, row.dimension)
+            if place not in told:
+                told[place] = _report_scatter(row.sample, row, tolerances, ledger)
+            if told[place]:
+                ledger.spoil("class", key, tolerances.sheet, row.row)
+            if samples.table is not None:
+                for fault in samples.faulty_rows(row.sample.sample, row.dimension):
+                    ledger.spoil("class", key, samples.table.sheet, fault)
+    _report_unused(samples, tolerances, ledger)
+
+
+def _report_scatter(sample: MeasuredDimension, row: ToleranceRow, tolerances: Table, ledger: Ledger) -> bool:
+    """Require that a dimension was measured on enough parts and scatters; return whether it does not."""
+    count, column = len(sample.values), DIMENSIONS[row.dimension]
+    facts: dict[str, Any] = {"value": sample.sample, "dimension": inner_name(column), "column": "sample"}
+    facts |= {"sheet": tolerances.sheet, "cell": tolerances.address(row.row, "sample")}
+    if count < FEWEST_PARTS:
+        found = f"{count} value{'s' * (count > 1)}"
+        ledger.add("E340", found=found, **facts)
+        return True
+    if min(sample.values) == max(sample.values):
+        unit = "" if column.unit in {"", "-"} else f" {column.unit}"
+        detail = f"{sample.values[0] / column.si_unit.si:.10g}{unit}"
+        ledger.add("E341", found=f"{count} values", detail=detail, **facts)
+        return True
+    return False
+
+
+def _report_unused(samples: Samples, tolerances: Table | None, ledger: Ledger) -> None:
+    """Tell samples that no row of Tolerances names; one of nearly the same name as a sample in use is a warning."""
+    if samples.table is None:
+        return
+    entered = (
+        [] if tolerances is None else tolerances.frame["sample"].drop_nulls().unique(maintain_order=True).to_list()
+    )
+    used = {plain(name): name for name in reversed(entered)}
+    known = {name: samples.names[name] for name in used if name in samples.names}
+    column = columns_of("Measurements")["sample"]
+    for number, (name, row) in enumerate(_unused(samples, used)):
+        meant = misspelt(samples.names[name], known) if known and number < affordable(known) else None
+        ledger.add(
+            "W453" if meant else "I529",
+            sheet=samples.table.sheet,
+            cell=samples.table.address(row, "sample"),
+            column="sample",
+            name=column.name,
+            value=samples.names[name],
+            suggestion=meant or "",
+        )
+
+
+def _unused(samples: Samples, used: Mapping[str, str]) -> Iterator[tuple[str, int]]:
+    """Yield plain name and first row of each sample that is not used."""
+    return ((name, rows[0]) for name, rows in samples.rows.items() if name not in used)
