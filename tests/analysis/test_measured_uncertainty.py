@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 import pytest
 from grids import for_each
+from scipy import stats
 from toleranced import every_number, plan, row
 
 from flexlash.analysis.measured_uncertainty import with_measured_uncertainty
@@ -154,3 +155,50 @@ def test_lots_do_not_change_it():
     """What lots share is no matter of how many parts were measured."""
     one = cup()
     assert interval(told(replace(one, between=frozenset({"youngs_modulus"})))[0]) == interval(told(one)[0])
+
+
+def together(correlation, count, limit=1.0):
+    """Return a sum of two dimensions measured on the same parts, with exactly this correlation."""
+    first, second = np.random.default_rng(7).standard_normal((2, count))
+    first = (first - first.mean()) / first.std(ddof=1)
+    second -= second.mean() + first * (first @ second) / (first @ first)
+    second = correlation * first + (1 - correlation**2) ** 0.5 * second / second.std(ddof=1)
+    limits = {}
+    for name, values, sd in (("cylinder_length", first, 1.0), ("wall_thickness", second, 2.0)):
+        sample = MeasuredDimension(sample="s", dimension=name, values=tuple(sd * values), parts=tuple(range(count)))
+        limits[name] = Limits(low=-4.0 * sd, high=4.0 * sd, sd=sd, sample=sample)
+    sd = (1.0 + 4.0 + 4.0 * correlation) ** 0.5
+    one = row(lambda d: 10.0 + d["cylinder_length"] + d["wall_thickness"], dict.fromkeys(limits, 0.0), limits, 10.0)
+    tied = (("cylinder_length", "wall_thickness", correlation),)
+    return replace(one, upper_limit=10.0 + limit * sd, correlation=tied), sd
+
+
+@for_each("case", [(0.5, 40, 3.0), (-0.6, 40, 2.0), (0.9, 15, 3.0), (0.3, 200, 4.0)])
+def test_two_dimensions_of_the_same_parts_are_one_sample_of_their_sum(case):
+    """Where the output is the sum of two dimensions measured together, the intervals are those of a sample of sums."""
+    correlation, count, score = case
+    one, sd = together(correlation, count, score)
+    low, high, least, most = interval(told(one)[0])
+    root = count**0.5
+    exact = stats.nct.ppf([0.025, 0.975], count - 1, root * 3.0) / root
+    assert [(end - 10.0) / sd for end in (least, most)] == pytest.approx(exact, abs=0.05 * (exact[1] - exact[0]))
+    for end, share in ((high, 0.975), (low, 0.025)):
+        assert stats.nct.cdf(root * score, count - 1, root * stats.norm.isf(end)) == pytest.approx(share, abs=0.008)
+
+
+def test_an_entered_correlation_is_taken_as_known():
+    """A correlation that was entered instead of the measured one leaves nothing open itself."""
+    one, _ = together(0.5, 40, 3.0)
+    entered = replace(one, correlation=(("cylinder_length", "wall_thickness", 0.51),))
+    measured, known = interval(told(one)[0]), interval(told(entered)[0])
+    assert known[3] - known[2] < 0.97 * (measured[3] - measured[2])
+
+
+def test_correlations_keep_to_what_the_others_allow():
+    """The end of a measured correlation's interval that contradicts another one is drawn back to where it does not."""
+    one, _ = together(0.95, 15, 3.0)
+    third = Limits(low=-4.0, high=4.0, sd=1.0)
+    limits = {"torque": third, **one.limits}
+    ties = (*one.correlation, ("torque", "cylinder_length", 0.8), ("torque", "wall_thickness", 0.94))
+    tied = replace(one, limits=limits, nominal=dict.fromkeys(limits, 0.0), correlation=ties)
+    assert 0 < interval(told(tied)[0])[0] < told(tied)[0].numbers["probability_over_limit"]

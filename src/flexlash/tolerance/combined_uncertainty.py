@@ -19,7 +19,7 @@ from flexlash.schema.arrays import Array
 from flexlash.tolerance.digital_nets import scrambled_net
 from flexlash.tolerance.sample_uncertainty import CONFIDENCE
 
-__all__ = ["OutputNumbers", "Parameter", "percentile_interval", "probability_interval", "standard_scores"]
+__all__ = ["OutputNumbers", "Parameter", "Product", "percentile_interval", "probability_interval", "standard_scores"]
 
 _DRAWS = 1 << 13
 """Sets of parameters: the ends of an interval are then known to a hundredth of its width."""
@@ -66,6 +66,19 @@ class Parameter:
         return np.where(self.moves < 0, self.moves * (low / self.low), self.moves * (high / self.high))
 
 
+@dataclass(frozen=True, kw_only=True)
+class Product:
+    """Two inputs whose covariance has a part in the output: their standard deviations and their correlation.
+
+    All three are among the parameters; `correlation` is the one of which `estimate` is the value as estimated.
+    """
+
+    first: Parameter
+    second: Parameter
+    correlation: Parameter
+    estimate: float
+
+
 @lru_cache(maxsize=32)
 def standard_scores(count: int) -> Array:
     """Return evenly spread standard normal scores, (count, sets); the same whenever they are asked for."""
@@ -74,13 +87,16 @@ def standard_scores(count: int) -> Array:
     return np.asarray(scores)
 
 
-def probability_interval(output: OutputNumbers, parameters: Sequence[Parameter]) -> tuple[float, float]:
+def probability_interval(
+    output: OutputNumbers, parameters: Sequence[Parameter], products: Sequence[Product] = ()
+) -> tuple[float, float]:
     """Return the ends of the interval of the probability above a limit that parameters leave.
 
     Equation: z = (z₀ + Σ δᵢ) T + Σ εⱼ over many sets of parameters, T = 1/√(1 + Σ rⱼ); δᵢ the change of the score z by
-        a shift alone, rⱼ that of the variance by a scatter alone, εⱼ what that changes z beside T. Ends: P = Φ(−z) at
-        the 2.5 % and 97.5 % quantiles of z.
-    Arguments: the output with parameters as estimated, and with each at its ends.
+        a shift alone, rⱼ that of the variance by a scatter alone or by a covariance, εⱼ what that changes z beside T.
+        Ends: P = Φ(−z) at the 2.5 % and 97.5 % quantiles of z.
+    Arguments: the output with parameters as estimated, and with each at its ends; products of them, none for inputs
+        that are independent or whose correlation is known.
     Valid: exact (noncentral t) for one sample of a normal process and an output that is linear in it; with several, and
         beside what is known, the sum of normals is the model of how they act together. A probability that cannot be
         told from 0 or 1 is 0 or 1.
@@ -90,7 +106,7 @@ def probability_interval(output: OutputNumbers, parameters: Sequence[Parameter])
     shift = np.zeros(_DRAWS)
     for one in _shifts(parameters):
         shift += one.between(one.at_low.score - score, one.at_high.score - score)
-    scale, bent = _scale(output, parameters), np.zeros(_DRAWS)
+    scale, bent = _scale(output, parameters, products), np.zeros(_DRAWS)
     for one in _scatters(parameters):
         low, high = (end.score - score / math.sqrt(_square(output, end)) for end in (one.at_low, one.at_high))
         bent += one.between(low, high)
@@ -99,7 +115,9 @@ def probability_interval(output: OutputNumbers, parameters: Sequence[Parameter])
     return low, high
 
 
-def percentile_interval(output: OutputNumbers, parameters: Sequence[Parameter]) -> tuple[float, float]:
+def percentile_interval(
+    output: OutputNumbers, parameters: Sequence[Parameter], products: Sequence[Product] = ()
+) -> tuple[float, float]:
     """Return the ends of the interval of a percentile that parameters leave, in the unit of the output.
 
     Equation: q = q₀ + Σ δᵢ + (q₀ − m₀)(√(1 + Σ rⱼ) − 1) + Σ εⱼ, as for a probability; m₀ the mean
@@ -108,7 +126,7 @@ def percentile_interval(output: OutputNumbers, parameters: Sequence[Parameter]) 
     Source: as for a probability.
     """
     found, reach = output.percentile, output.percentile - output.mean
-    total = reach * (_scale(output, parameters) - 1)
+    total = reach * (_scale(output, parameters, products) - 1)
     for one in _shifts(parameters):
         total += one.between(one.at_low.percentile - found, one.at_high.percentile - found)
     for one in _scatters(parameters):
@@ -133,12 +151,28 @@ def _square(output: OutputNumbers, end: OutputNumbers) -> float:
     return max((end.sd / output.sd) ** 2, _LEAST_SQUARE)
 
 
-def _scale(output: OutputNumbers, parameters: Sequence[Parameter]) -> Array:
+def _scale(output: OutputNumbers, parameters: Sequence[Parameter], products: Sequence[Product]) -> Array:
     """Return the output's standard deviation over that with all parameters as estimated, for each set."""
     square = np.ones(_DRAWS)
     for one in _scatters(parameters):
         square += one.between(_square(output, one.at_low) - 1, _square(output, one.at_high) - 1)
+    for product in products:
+        square += _beyond_sum(output, product)
     return np.sqrt(np.maximum(square, _LEAST_SQUARE))
+
+
+def _beyond_sum(output: OutputNumbers, product: Product) -> Array:
+    """Return what a covariance does to the variance beside the sum of what its three factors do one at a time.
+
+    Equation: c (k₁ k₂ t − (k₁ − 1) − (k₂ − 1) − (t − 1) − 1), kᵢ the standard deviations over those estimated, t the
+        correlation likewise, c the covariance's part of the variance
+    """
+    one, correlation = product.estimate, product.correlation
+    rise = _square(output, correlation.at_high) - _square(output, correlation.at_low)
+    part = rise / (correlation.high - correlation.low) * one
+    first, second = (np.sqrt(np.maximum(1 + sd.moves, 0.0)) for sd in (product.first, product.second))
+    turned = 1 + correlation.moves / one
+    return np.asarray(part * (first * second * turned - first - second - turned + 2))
 
 
 def _ends(values: Array) -> tuple[float, float]:
