@@ -1,6 +1,7 @@
 """What a row holds in memory between the stages: as many numbers as there are, and hardly anything beside them."""
 
 import random
+from dataclasses import replace
 from functools import partial
 
 import pytest
@@ -45,7 +46,8 @@ def _held_by_stage(count, measured):
     assert len(nominal.computed) == count
     first = next(iter(nominal.computed.values()))
     alike = row(partial(backlash, "cup"), first.variant.dimensions, first.limits, first.variant.backlash_limit)
-    told = statistics_of_row(alike, plan("line", 64))
+    told = statistics_of_row(replace(alike, between=first.between), plan("line", 64))
+    assert told.numbers.keys() >= {"within_lot_sd", "lots_failing_standard_error"}
     rows = SpreadRows.of((number, told) for number in nominal.computed)
     spread, spreading = measured(lambda: Spread(statistics=SpreadRows(rows.frame.clone())))
     examined = Examined(submission=submission, validated=validated, settings=validated.settings, nominal=nominal)

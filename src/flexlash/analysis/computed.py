@@ -63,6 +63,13 @@ class Computed:
         limits, _ = limits_of(self.variant, rows, BACKLASH_OF[self.variant.flexspline_type])
         return shape_problems(self.variant, limits)[0]
 
+    @property
+    def between(self) -> frozenset[str]:
+        """Those of its dimensions that scatter between lots: one value for all parts of a lot."""
+        return frozenset(
+            name for name, one in self.limits.items() if one.low < one.high and one.scatters_between == "lots"
+        )
+
     @cached_property
     def nominal(self) -> NominalNumbers:
         """Its numbers at the entered dimensions."""

@@ -91,8 +91,9 @@ class _Pieces(Sequence[list[TolerancedRow]]):
 def spread_again(
     variant: Computed, limits: Iterable[Mapping[str, Limits]], settings: Settings
 ) -> list[SpreadStatistics]:
-    """Return the spread of a variant by lines with each of these limits instead of its own."""
-    plan, row = _plan(replace(settings, method="line", samples=None), Options()), _toleranced(variant)
+    """Return the spread of a variant by lines with each of these limits instead of its own; nothing of its lots."""
+    plan = _plan(replace(settings, method="line", samples=None), Options())
+    row = replace(_toleranced(variant), between=None)
     return [batch_statistics([replace(row, limits=other)], plan)[0] for other in limits]
 
 
@@ -129,6 +130,7 @@ def _plan(settings: Settings, options: Options) -> SamplingPlan:
         samples=settings.samples,
         seed=settings.seed,
         coverage=settings.coverage_percent / 100,
+        acceptable=settings.acceptable_ppm * 1e-6,
         cross_check=bool(options.cross_check),
     )
 
@@ -140,4 +142,5 @@ def _toleranced(variant: Computed) -> TolerancedRow:
         nominal=variant.variant.dimensions,
         limits=variant.limits,
         upper_limit=variant.variant.backlash_limit,
+        between=variant.between,
     )

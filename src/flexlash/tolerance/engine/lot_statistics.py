@@ -34,7 +34,7 @@ _MOST_LINES, _FURTHER = 1 << 12, 4
 _HALF = 0.7
 """Part of the wanted error, of two that are added as squares, from which more lines are taken of one kind."""
 
-_BLOCK = 1 << 16
+_BLOCK = 1 << 18
 """Numbers of an array that leave room in the cache for a few others."""
 
 
