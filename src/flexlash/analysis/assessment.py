@@ -78,6 +78,8 @@ def assess(validated: Validated, settings: Settings) -> Nominal:
     for place, variant in zip(doubtful.tolist(), variants.some(sound[doubtful].tolist()), strict=True):
         _report_numbers(ledger, variant, computed.nominal(place), mistakes)
     kept = numbers.filter(~np.isin(rows[sound], list(ledger.rows)))
+    # What no variant has takes as much room as what all have.
+    kept = kept.select(column.name for column in kept if column.null_count() < kept.height)
     return Nominal(
         computed=replace(computed, numbers=kept) if kept.height else ComputedRows(),
         findings=tuple(ledger.findings),

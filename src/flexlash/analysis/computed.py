@@ -91,8 +91,8 @@ class Computed:
 class ComputedRows(RowRecords[Computed]):
     """The computed variants by row number, which rises; held as columns, each a record when it is asked for.
 
-    `numbers` has the columns `row`, `place` among the variants of `validated`, and the fields of `NominalNumbers`; it
-    is None where no variant is computed. `statistics` and `checks` are what later stages found, by row number.
+    `numbers` has the columns `row`, `place` among the variants of `validated`, and the fields of `NominalNumbers` that
+    some variant has; it is None where no variant is computed. `statistics` and `checks` are what later stages found, by row number.
     """
 
     validated: Validated = field(default_factory=Validated)
@@ -126,8 +126,8 @@ class ComputedRows(RowRecords[Computed]):
 
     def nominal(self, place: int) -> NominalNumbers:
         """Return the nominal numbers at a place among the computed ones."""
-        _, _, *numbers = self._numbers.row(place)
-        return NominalNumbers(**dict(zip(NominalNumbers.__dataclass_fields__, numbers, strict=True)))
+        known = self._numbers.row(place, named=True)
+        return NominalNumbers(**{name: value for name, value in known.items() if name not in {"row", "place"}})
 
     @property
     def _numbers(self) -> pl.DataFrame:
