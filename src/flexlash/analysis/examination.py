@@ -80,12 +80,11 @@ def examined(
 def tables_beside(options: Options) -> dict[str, Source]:
     """Return the tables given beside a submission by the sheet that each replaces."""
     found = {}
-    for name, path in (("Tolerances", options.tolerances), ("Materials", options.materials)):
-        if path is not None:
-            try:
-                found[name] = Source.at(Path(path), options.limits)
-            except Refusal as refusal:
-                raise of_table(refusal, readable(Path(path).name)) from refusal
+    for name, path in options.tables.items():
+        try:
+            found[name] = Source.at(path, options.limits)
+        except Refusal as refusal:
+            raise of_table(refusal, readable(path.name)) from refusal
     return found
 
 

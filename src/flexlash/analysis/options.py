@@ -13,7 +13,10 @@ from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.argument_checks import file_path, flag, function, known, of_type, one_of, whole_number
 from flexlash.schema.columns import SETTINGS
 
-__all__ = ["Options", "Progress"]
+__all__ = ["TABLES", "Options", "Progress"]
+
+TABLES = {name.lower(): name for name in ("Tolerances", "Materials", "Measurements", "Correlations")}
+"""Options that name a table to be used instead of a submission's own, with the sheet that it replaces."""
 
 Progress = Callable[[int, int], None]
 """Called with how many steps are done, and of how many."""
@@ -74,6 +77,12 @@ class Options:
     materials: str | Path | None = field(
         default=None, metadata=_declared(file_path, "The Materials table to use instead of the submission's.")
     )
+    measurements: str | Path | None = field(
+        default=None, metadata=_declared(file_path, "The Measurements table: measured parts, one a row.")
+    )
+    correlations: str | Path | None = field(
+        default=None, metadata=_declared(file_path, "The Correlations table: dimensions that scatter together.")
+    )
     limits: ReadingLimits = field(
         default_factory=ReadingLimits,
         metadata=_declared(
@@ -106,6 +115,17 @@ class Options:
         if chosen.from_report and chosen.marked_copy is not None:
             raise ValueError("a report does not hold the file itself, so that nothing can be marked in it")
         return chosen
+
+    @property
+    def tables(self) -> dict[str, Path]:
+        """Return the tables that stand beside each submission, by the sheet that each replaces."""
+        given = {sheet: getattr(self, name) for name, sheet in TABLES.items()}
+        return {sheet: Path(path) for sheet, path in given.items() if path is not None}
+
+    def without_tables(self, **changes: Any) -> Options:
+        """Return these options as a worker gets them, who is handed the bytes of tables and not where they lie."""
+        left: dict[str, Any] = dict.fromkeys(TABLES)
+        return replace(self, **left, **changes)
 
     def completed(self, run_with: Mapping[str, Any] | None) -> Options:
         """Return these options, and those of an earlier run where these leave them open."""

@@ -191,10 +191,7 @@ class _Run:
     @cached_property
     def _options(self) -> Options:
         """What a worker is told of the options: nothing of this machine, and nothing that looks at all rows."""
-        return replace(
-            self.table.options, progress=None, marked_copy=None, given=(), jobs=1, strict=False, tolerances=None,
-            materials=None,
-        )  # fmt: skip
+        return self.table.options.without_tables(progress=None, marked_copy=None, given=(), jobs=1, strict=False)
 
     @cached_property
     def _limits(self) -> ReadingLimits:

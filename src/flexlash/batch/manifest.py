@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from flexlash import __version__
-from flexlash.analysis.options import Options
+from flexlash.analysis.options import TABLES, Options
 from flexlash.analysis.outcome import Written
 from flexlash.batch.answer import WorstVariant
 from flexlash.batch.ended import Ended
@@ -28,7 +28,7 @@ __all__ = ["MANIFEST_NAME", "Manifest", "options_digest"]
 
 MANIFEST_NAME = ".flexlash-manifest.jsonl"
 _TITLE = json.dumps({"flexlash": "what was done here, by which --resume goes on"})
-_OF_THE_PLACE = frozenset({"jobs", "progress", "given", "marked_copy", "tolerances", "materials", "from_report"})
+_OF_THE_PLACE = frozenset({"jobs", "progress", "given", "marked_copy", "from_report", *TABLES})
 """Options on which no output depends, or of which the digest of what they name counts."""
 
 _KEYS = {

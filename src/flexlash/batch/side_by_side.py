@@ -139,9 +139,7 @@ class _SideBySide:
         self._digests = digests_of(self._given) if len(self._given) > 1 else frozenset[str]()
         # What a worker is told: nothing of where files lie here; a single submission has all processes for its rows.
         jobs = 1 if len(self._given) > 1 else batch.options.jobs
-        self._asked = replace(
-            batch.options, jobs=jobs, given=(), marked_copy=None, progress=None, tolerances=None, materials=None
-        )
+        self._asked = batch.options.without_tables(jobs=jobs, given=(), marked_copy=None, progress=None)
 
     def ended(self) -> Iterator[Ended]:
         """Yield how each submission ended, in order."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from flexlash.analysis.options import Options
+from flexlash.analysis.options import TABLES, Options
 from flexlash.batch.given_files import given_files
 from flexlash.cli.batches import Planned, carried_out, to_be_told
 from flexlash.cli.click_types import JSON, LIMITS, QUIET, RECURSIVE, SUBMISSIONS, VERBOSE, option, planned
@@ -37,6 +37,8 @@ __all__ = ["check"]
 @VERBOSE
 @option("tolerances")
 @option("materials")
+@option("measurements")
+@option("correlations")
 def check(
     submissions: tuple[Path, ...],
     output: Path | None,
@@ -55,7 +57,7 @@ def check(
     """
     if output and not (annotate or apply_fixes):
         raise click.UsageError("-o needs --apply-fixes or --annotate; check alone writes nothing.")
-    beside = [path for path in (options["tolerances"], options["materials"]) if path]
+    beside = [options[name] for name in TABLES if options[name]]
     given = given_files(
         submissions,
         recursive=recursive,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from flexlash.analysis.options import TABLES
 from flexlash.cli.recreation import recreate
 from flexlash.cli.submissions import Submissions
 from flexlash.cli.terminal import progress
@@ -22,7 +23,7 @@ def recreate_all(
 ) -> ExitCode:
     """Write the submission and the report of each report anew and say whether they are the same; return the code."""
     all_of_them = Submissions(several=len(reports) > 1, as_json=as_json, quiet=quiet, ran=True, verbose=True)
-    beside = [Path(options[name]) for name in ("tolerances", "materials") if options.get(name)]
+    beside = [Path(options[name]) for name in TABLES if options.get(name)]
     plan = Plan(inputs=[*reports, *beside])
     for report in reports:
         with all_of_them.one(report) as attempt, progress(quiet=quiet or as_json) as advance:

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from flexlash.analysis.options import Options
+from flexlash.analysis.options import TABLES, Options
 from flexlash.batch.given_files import GivenFiles, given_files
 from flexlash.cli.batches import Planned, carried_out, to_be_told
 from flexlash.cli.click_types import JSON, LIMITS, QUIET, RECURSIVE, SUBMISSIONS, VERBOSE, option, planned
@@ -54,6 +54,8 @@ __all__ = ["run"]
 @option("marked_copies")
 @option("tolerances")
 @option("materials")
+@option("measurements")
+@option("correlations")
 def run(
     submissions: tuple[Path, ...],
     output: Path | None,
@@ -76,7 +78,7 @@ def run(
 
     if options["elasticity"] and not is_available():
         raise click.UsageError(MISSING)
-    beside = [path for path in (options["tolerances"], options["materials"]) if path]
+    beside = [options[name] for name in TABLES if options[name]]
     if from_report:
         from flexlash.cli.recreate_command import recreate_all
 

@@ -71,7 +71,7 @@ def delivery(
     Raises ValueError for one that cannot be meant.
     """
     submission = given.path if isinstance(given, Source | ReadReport) else file_path("submission", given)
-    plan = Plan(inputs=[Path(path) for path in (submission, options.tolerances, options.materials) if path is not None])
+    plan = Plan(inputs=[*([] if submission is None else [submission]), *options.tables.values()])
     return Delivery(
         output=None if output is None else named_output(plan, output, endings),
         copy=None if options.marked_copy is None else named_output(plan, options.marked_copy, WORKBOOK),

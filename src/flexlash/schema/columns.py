@@ -325,7 +325,7 @@ MEASUREMENTS = (
         type="text",
         required=True,
     ),
-    _measurement("remark", "part", "Part", "Number or name of the measured part.", type="text"),
+    _measurement("identity", "part", "Part", "Number or name of the measured part.", type="text"),
     _measurement(
         "requirement",
         "use_as",

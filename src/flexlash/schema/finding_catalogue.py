@@ -681,7 +681,7 @@ CATALOGUE = _rules(
     (
         "W408",
         "lone cell",
-        '{place} holds "{value}" in an otherwise empty row, which was not read as a variant.',
+        '{place} holds "{value}" in an otherwise empty row, which was not read as an entry.',
         "Clear the cell, or complete the row.",
         "A stray character far below the table should not stop the work; it is reported in case it was meant.",
     ),

@@ -39,9 +39,7 @@ def service_options(options: Options) -> Options:
         parquet_mebibytes=min(limits.parquet_mebibytes, limits.file_mebibytes),
         seconds=min(limits.seconds, _SECONDS),
     )
-    return replace(
-        options, jobs=1, given=(), marked_copy=None, progress=None, tolerances=None, materials=None, limits=limits
-    )
+    return options.without_tables(jobs=1, given=(), marked_copy=None, progress=None, limits=limits)
 
 
 def run_task(name: str, data: bytes, options: Options) -> Task:

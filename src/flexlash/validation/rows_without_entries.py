@@ -20,6 +20,13 @@ _SUMMARIES = (
     "durchschnitt anzahl standardabweichung somme moyenne totale media somma ø σ ∑"
 )
 _TOTALS = frozenset(_SUMMARIES.split())
+_LIMITS = frozenset((
+    *_TOTALS, "nominal", "target", "tolerance", "limit", "limits", "usl", "lsl", "ucl", "lcl", "upperlimit",
+    "lowerlimit", "uppertolerance", "lowertolerance", "cp", "cpk", "pp", "ppk", "sollwert", "nennmaß", "nennmass",
+    "xbar", "xquer",
+))  # fmt: skip
+"""What measuring machines write in place of a part's number, in rows of statistics and limits."""
+
 _NOTES = (
     "notes? remarks? comments? legend key source prepared created checked approved author date revision rev see "
     "hinweise? bemerkung(?:en)? anmerkung(?:en)? legende quelle erstellt geprüft bearbeiter datum stand end"
@@ -61,6 +68,7 @@ class NoEntries:
             indices[key] for key in others if key in indices and columns[key].required and not columns[key].is_number
         }
         self.numbers = {indices[key] for key in others if key in indices and columns[key].is_number}
+        self.part = indices.get("part") if schema == "Measurements" else None
         self.others = {indices[key] for key in others if key in indices}
 
     def of(self, cells: Mapping[int, RawValue], *, apart: bool) -> NoEntry | None:
@@ -73,8 +81,8 @@ class NoEntries:
         if not isinstance(value, str):
             return None
         others = self.texts - {index}
-        if self.texts and others.isdisjoint(cells) and self._is_total(index, value):
-            return NoEntry("W433", "a total or a mean", index, value)
+        if (total := self._total_at(cells, index)) is not None:
+            return NoEntry("W433", "a total or a mean", total, cells[total])
         if not others.isdisjoint(cells) and not self.numbers.isdisjoint(cells):
             return None
         if index != self.first or any(_has_digits(cells[number]) for number in self.numbers & cells.keys()):
@@ -88,9 +96,24 @@ class NoEntries:
         is_bare = self.schema == "Variants" and self.numbers.isdisjoint(cells)
         return NoEntry("E217", "", index, value) if is_bare else None
 
-    def _is_total(self, index: int, value: str) -> bool:
-        """Whether the first text of a row, as its name or instead of one, is that of a total."""
-        return index in self.texts | {self.first} and plain(value[:_LONGEST]).replace(".", "").strip(":=()") in _TOTALS
+    def _total_at(self, cells: Mapping[int, RawValue], index: int) -> int | None:
+        """Return the cell that names a total; `index` is the first one of the row, its name or what stands instead.
+
+        Below measured parts a machine writes statistics and limits, by words in place of a part's number.
+        """
+        if self.schema == "Measurements":
+            named = ((self.first, _TOTALS), (self.part, _LIMITS))
+        elif self.texts and (self.texts - {index}).isdisjoint(cells) and index in self.texts | {self.first}:
+            named = ((index, _TOTALS), (None, _TOTALS))
+        else:
+            return None
+        texts = ((place, cells.get(place or 0), known) for place, known in named)
+        return next((place for place, text, known in texts if isinstance(text, str) and _bare(text) in known), None)
+
+
+def _bare(text: str) -> str:
+    """Return the beginning of a text without what stands around a word."""
+    return plain(text[:_LONGEST]).replace(".", "").strip(":=()")
 
 
 def _has_digits(value: RawValue) -> bool:

@@ -135,6 +135,7 @@ def _data_rows(
     ours = {*heading.columns.values(), *heading.doubtful}
     first = heading.columns.get(first_key)
     nameless: dict[int, int] = {}
+    last = heading.row
     for number, every in sheet.rows.items():
         if number <= heading.row:
             continue
@@ -147,7 +148,10 @@ def _data_rows(
         }
         # Held once with the sheet where nothing is left out.
         entered = every if every.keys() <= named and len(cells) == len(every) else _only(cells, named)
-        if len(entered) > 1 or first in entered:
+        # Of parts one dimension may be all that was measured; below an empty row it is a mean without a name.
+        is_part = first_key == "sample" and number == last + 1 and bool(entered)
+        if len(entered) > 1 or first in entered or is_part:
+            last = number
             for index in cells.keys() - named - {*surplus_of(sheet, heading, number)}:
                 nameless.setdefault(index, number)
             yield number, entered

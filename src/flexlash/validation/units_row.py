@@ -22,6 +22,7 @@ _NONE = frozenset({"", "-", "–", "—", "1", "none", "text"})
 
 _TITLES = frozenset(map(plain, ("unit", "units", "Einheit", "Einheiten", "unité", "unités", "unità", "unidad")))
 _FEWEST = 2
+"""Units that make a row one of units; a table of measured parts may have one column of numbers alone."""
 
 
 def take_units_row(sheet: RawSheet, heading: Heading, schema: str, ledger: Ledger) -> int:
@@ -34,7 +35,7 @@ def take_units_row(sheet: RawSheet, heading: Heading, schema: str, ledger: Ledge
     columns = columns_of(schema)
     cells = {index: cell for index, cell in sheet.rows.get(row, {}).items() if index not in heading.ignored}
     units = _units({key: cells.get(index, "") for key, index in heading.columns.items()}, columns)
-    if len(units) < _FEWEST:
+    if len(units) < (_FEWEST if schema != "Measurements" else 1):
         return 0
     for key, unit in units.items():
         read_in = columns[key].si_unit.si * heading.factors[key]
