@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from flexlash.cli import cli, main
-from flexlash.feedback.template import template_workbook as template_module
+from flexlash.feedback.template import entry_rules
 from flexlash.mechanics import elasticity
 from flexlash.pipeline import run
 
@@ -16,7 +16,7 @@ from flexlash.pipeline import run
 @pytest.fixture(autouse=True)
 def _few_rows(monkeypatch):
     """Few prepared rows, for speed."""
-    monkeypatch.setattr(template_module, "PREPARED_ROWS", 8)
+    monkeypatch.setattr(entry_rules, "PREPARED_ROWS", 8)
 
 
 @pytest.fixture

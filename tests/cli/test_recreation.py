@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from flexlash.cli.recreation import recreate
 from flexlash.comparison.difference import difference
 from flexlash.comparison.sides import side_of
-from flexlash.feedback.template import template_workbook as template_module
+from flexlash.feedback.template import entry_rules
 from flexlash.pipeline import check, run
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.result_columns import CROSS_CHECK
@@ -101,7 +101,7 @@ MADE = {
 @pytest.fixture(autouse=True)
 def _few_rows(monkeypatch):
     """Few prepared rows, for speed."""
-    monkeypatch.setattr(template_module, "PREPARED_ROWS", 8)
+    monkeypatch.setattr(entry_rules, "PREPARED_ROWS", 8)
 
 
 @pytest.mark.parametrize("what", MADE)

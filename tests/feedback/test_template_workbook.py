@@ -13,8 +13,10 @@ from libreoffice import convert, needs_libreoffice, needs_pages
 
 from flexlash.feedback.template.entry_rules import FIRST_ROW, HEADER_ROW
 from flexlash.feedback.template.template_workbook import Filling, study, template_bytes
+from flexlash.feedback.template.tolerance_status import CORRELATION_STATUS, tolerance_status
+from flexlash.feedback.template.variant_status import VARIANT_STATUS
 from flexlash.reading.raw import ErrorCell
-from flexlash.schema.columns import ENTRY_SHEETS, VARIANTS
+from flexlash.schema.columns import ENTRY_SHEETS, OPTIONAL_SHEETS, VARIANTS
 from flexlash.schema.part_rules import PART_RULES
 
 HAT = {"flexspline_type": "hat", "disk_inner_radius_mm": None, "disk_outer_radius_mm": 120.0}
@@ -96,7 +98,13 @@ STATUS_ROWS = [
 
 @pytest.fixture(scope="module")
 def empty():
-    """Return the empty template as openpyxl sees it."""
+    """Return the empty template with all optional sheets as openpyxl sees it."""
+    return openpyxl.load_workbook(io.BytesIO(template_bytes(Filling(optional=OPTIONAL_SHEETS))))
+
+
+@pytest.fixture(scope="module")
+def plain():
+    """Return the empty template without optional sheets as openpyxl sees it."""
     return openpyxl.load_workbook(io.BytesIO(template_bytes()))
 
 
@@ -139,6 +147,47 @@ def test_headers_are_the_labels(empty, name):
     assert cells[len(labels) :] in ([], ["Row status"], [None])
 
 
+def test_optional_sheets_are_there_where_they_are_asked_for(plain):
+    """The plain template has none of them and says in its dictionary how to get them; others have what is named."""
+    assert plain.sheetnames == ["Variants", "Materials", "Tolerances", "Settings", "Dictionary", "Lists"]
+    told = {row[0].value: row[-1].value for row in plain["Dictionary"]["A2:G90"] if row[0].value in OPTIONAL_SHEETS}
+    assert {name: f"--with {name.lower()}" in text for name, text in told.items()} == dict.fromkeys(
+        OPTIONAL_SHEETS, True
+    )
+    book = openpyxl.load_workbook(io.BytesIO(template_bytes(Filling(optional=["Correlations"]))))
+    assert book.sheetnames == ["Variants", "Materials", "Tolerances", "Settings", "Correlations", "Dictionary", "Lists"]
+
+
+def test_a_sample_is_picked_where_there_are_any(empty, plain):
+    """Tolerances' column Sample has the drop-down of samples beside Measurements, else says where they come from."""
+    column = [cell.value for cell in plain["Tolerances"][HEADER_ROW + 1]].index("Sample") + 1
+    (picked, free) = (
+        next(
+            rule
+            for rule in book["Tolerances"].data_validations.dataValidation
+            if any(area.min_col == column and area.min_row > HEADER_ROW + 1 for area in rule.sqref.ranges)
+        )
+        for book in (empty, plain)
+    )
+    assert (picked.type, picked.formula1) == ("list", "fl_samples")
+    assert (free.type, "--with measurements" in free.prompt) == (None, True)
+
+
+def test_columns_of_the_process_fold_away(plain):
+    """What the shop knows of its process stands in an outline group, expanded, so that Tolerances stays readable."""
+    sheet = plain["Tolerances"]
+    labels = [cell.value for cell in sheet[HEADER_ROW + 1]]
+    folded = [
+        labels[place - 1]
+        for dimension in sheet.column_dimensions.values()
+        if dimension.outlineLevel and not dimension.hidden
+        for place in range(dimension.min, dimension.max + 1)
+    ]
+    assert folded == ["Mean shift", "Standard deviation", "Cp", "Cpk", "Sample", "Scatters between"]
+    groups = [cell.value for cell in sheet[HEADER_ROW] if cell.value]
+    assert groups == ["Class", "Drawing", "Scatter", "Process", "Inheritance"]
+
+
 @pytest.mark.parametrize("name", ENTRY_SHEETS)
 def test_every_entry_cell_has_a_hint(empty, name):
     """Every column of every entry sheet carries an input message and a note on its header."""
@@ -176,7 +225,7 @@ def test_lists_come_from_defined_names(empty):
     }
     assert used == {
         "fl_flexspline_types", "fl_materials", "fl_tolerance_classes", "fl_dimensions", "fl_grades",
-        "fl_deviation_units", "fl_distributions", "fl_methods",
+        "fl_deviation_units", "fl_distributions", "fl_methods", "fl_samples", "fl_scatters_between", "fl_uses",
     }  # fmt: skip
     assert used <= set(empty.defined_names)
     assert empty["Lists"].sheet_state == "hidden"
@@ -199,14 +248,14 @@ def test_nothing_is_merged_in_entry_tables(empty):
 def test_the_version_is_stamped_twice(empty):
     """The template's version stands in a visible cell and in a document property."""
     texts = [cell.value for row in empty["Variants"]["A1:W2"] for cell in row]
-    assert "Template version 3" in texts
+    assert "Template version 4" in texts
     properties = {one.name: one.value for one in empty.custom_doc_props.props}
-    assert properties == {"flexlash": "template", "flexlash_template_version": "3"}
+    assert properties == {"flexlash": "template", "flexlash_template_version": "4"}
 
 
 def test_two_thousand_rows_do_not_bloat_the_file():
-    """The empty template with its 2,000 prepared rows stays under 60 kB."""
-    assert len(template_bytes()) < 60_000
+    """The empty template with its 2,000 prepared rows, and 500 of tolerances, stays under 70 kB."""
+    assert len(template_bytes()) < 70_000
 
 
 def test_the_same_bytes_every_time():
@@ -269,8 +318,11 @@ def test_every_rule_of_the_book_has_a_row():
 
 def test_the_status_stays_within_what_excel_takes(empty):
     """Each formula of the status is shorter and less deeply nested than Excel allows: 8,192 characters, 64 levels."""
-    formulas = [empty.defined_names[name].attr_text for name in ("fl_row_entries", "fl_row_part", "fl_row_status")]
-    for formula in formulas:
+    stages = [*VARIANT_STATUS, *tolerance_status(has_measurements=True), *CORRELATION_STATUS]
+    names = {name for name in empty.defined_names if name.endswith("_status")} | {stage.name for stage in stages}
+    assert len(names) == len(stages) + 3
+    for name in names:
+        formula = empty.defined_names[name].attr_text
         assert len(formula) < 8000
         depths = itertools.accumulate({"(": 1, ")": -1}.get(letter, 0) for letter in formula)
         assert max(depths) < 60

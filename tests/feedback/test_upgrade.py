@@ -16,7 +16,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from old_templates import LABELS, PLACES, old_workbook, put, rows_of
 
-from flexlash.feedback.template import template_workbook as template_module
+from flexlash.feedback.template import entry_rules
 from flexlash.feedback.template.entry_rules import FIRST_ROW
 from flexlash.feedback.template.template_workbook import Filling, study, template_bytes
 from flexlash.feedback.template.upgrade import upgraded
@@ -51,7 +51,7 @@ NASTY = (
 @pytest.fixture(autouse=True)
 def _here(monkeypatch):
     """Few prepared rows, for speed."""
-    monkeypatch.setattr(template_module, "PREPARED_ROWS", 8)
+    monkeypatch.setattr(entry_rules, "PREPARED_ROWS", 8)
 
 
 def _moved(path):
@@ -125,7 +125,7 @@ def test_version_one_gains_its_columns_and_keeps_its_meaning(tmp_path):
     _assert_same(old, new)
     assert (upgrade.version, upgrade.rows, upgrade.remarks) == (1, 3, (FORMATS,))
     assert [cell.value for cell in _cells(new)[4]][: len(VARIANTS)] == [column.label for column in VARIANTS]
-    settings_ = {row[0].value: row[1].value for row in _cells(new, "Settings")["A5:B11"]}
+    settings_ = {row[0].value: row[1].value for row in _cells(new, "Settings")["A5:B12"]}
     assert settings_ == {column.key: column.default for column in SETTINGS} | {
         "seed": 7,
         "coverage_percent": 90,
@@ -154,7 +154,7 @@ _CELL = st.sampled_from(NASTY) | st.floats(-1e300, 1e300) | st.text("ab1,. %âˆ’Â
 def test_any_filling_gives_the_same_findings_and_numbers(tmp_path_factory, rows, gap):
     """Sound rows with a few cells replaced by anything, and gaps between them: the same findings, the same numbers."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(template_module, "PREPARED_ROWS", 8)
+        patch.setattr(entry_rules, "PREPARED_ROWS", 8)
         filled = [{**SOUND, "variant": f"row {number}", **change} for number, change in enumerate(rows)]
         spread = [row for one in filled for row in (one, *[{}] * gap)]
         old = _saved(old_workbook(rows_of("Variants", spread)), tmp_path_factory.mktemp("any"))
@@ -240,10 +240,11 @@ def test_settings_out_of_order_unknown_and_doubled(tmp_path):
     sheet["D4"], sheet["D6"] = "Why", "agreed"
     old = _saved(book, tmp_path)
     new, _ = _moved(old)
-    after = [[cell.value for cell in row] for row in _cells(new, "Settings")["A5:B13"]]
+    after = [[cell.value for cell in row] for row in _cells(new, "Settings")["A5:B14"]]
     assert after == [
         ["Seed ", 3], ["coverage_percent", 95], ["method", "sobol"], ["samples", None], ["lost_motion_percent", 4],
-        ["cylinder_calibration", 1], ["disk_calibration", 0.9], ["colour", "red"], ["seed", 4],
+        ["cylinder_calibration", 1], ["disk_calibration", 0.9], ["acceptable_ppm", 1350], ["colour", "red"],
+        ["seed", 4],
     ]  # fmt: skip
     assert [_cells(new, "Settings")[cell].value for cell in ("D4", "D5", "D6")] == ["Why", "agreed", None]
     assert {one.code for one in check(old).findings} == {one.code for one in check(new).findings}

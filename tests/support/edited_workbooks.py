@@ -95,7 +95,8 @@ def twelve() -> Filling:
 def small_template() -> bytes:
     """Return the template filled with the twelve variants, with no more prepared rows than these."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flexlash.feedback.template.template_workbook.PREPARED_ROWS", 12)
+        patch.setattr("flexlash.feedback.template.entry_rules.PREPARED_ROWS", 12)
+        patch.setattr("flexlash.feedback.template.entry_rules.SIDE_ROWS", 12)
         return template_bytes(twelve())
 
 

@@ -31,5 +31,6 @@ def filled(rows: Sequence[Mapping[str, Any]], **filling: Any) -> bytes:
     It has few prepared rows: writing and opening the usual two thousand takes seconds.
     """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flexlash.feedback.template.template_workbook.PREPARED_ROWS", 12)
+        patch.setattr("flexlash.feedback.template.entry_rules.PREPARED_ROWS", 12)
+        patch.setattr("flexlash.feedback.template.entry_rules.SIDE_ROWS", 12)
         return template_bytes(Filling(variants=rows, **filling))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,28 @@ import click
 from flexlash.cli.click_types import planned
 from flexlash.cli.terminal import named, print_refusal
 from flexlash.outputs.naming import template_output
+from flexlash.schema.columns import OPTIONAL_SHEETS
 from flexlash.schema.findings import finding, shown
 
 __all__ = ["template"]
+
+
+_SHEETS = {name.lower().replace(" ", "-"): name for name in OPTIONAL_SHEETS}
+_ALL = "all"
+_LATER = ("other-sources", "levers", "sweep")
+"""Sheets of a later version."""
+
+
+def _optional(context: click.Context, option: click.Parameter, value: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the optional sheets that are named, in any of the options, with commas between them."""
+    del context, option
+    asked = {name.strip().lower() for names in value for name in names.split(",") if name.strip()}
+    there = f"There are {', '.join(_SHEETS)} and {_ALL}."
+    for name in sorted(asked - {*_SHEETS, _ALL}):
+        if name in _LATER:
+            raise click.BadParameter(f"the sheet {name} comes with a later version of flexlash. {there}")
+        raise click.BadParameter(f"there is no optional sheet {shown(name)}. {there}")
+    return tuple(sheet for name, sheet in _SHEETS.items() if asked & {name, _ALL})
 
 
 @click.command()
@@ -26,29 +46,34 @@ __all__ = ["template"]
     "--upgrade", "old", type=click.Path(path_type=Path, readable=False), metavar="OLD",
     help="Fill it with everything of an older template, or of a table (.csv, .parquet).",
 )  # fmt: skip
+@click.option(
+    "--with", "optional", multiple=True, callback=_optional, metavar="SHEETS",
+    help=f"Add optional sheets: {', '.join(_SHEETS)} (with commas between them), or {_ALL}.",
+)  # fmt: skip
 @click.option("--force", is_flag=True, help="Replace an existing file.")
-def template(output: Path | None, *, example: bool, old: Path | None, force: bool) -> None:
+def template(output: Path | None, *, example: bool, old: Path | None, optional: tuple[str, ...], force: bool) -> None:
     """Write the Excel template that submissions are made from."""
     if example and old:
         raise click.UsageError("--example and --upgrade both fill the template; choose one.")
     target = planned(template_output, output, old, force=force)
     target.require()
-    from flexlash.feedback.template.template_workbook import study, template_bytes
+    from flexlash.feedback.template.template_workbook import Filling, study, template_bytes
 
-    data = _upgraded(old) if old else template_bytes(study() if example else None)
+    filling = replace(study() if example else Filling(), optional=optional)
+    data = _upgraded(old, optional) if old else template_bytes(filling)
     written = target.write(data).path
     click.echo(f"Template written: {named(written)}")
     follow = "Look it over, then: flexlash check" if old else "Fill it in, then: flexlash run"
     click.echo(f"{follow} {named(written)}", err=True)
 
 
-def _upgraded(old: Path) -> bytes:
+def _upgraded(old: Path, optional: tuple[str, ...]) -> bytes:
     """Return a new template filled with what an old file holds, and say what it could not hold."""
     from flexlash.feedback.template.upgrade import upgraded
     from flexlash.reading.refusal import Refusal
 
     try:
-        upgrade = upgraded(old)
+        upgrade = upgraded(old, optional=optional)
     except Refusal as refusal:
         facts: dict[str, Any] = {"file": old.name, **refusal.facts}
         found = finding(refusal.code, **facts)

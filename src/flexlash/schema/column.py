@@ -177,4 +177,4 @@ class Column:
 
 def _is_symbol(word: str) -> bool:
     """Whether a word of a label is its symbol, such as Δ or r_ci."""
-    return (len(word) == 1 and not word.isdigit()) or word.startswith("r_")
+    return (len(word) == 1 and word.isalpha()) or word.startswith("r_")

@@ -194,6 +194,7 @@ TOLERANCES = (
         type="text",
         required=True,
         also_called="toleranzklasse classedetolérance tolclass",
+        group="Class",
     ),
     _tolerance(
         "identity",
@@ -202,6 +203,7 @@ TOLERANCES = (
         "The dimension that varies. A dimension without a row is exact. Blank only beside Based on class.",
         type="choice",
         choices=tuple(DIMENSIONS),
+        group="Class",
     ),
     _tolerance(
         "requirement",
@@ -209,6 +211,7 @@ TOLERANCES = (
         "Lower deviation",
         "Signed: what the smallest part differs from the entered value. Numbers only, one per cell.",
         also_called="lower unteresabmaß unteresabmass untereabweichung lowertolerance minus",
+        group="Drawing",
     ),
     _tolerance(
         "requirement",
@@ -216,6 +219,7 @@ TOLERANCES = (
         "Upper deviation",
         "Signed: what the largest part differs from the entered value.",
         also_called="upper oberesabmaß oberesabmass obereabweichung uppertolerance plus",
+        group="Drawing",
     ),
     _tolerance(
         "requirement",
@@ -224,6 +228,7 @@ TOLERANCES = (
         "Unit of both deviations: a length unit, % of the entered value, or the dimension's own (N·m, GPa, -). "
         "Blank: the dimension's own.",
         type="text",
+        group="Drawing",
     ),
     _tolerance(
         "requirement",
@@ -232,6 +237,7 @@ TOLERANCES = (
         "Instead of deviations: IT5…IT12 or js5…js12 (± half), h5…h12 (minus), H5…H12 (plus), 2768-f, 2768-m, "
         "2768-c, 2768-v. On a radius: the grade of its diameter, halved.",
         type="text",
+        group="Drawing",
     ),
     _tolerance(
         "requirement",
@@ -241,6 +247,7 @@ TOLERANCES = (
         type="choice",
         choices=("normal", "truncated normal", "uniform", "triangular", "measured"),
         default="normal",
+        group="Scatter",
     ),
     _tolerance(
         "requirement",
@@ -251,6 +258,7 @@ TOLERANCES = (
         maximum=100,
         default=3,
         usual=(1, 12),
+        group="Scatter",
     ),
     _tolerance(
         "requirement",
@@ -259,6 +267,7 @@ TOLERANCES = (
         "Normal distributions: what the mean of the process lies above the middle of the limits, signed, in the "
         "deviation unit.",
         since=4,
+        group="Process",
     ),
     _tolerance(
         "requirement",
@@ -267,6 +276,7 @@ TOLERANCES = (
         "Normal distributions: that of the process, in the deviation unit, instead of Limits at ± sigma.",
         **POSITIVE,
         since=4,
+        group="Process",
     ),
     _tolerance(
         "requirement",
@@ -277,6 +287,7 @@ TOLERANCES = (
         maximum=100,
         usual=(0.3, 4),
         since=4,
+        group="Process",
     ),
     _tolerance(
         "requirement",
@@ -287,6 +298,7 @@ TOLERANCES = (
         maximum=100,
         usual=(0, 4),
         since=4,
+        group="Process",
     ),
     _tolerance(
         "identity",
@@ -295,6 +307,7 @@ TOLERANCES = (
         "Name of a sample of Measurements: mean and standard deviation are those of its values.",
         type="text",
         since=4,
+        group="Process",
     ),
     _tolerance(
         "requirement",
@@ -305,6 +318,7 @@ TOLERANCES = (
         type="choice",
         choices=("parts", "lots"),
         since=4,
+        group="Process",
     ),
     _tolerance(
         "identity",
@@ -313,6 +327,7 @@ TOLERANCES = (
         "In a row without a dimension: the class takes over every row of this class that it does not have itself.",
         type="text",
         since=4,
+        group="Inheritance",
     ),
 )
 

@@ -6,11 +6,14 @@ from flexlash.schema.column import Column
 
 __all__ = ["inner_name", "wrong_number"]
 
+_CAPITALS = ("Young", "Poisson", "Cp")
+"""What names begin with that keep their capital inside a sentence."""
+
 
 def inner_name(column: Column) -> str:
     """Return a column's name inside a sentence: `disk cone angle`, `Young's modulus E`."""
     name = column.plain_name.replace("_", " ")
-    return name if name.startswith(("Young", "Poisson")) else name[0].lower() + name[1:]
+    return name if name.startswith(_CAPITALS) else name[0].lower() + name[1:]
 
 
 def wrong_number(column: Column) -> str:
@@ -20,6 +23,8 @@ def wrong_number(column: Column) -> str:
 
 def _bounds(column: Column) -> str:
     """Return what a number must be: `a number from 30 to 90 °`."""
+    if column.minimum is None:
+        return "a number" if column.maximum is None else f"a number of at most {column.maximum:.15g}"
     unit = "" if column.unit in {"", "-"} else f" {column.unit}"
     least = f"{column.minimum:.15g}"
     if column.maximum is None:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
-from flexlash.schema.columns import ENTRY_SHEETS
+from flexlash.schema.columns import ENTRY_SHEETS, OPTIONAL_SHEETS
 
 __all__ = ["write_dictionary"]
 
 
-def write_dictionary(sheet: Any, formats: Mapping[str, Any]) -> None:
-    """Write every column of every entry sheet: what it is called, holds and means."""
+_ABSENT = "An optional sheet. To add it to this workbook: flexlash template --upgrade THIS.xlsx --with {}"
+
+
+def write_dictionary(sheet: Any, formats: Mapping[str, Any], sheets: Collection[str]) -> None:
+    """Write every column of these entry sheets: what it is called, holds and means; then which sheets are missing."""
     headings = {
         "Sheet": 12,
         "Column": 28,
@@ -24,7 +27,7 @@ def write_dictionary(sheet: Any, formats: Mapping[str, Any]) -> None:
     for index, (heading, width) in enumerate(headings.items()):
         sheet.set_column(index, index, width)
         sheet.write_string(0, index, heading, formats["header"])
-    entries = [column for columns in ENTRY_SHEETS.values() for column in columns]
+    entries = [column for name in sheets for column in ENTRY_SHEETS[name]]
     for row, column in enumerate(entries, start=1):
         default = "" if column.default is None else f"{column.default}"
         required = "yes" if column.required else ""
@@ -39,6 +42,10 @@ def write_dictionary(sheet: Any, formats: Mapping[str, Any]) -> None:
         )
         for index, text in enumerate(texts):
             sheet.write_string(row, index, text, formats["wrap"])
+    absent = (name for name in OPTIONAL_SHEETS if name not in sheets)
+    for row, name in enumerate(absent, start=len(entries) + 1):
+        sheet.write_string(row, 0, name, formats["wrap"])
+        sheet.write_string(row, len(headings) - 1, _ABSENT.format(name.lower()), formats["wrap"])
     sheet.freeze_panes(1, 0)
     sheet.set_landscape()
     sheet.set_paper(9)

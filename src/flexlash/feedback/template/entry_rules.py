@@ -2,33 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
+from flexlash.feedback.template.tolerance_status import GRADED
 from flexlash.schema.columns import ENTRY_SHEETS, SETTINGS, Column
 
-__all__ = ["FIRST_ROW", "HEADER_ROW", "PREPARED_ROWS", "SIDE_ROWS", "cell_rule", "header_note", "write_lists"]
+__all__ = [
+    "FIRST_ROW",
+    "HEADER_ROW",
+    "PREPARED_ROWS",
+    "SIDE_ROWS",
+    "cell_rule",
+    "header_note",
+    "prepared_rows",
+    "write_lists",
+]
 
 HEADER_ROW = 3
 FIRST_ROW = HEADER_ROW + 1
 PREPARED_ROWS = 2000
 SIDE_ROWS = 500
+_MEASURED_ROWS = 5000
 _LIST_ROWS = 20
+_FAR = 1e9
+"""What stands for no bound in a rule that must have one."""
 
 _GRADES = (
     *(f"{letter}{number}" for letter in ("IT", "js", "h", "H") for number in range(5, 13)),
     *(f"2768-{letter}" for letter in "fmcv"),
 )
 _DEVIATION_UNITS = ("mm", "µm", "in", "%", "N·m", "GPa", "MPa", "-")
-
-
-def header_note(column: Column) -> str:
-    """Return the note on a header."""
-    default = "" if column.default is None else f"\nBlank: {column.default}."
-    return f"{column.help}\nHolds {column.requirement}.{default}"
-
 
 _LISTS = {
     ("Variants", "flexspline_type"): "fl_flexspline_types",
@@ -38,12 +44,43 @@ _LISTS = {
     ("Tolerances", "grade"): "fl_grades",
     ("Tolerances", "deviation_unit"): "fl_deviation_units",
     ("Tolerances", "distribution"): "fl_distributions",
+    ("Tolerances", "sample"): "fl_samples",
+    ("Tolerances", "scatters_between"): "fl_scatters_between",
+    ("Tolerances", "based_on"): "fl_tolerance_classes",
     ("Settings", "setting"): "fl_settings",
+    ("Measurements", "use_as"): "fl_uses",
+    ("Correlations", "tolerance_class"): "fl_tolerance_classes",
+    ("Correlations", "dimension_1"): "fl_dimensions",
+    ("Correlations", "dimension_2"): "fl_dimensions",
 }
 
+_ROWS = {
+    "Materials": "fl_materials",
+    "Tolerances": "fl_tolerance_rows",
+    "Measurements": "fl_sample_rows",
+}
+"""The filled rows of a sheet's first column, as far as they are prepared, by name."""
 
-def cell_rule(column: Column, index: int) -> dict[str, Any]:
-    """Return the data validation of a column: hint, rule, error text."""
+_NAMES = {"Tolerances": "fl_tolerance_classes", "Measurements": "fl_samples"}
+"""The names in a sheet's first column, each once."""
+
+_PICK = "Pick an entry of the list. Add materials, tolerance classes and samples on their sheets."
+
+
+def header_note(column: Column) -> str:
+    """Return the note on a header."""
+    default = "" if column.default is None else f"\nBlank: {column.default}."
+    return f"{column.help}\nHolds {column.requirement}.{default}"
+
+
+def prepared_rows(sheet: str, filled: int) -> int:
+    """Return how many rows of an entry sheet, so many of them filled, have rules, lists and a status."""
+    rows = {"Variants": PREPARED_ROWS, "Measurements": _MEASURED_ROWS}
+    return max(rows.get(sheet, SIDE_ROWS), filled)
+
+
+def cell_rule(column: Column, index: int, sheets: Collection[str] = tuple(ENTRY_SHEETS)) -> dict[str, Any]:
+    """Return the data validation of a column in a workbook of these sheets: hint, rule, error text."""
     rule: dict[str, Any] = {
         "validate": "any",
         "input_title": column.name[:32],
@@ -51,13 +88,19 @@ def cell_rule(column: Column, index: int) -> dict[str, Any]:
         "error_title": column.name[:32],
         "error_message": f"{column.requirement[:1].upper()}{column.requirement[1:]} is required here."[:255],
     }
-    if name := _LISTS.get((column.sheet, column.key)):
-        rule |= {"validate": "list", "value": f"={name}"}
-        rule["error_message"] = "Pick an entry of the list. Add materials and tolerance classes on their sheets."
+    name = _LISTS.get((column.sheet, column.key))
+    if name == _NAMES["Measurements"] and "Measurements" not in sheets:
+        rule["input_message"] += " Needs the sheet Measurements: flexlash template --with measurements."
+    elif name:
+        rule |= {"validate": "list", "value": f"={name}", "error_message": _PICK}
     elif column.is_number:
         rule |= {"validate": "integer" if column.type == "integer" else "decimal"}
         if column.minimum is None:
-            rule |= {"criteria": "between", "minimum": -1e9, "maximum": 1e9}
+            rule |= {
+                "criteria": "between",
+                "minimum": -1e9,
+                "maximum": 1e9 if column.maximum is None else column.maximum,
+            }
         elif column.maximum is not None:
             rule |= {"criteria": "between", "minimum": column.minimum, "maximum": column.maximum}
         else:
@@ -69,10 +112,10 @@ def cell_rule(column: Column, index: int) -> dict[str, Any]:
     return rule
 
 
-def write_lists(workbook: Any, sheet: Any, classes: Sequence[str], rows: int = SIDE_ROWS) -> None:
+def write_lists(workbook: Any, sheet: Any, names: Mapping[str, Sequence[str]]) -> None:
     """Write the hidden lists behind the drop-downs and name them.
 
-    `classes` are the names in Tolerances, row by row; `rows` is how many rows of Materials and Tolerances are listed.
+    `names` are those in the first column of each sheet of the workbook, row by row.
     """
     choices = {column.key: column.choices for columns in ENTRY_SHEETS.values() for column in columns}
     lists = {
@@ -83,36 +126,44 @@ def write_lists(workbook: Any, sheet: Any, classes: Sequence[str], rows: int = S
         "fl_deviation_units": _DEVIATION_UNITS,
         "fl_methods": next(column.choices for column in SETTINGS if column.key == "method"),
         "fl_settings": choices["setting"],
+        "fl_graded_dimensions": GRADED,
+        "fl_scatters_between": choices["scatters_between"],
+        **({"fl_uses": choices["use_as"]} if "Measurements" in names else {}),
     }
     for index, (name, entries) in enumerate(lists.items()):
         letter = xl_col_to_name(index)
         sheet.write_string(0, index, name)
         sheet.write_column(1, index, entries)
         workbook.define_name(name, f"=Lists!${letter}$2:${letter}${len(entries) + 1}")
-    first, last = FIRST_ROW + 1, FIRST_ROW + rows
-    for name, title in (("Materials", "fl_materials"), ("Tolerances", "fl_tolerance_rows")):
-        block = f"{name}!$A${first}:$A${last}"
-        end = f"INDEX({block},MAX(1,COUNTA({block})))"
-        workbook.define_name(title, f"={name}!$A${first}:{end}")
-    _write_classes(workbook, sheet, len(lists), classes, last)
+    for schema, title in _ROWS.items():
+        if schema in names:
+            block = _first_column(schema, names)
+            workbook.define_name(title, f"={block.partition(':')[0]}:INDEX({block},MAX(1,COUNTA({block})))")
+    for index, schema in enumerate((one for one in _NAMES if one in names), start=len(lists)):
+        _write_names(workbook, sheet, index, schema, names)
     sheet.hide()
     sheet.protect()
 
 
-def _write_classes(workbook: Any, sheet: Any, index: int, classes: Sequence[str], last: int) -> None:
-    """Write the formulas that collect the names of the tolerance classes, each once."""
-    letter = xl_col_to_name(index)
-    rows = f"Tolerances!$A${FIRST_ROW + 1}:$A${last}"
+def _first_column(schema: str, names: Mapping[str, Sequence[str]]) -> str:
+    """Return the prepared cells of a sheet's first column."""
+    return f"{schema}!$A${FIRST_ROW + 1}:$A${FIRST_ROW + prepared_rows(schema, len(names[schema]))}"
+
+
+def _write_names(workbook: Any, sheet: Any, index: int, schema: str, names: Mapping[str, Sequence[str]]) -> None:
+    """Write the formulas that collect the names in a sheet's first column, each once."""
+    letter, title = xl_col_to_name(index), _NAMES[schema]
+    rows = _first_column(schema, names)
     # LOOKUP finds the last name that is not listed yet, so the names after the first stand in reverse.
-    first, *others = dict.fromkeys(classes) or ("",)
-    names = [first, *(name for name in reversed(others) if name)]
-    sheet.write_string(0, index, "fl_tolerance_classes")
-    sheet.write_formula(1, index, f'={rows.split(":", maxsplit=1)[0]}&""', None, names[0])
+    first, *others = dict.fromkeys(names[schema]) or ("",)
+    listed = [first, *(name for name in reversed(others) if name)]
+    sheet.write_string(0, index, title)
+    sheet.write_formula(1, index, f'={rows.split(":", maxsplit=1)[0]}&""', None, listed[0])
     for row in range(2, _LIST_ROWS + 2):
         above = f"${letter}$2:${letter}${row}"
         formula = f'=IFERROR(LOOKUP(2,1/((COUNTIF({above},{rows})=0)*({rows}<>"")),{rows}),"")'
-        value = names[row - 1] if row - 1 < len(names) else ""
+        value = listed[row - 1] if row - 1 < len(listed) else ""
         sheet.write_formula(row, index, formula, None, value)
     block = f"Lists!${letter}$2:${letter}${_LIST_ROWS + 2}"
     end = f'INDEX({block},MAX(1,COUNTIF({block},"?*")))'
-    workbook.define_name("fl_tolerance_classes", f"=Lists!${letter}$2:{end}")
+    workbook.define_name(title, f"=Lists!${letter}$2:{end}")

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from flexlash.schema import tables
-from flexlash.schema.columns import ENTRY_SHEETS, MATERIALS, SETTINGS, TOLERANCES, VARIANTS, Column
+from flexlash.schema.columns import (
+    ENTRY_SHEETS,
+    MATERIALS,
+    OPTIONAL_SHEETS,
+    SETTINGS,
+    TOLERANCES,
+    VARIANTS,
+    Column,
+)
 
 __all__ = ["Entries", "Filling", "study"]
 
@@ -29,14 +37,25 @@ class Entries:
 class Filling:
     """Rows to fill a template with, each by key; what is not given is as in the empty template.
 
-    `sheets` are whole entry sheets, which hold instead of everything else.
+    `optional` are the optional sheets that it has; those with rows need not be named. `sheets` are whole entry sheets,
+    which hold instead of everything else.
     """
 
     variants: Sequence[Mapping[str, Any]] = ()
     tolerances: Sequence[Mapping[str, Any]] = ()
     materials: Sequence[Mapping[str, Any]] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
+    measurements: Sequence[Mapping[str, Any]] = ()
+    correlations: Sequence[Mapping[str, Any]] = ()
+    optional: Collection[str] = ()
     sheets: Mapping[str, Entries] = field(default_factory=dict)
+
+    @property
+    def sheet_names(self) -> list[str]:
+        """The entry sheets of the template, in their order."""
+        filled = {"Measurements": self.measurements, "Correlations": self.correlations}
+        asked = {*self.optional, *self.sheets, *(name for name, rows in filled.items() if rows)}
+        return [name for name in ENTRY_SHEETS if name not in OPTIONAL_SHEETS or name in asked]
 
     def entries(self, sheet: str) -> Entries:
         """Return what an entry sheet is filled with."""
@@ -50,10 +69,12 @@ class Filling:
         elif sheet == "Tolerances":
             standard = [{"tolerance_class": "standard", **row} for row in _typed("standard_class", TOLERANCES)]
             rows = [*standard, *self.tolerances]
-        else:
+        elif sheet == "Settings":
             rows = [
                 {"setting": column.key, "value": self.settings.get(column.key, column.default)} for column in SETTINGS
             ]
+        else:
+            rows = self.measurements if sheet == "Measurements" else self.correlations
         return Entries(rows=rows, columns=ENTRY_SHEETS[sheet])
 
 

@@ -9,10 +9,10 @@ from typing import Any
 
 from flexlash.feedback.template.cell_writer import Formula, writable
 from flexlash.feedback.template.filling import Entries
-from flexlash.feedback.template.status_formulas import Names, status_text
+from flexlash.feedback.template.status_rules import Known, Row, Stage, entry_text, stage_text
 from flexlash.reading.raw import Unstored
 
-__all__ = ["listed_name", "stored_statuses"]
+__all__ = ["counted", "listed_name", "listed_names", "stored_statuses"]
 
 _DAY_0 = datetime.datetime(1899, 12, 30)  # noqa: DTZ001
 """The day that Excel counts from."""
@@ -23,19 +23,28 @@ def listed_name(value: Any) -> str:
     return "" if value is None or isinstance(value, Formula | Unstored) else str(value)
 
 
-def stored_statuses(entries: Entries, materials: Sequence[str], classes: Sequence[str]) -> list[str]:
+def listed_names(entries: Entries) -> list[str]:
+    """Return the names in the first column of a sheet, row by row."""
+    key = entries.columns[0].key
+    return [listed_name(row.get(key)) for row in entries.rows]
+
+
+def counted(names: Iterable[Any]) -> Counter[Any]:
+    """Return how often each name stands there, in small letters."""
+    return Counter(str(name).casefold() for name in names)
+
+
+def stored_statuses(entries: Entries, stages: Sequence[Stage], known: Known) -> list[str]:
     """Return what Excel would show as the status of each row."""
     rows = [_as_excel({column.key: row.get(column.key) for column in entries.columns}) for row in entries.rows]
-    variants = Counter(_small(row["variant"] for row in rows if "variant" in row))
-    names = Names(variants=variants, materials={*_small(materials)}, classes={*_small(classes)})
-    return [status_text(row, names) if row else "" for row in rows]
+    groups = {rule.together for stage in stages for rule in stage.rules if rule.together}
+    rows_of_name = {
+        ",".join(keys): Counter(tuple(entry_text(row, key) for key in keys) for row in rows) for keys in groups
+    }
+    return [stage_text(stages, row, {**known, **rows_of_name}) if row else "" for row in rows]
 
 
-def _small(names: Iterable[Any]) -> Iterable[str]:
-    return (str(name).casefold() for name in names)
-
-
-def _as_excel(row: Mapping[str, Any]) -> dict[str, Any]:
+def _as_excel(row: Mapping[str, Any]) -> Row:
     """Return a row's entries as a formula sees them: times as numbers, results for formulas."""
     return {key: _seen(writable(value)) for key, value in row.items() if value is not None}
 

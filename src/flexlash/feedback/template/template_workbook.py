@@ -8,24 +8,24 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import xlsxwriter
-from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
-from flexlash.feedback.template.cell_writer import DATE_FORMATS, CellWriter
+from flexlash.feedback.template.cell_writer import CellWriter
 from flexlash.feedback.template.dictionary_sheet import write_dictionary
 from flexlash.feedback.template.entry_rules import (
     FIRST_ROW,
     HEADER_ROW,
-    PREPARED_ROWS,
-    SIDE_ROWS,
     cell_rule,
     header_note,
+    prepared_rows,
     write_lists,
 )
 from flexlash.feedback.template.filling import Entries, Filling, study
-from flexlash.feedback.template.status_formulas import COMPLETE, status_formula, status_names
-from flexlash.feedback.template.stored_status import listed_name, stored_statuses
-from flexlash.schema.columns import ENTRY_SHEETS, OPTIONAL_SHEETS, SETTINGS, Column
-from flexlash.validation.headers import STATUS_HEADER
+from flexlash.feedback.template.status_column import shade_entries, write_progress, write_status
+from flexlash.feedback.template.stored_status import counted, listed_names
+from flexlash.feedback.template.template_formats import cell_formats
+from flexlash.feedback.template.tolerance_status import CORRELATION_STATUS, tolerance_status
+from flexlash.feedback.template.variant_status import VARIANT_STATUS
+from flexlash.schema.columns import SETTINGS, Column
 from flexlash.validation.template_versions import TEMPLATE_VERSION
 
 __all__ = ["TITLES", "Filling", "study", "template_bytes"]
@@ -38,15 +38,27 @@ TITLES = {
     "Materials": ("Materials", "One row per material. Add rows for your own."),
     "Tolerances": (
         "Tolerances",
-        "One row per class and dimension: a grade, or lower and upper deviation. No row: exact.",
+        "One row per class and dimension: a grade, or lower and upper deviation. No row: exact, or that of the class "
+        "which it is based on.",
     ),
     "Settings": ("Settings", "Blank values take the default."),
+    "Measurements": (
+        "Measurements",
+        "One row per measured part; blank where it was not measured. Dimensions measured on the same parts give their "
+        "correlation.",
+    ),
+    "Correlations": (
+        "Correlations",
+        "One row per class and pair of dimensions that scatter together. No row: independent, or as measured.",
+    ),
 }
 """Title and hint above each entry sheet."""
 
+_OUTLINED = ("Refinements", "Process")
+"""Groups of columns that can be folded away."""
+
 _PRINTED_ROWS = 100
 _OWN_WIDTH = 16
-_PLAIN = tuple(name for name in ENTRY_SHEETS if name not in OPTIONAL_SHEETS)
 
 _DATE = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=None)
 
@@ -58,6 +70,11 @@ _WIDTHS = {
     "dimension": 24,
     "setting": 24,
     "value": 14,
+    "sample": 20,
+    "based_on": 20,
+    "dimension_1": 24,
+    "dimension_2": 24,
+    "reason": 56,
 }
 
 
@@ -81,54 +98,36 @@ class _Template:
 
     def __init__(self, workbook: xlsxwriter.Workbook, filling: Filling) -> None:
         self.workbook = workbook
-        self.filling = filling
-        base = {"font_name": "Calibri", "font_size": 11, "valign": "vcenter"}
-        head = {
-            **base,
-            "bold": True,
-            "text_wrap": True,
-            "align": "center",
-            "border": 1,
-            "border_color": "#8EA9C1",
-        }
-        entry = {**base, "locked": False, "border": 1, "border_color": "#D9D9D9"}
-        self.formats = {
-            name: workbook.add_format(properties)
-            for name, properties in {
-                "title": {**base, "bold": True, "font_size": 16, "font_color": "#1F3A5F"},
-                "hint": {**base, "italic": True, "font_color": "#595959"},
-                "meaning": {**base, "italic": True, "font_color": "#595959", "indent": 1},
-                "live": {**base, "bold": True, "font_color": "#1F3A5F"},
-                "group": {**base, "bold": True, "font_color": "#FFFFFF", "bg_color": "#1F3A5F"},
-                "plain": base,
-                "header": {**head, "bg_color": "#D9E2EC"},
-                "required": {**head, "bg_color": "#FFD966"},
-                "number": entry,
-                "text": {**entry, "num_format": "@", "indent": 1},
-                "number required": {**entry, "bg_color": "#FFF5D6"},
-                "text required": {**entry, "num_format": "@", "bg_color": "#FFF5D6"},
-                "status": {**base, "italic": True, "font_color": "#595959", "indent": 1},
-                **{kind: {**entry, "num_format": form} for kind, form in DATE_FORMATS.items()},
-                "good": {"font_color": "#006100", "bg_color": "#D5EBDD"},
-                "open": {"font_color": "#7F4F00", "bg_color": "#FFE3B3"},
-                "wrap": {**base, "text_wrap": True, "valign": "top"},
-            }.items()
-        }
-        self.sheets = {name: workbook.add_worksheet(name) for name in (*_PLAIN, "Dictionary", "Lists")}
+        self.formats = cell_formats(workbook)
+        self.entries = {name: filling.entries(name) for name in filling.sheet_names}
+        self.sheets = {name: workbook.add_worksheet(name) for name in (*self.entries, "Dictionary", "Lists")}
+        self.names = {name: listed_names(entries) for name, entries in self.entries.items() if name != "Settings"}
 
     def write(self) -> None:
         """Write all sheets."""
-        entries = {name: self.filling.entries(name) for name in _PLAIN}
-        materials, tolerances = entries["Materials"], entries["Tolerances"]
-        names = [listed_name(row.get("material")) for row in materials.rows]
-        classes = [listed_name(row.get("tolerance_class")) for row in tolerances.rows]
-        rows = max(SIDE_ROWS, len(materials.rows), len(tolerances.rows))
-        write_lists(self.workbook, self.sheets["Lists"], classes, rows)
-        self._variants(entries["Variants"], names, classes)
-        self._side("Materials", materials)
-        self._side("Tolerances", tolerances)
-        self._settings(entries["Settings"])
-        write_dictionary(self.sheets["Dictionary"], self.formats)
+        write_lists(self.workbook, self.sheets["Lists"], self.names)
+        known = {
+            "fl_materials": counted(self.names["Materials"]),
+            "fl_tolerance_rows": counted(self.names["Tolerances"]),
+            "fl_sample_rows": counted(self.names.get("Measurements", ())),
+        }
+        stages = {
+            "Variants": VARIANT_STATUS,
+            "Tolerances": tolerance_status(has_measurements="Measurements" in self.entries),
+            "Correlations": CORRELATION_STATUS,
+        }
+        for name, entries in self.entries.items():
+            if name == "Settings":
+                self._settings(entries)
+                continue
+            sheet = self._table(name, entries, has_status=name in stages)
+            if name in stages:
+                texts = write_status(self.workbook, sheet, entries, (stages[name], known), self.formats)
+                if name == "Variants":
+                    self._variants(sheet, entries, texts)
+                width = len(entries.columns) + len(entries.own)
+                sheet.print_area(0, 0, HEADER_ROW + max(_PRINTED_ROWS, len(texts)), width)
+        write_dictionary(self.sheets["Dictionary"], self.formats, self.entries)
 
     def _format(self, column: Column) -> Any:
         kind = "number" if column.is_number else "text"
@@ -173,70 +172,37 @@ class _Template:
 
     @staticmethod
     def _outline(column: Column) -> dict[str, int]:
-        return {"level": 1} if column.group == "Refinements" else {}
+        return {"level": 1} if column.group in _OUTLINED else {}
 
-    def _variants(self, entries: Entries, materials: Sequence[str], classes: Sequence[str]) -> None:
-        """Write the Variants sheet: entries, hints, live status."""
-        sheet = self._heading("Variants", entries)
-        columns, status = entries.columns, len(entries.columns)
-        sheet.write_string(0, 9, f"Template version {TEMPLATE_VERSION}", self.formats["hint"])
+    def _table(self, name: str, entries: Entries, *, has_status: bool) -> Any:
+        """Write a sheet's headings and entries, with the rules of all prepared rows; return the sheet."""
+        sheet, columns = self._heading(name, entries), entries.columns
+        if any(column.group for column in columns):
+            self._groups(sheet, columns)
+        self._fill(sheet, entries, len(columns) + has_status)
+        rows = prepared_rows(name, len(entries.rows))
+        for index, column in enumerate(columns):
+            rule = cell_rule(column, index, self.entries)
+            sheet.data_validation(FIRST_ROW, index, FIRST_ROW + rows - 1, index, rule)
+        shade_entries(sheet, columns, rows, self.formats)
+        return sheet
+
+    def _groups(self, sheet: Any, columns: Sequence[Column]) -> None:
+        """Write the names of groups of columns above the first of each."""
         sheet.set_row(2, 18)
         groups: list[str] = []
         for index, column in enumerate(columns):
             sheet.write_string(2, index, "" if column.group in groups else column.group, self.formats["group"])
             groups.append(column.group)
-        sheet.write_string(2, status, "", self.formats["group"])
-        sheet.write_string(HEADER_ROW, status, STATUS_HEADER, self.formats["header"])
-        sheet.write_comment(HEADER_ROW, status, "Calculated while you type: what the row still lacks.")
-        sheet.set_column(status, status, 48, self.formats["status"])
-        self._fill(sheet, entries, status + 1)
-        letters = {column.key: xl_col_to_name(index) for index, column in enumerate(columns)}
-        for name, formula in status_names(letters).items():
-            self.workbook.define_name(name, formula)
-        texts = stored_statuses(entries, materials, classes)
-        prepared = max(PREPARED_ROWS, len(texts))
-        for index in range(prepared):
-            text = texts[index] if index < len(texts) else ""
-            if text or index < PREPARED_ROWS:
-                formula = status_formula(FIRST_ROW + index + 1, letters)
-                sheet.write_formula(FIRST_ROW + index, status, formula, self.formats["status"], text)
-        self._progress(sheet, xl_col_to_name(status), texts, prepared)
-        self._entry_rules(sheet, columns, prepared)
-        self._shading(sheet, columns, prepared)
-        sheet.print_area(0, 0, HEADER_ROW + max(_PRINTED_ROWS, len(texts)), status + len(entries.own))
-        sheet.activate()
+        sheet.write_string(2, len(columns), "", self.formats["group"])
 
-    def _progress(self, sheet: Any, letter: str, texts: Sequence[str], prepared: int) -> None:
-        """Write the live sentence that says how many rows are complete and where the first gap is."""
-        block = f"${letter}${FIRST_ROW + 1}:${letter}${FIRST_ROW + prepared}"
-        names = f"$A${FIRST_ROW + 1}:$A${FIRST_ROW + prepared}"
-        done, started = f'COUNTIF({block},"{COMPLETE}")', f'COUNTIF({block},"?*")'
-        sentence = f'{done}&" of "&{started}&" rows complete"'
-        entered = [text for text in texts if text]
-        shown = f"{entered.count(COMPLETE)} of {len(entered)} rows complete" if entered else "No row entered yet"
-        formula = f'=IF({started}=0,"No row entered yet",{sentence})'
-        sheet.write_formula(1, 9, formula, self.formats["live"], shown)
-        self.workbook.define_name("fl_variants", f"=Variants!{names}")
-
-    def _shading(self, sheet: Any, columns: Sequence[Column], prepared: int) -> None:
-        """Colour what is missing, what is double, and the status."""
-        status = len(columns)
-        last = FIRST_ROW + prepared - 1
-        first, end = xl_col_to_name(0), xl_col_to_name(status - 1)
-        row = FIRST_ROW + 1
-        for index, column in enumerate(columns):
-            if column.required:
-                cell = xl_rowcol_to_cell(FIRST_ROW, index)
-                criteria = f'=AND(COUNTA(${first}{row}:${end}{row})>0,{cell}="")'
-                rule = {"type": "formula", "criteria": criteria, "format": self.formats["open"]}
-                sheet.conditional_format(FIRST_ROW, index, last, index, rule)
+    def _variants(self, sheet: Any, entries: Entries, texts: Sequence[str]) -> None:
+        """Write what Variants alone has: the version, the count of complete rows, the colour of doubled names."""
+        sheet.write_string(0, 9, f"Template version {TEMPLATE_VERSION}", self.formats["hint"])
+        write_progress(self.workbook, sheet, len(entries.columns), texts, self.formats["live"])
+        last = FIRST_ROW + prepared_rows("Variants", len(texts)) - 1
         sheet.conditional_format(FIRST_ROW, 0, last, 0, {"type": "duplicate", "format": self.formats["open"]})
-        cell = f"${xl_col_to_name(status)}{row}"
-        # Each rule excludes the other, since LibreOffice forgets which of them would stop the next.
-        unfinished = f'=AND(LEN({cell})>0,{cell}<>"{COMPLETE}")'
-        for criteria, style in ((f'={cell}="{COMPLETE}"', "good"), (unfinished, "open")):
-            rule = {"type": "formula", "criteria": criteria, "format": self.formats[style]}
-            sheet.conditional_format(FIRST_ROW, status, last, status, rule)
+        sheet.activate()
 
     def _fill(self, sheet: Any, entries: Entries, own: int, styles: Mapping[str, Any] | None = None) -> None:
         """Write the given rows, and the user's own columns from the column `own` on; `styles` are formats by key."""
@@ -254,18 +220,6 @@ class _Template:
         for row, values in enumerate(entries.rows, start=FIRST_ROW):
             for key, (index, style) in targets.items() if values else ():
                 cells.write(row, index, values.get(key), style)
-
-    def _entry_rules(self, sheet: Any, columns: Sequence[Column], rows: int) -> None:
-        """Give every cell of every column its hint and its rule."""
-        for index, column in enumerate(columns):
-            rule = cell_rule(column, index)
-            sheet.data_validation(FIRST_ROW, index, FIRST_ROW + rows - 1, index, rule)
-
-    def _side(self, name: str, entries: Entries) -> None:
-        """Write Materials or Tolerances."""
-        sheet = self._heading(name, entries)
-        self._fill(sheet, entries, len(entries.columns))
-        self._entry_rules(sheet, entries.columns, max(SIDE_ROWS, len(entries.rows)))
 
     def _settings(self, entries: Entries) -> None:
         """Write Settings: fixed names, free values, what they mean beside them."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -32,7 +32,13 @@ from flexlash.validation.validated import Heading
 __all__ = ["Upgrade", "refilled", "upgraded"]
 
 _MADE_ANEW = ("Dictionary", "Lists")
-_ABOVE = re.compile(r"Template version \d+|\d+ of \d+ rows complete|No row entered yet", re.IGNORECASE)
+_ABOVE = re.compile(
+    r"Template version \d+|\d+ of \d+ rows complete|No row entered yet"
+    r"|One row per class and dimension: a grade, or lower and upper deviation\. No row: exact\.",
+    re.IGNORECASE,
+)
+"""What this and former versions of the template write above a header row beside title and hint."""
+
 _ARITHMETIC = re.compile(r"[-+*/^() \d.]+", re.ASCII)
 _NO_RESULT = "=NA()"
 """What stands for a formula without a result: it never turns into a number that nobody entered."""
@@ -55,26 +61,32 @@ class Upgrade:
     remarks: tuple[str, ...]
 
 
-def upgraded(path: Path, limits: ReadingLimits | None = None) -> Upgrade:
+def upgraded(path: Path, limits: ReadingLimits | None = None, optional: Collection[str] = ()) -> Upgrade:
     """Return a template of this version, filled with everything that a template, workbook or table holds.
 
-    Raises OSError when the file cannot be opened and Refusal when it is no readable submission or a newer template.
+    It has the optional sheets of the file and those named `optional`. Raises OSError when the file cannot be opened and
+    Refusal when it is no readable submission or a newer template.
     """
     limits = limits or ReadingLimits()
-    return ask(_upgraded, limits, Source.at(path, limits), limits)
+    return ask(_upgraded, limits, Source.at(path, limits), limits, tuple(optional))
 
 
-def _upgraded(source: Source, limits: ReadingLimits) -> Upgrade:
+def _upgraded(source: Source, limits: ReadingLimits, optional: Collection[str]) -> Upgrade:
     submission = submission_of(source, limits)
     if submission.role.startswith(("report", "checked")):
         raise Refusal("E101", found="it is a report or a marked copy made by flexlash")
     if submission.kind != "workbook":
-        return refilled(submission, limits)
-    upgrade = refilled(submission, limits, leftovers_of(source.data, limits))
+        return refilled(submission, limits, optional=optional)
+    upgrade = refilled(submission, limits, leftovers_of(source.data, limits), optional)
     return replace(upgrade, remarks=(*upgrade.remarks, _WITHOUT_FORMAT))
 
 
-def refilled(submission: Submission, limits: ReadingLimits, leftovers: Leftovers | None = None) -> Upgrade:
+def refilled(
+    submission: Submission,
+    limits: ReadingLimits,
+    leftovers: Leftovers | None = None,
+    optional: Collection[str] = (),
+) -> Upgrade:
     """Return a template of this version, filled with what was read and with what else the file held.
 
     Raises Refusal when there is no header row, or a newer template's.
@@ -92,7 +104,7 @@ def refilled(submission: Submission, limits: ReadingLimits, leftovers: Leftovers
         remarks += carried.remarks
     remarks += _left_behind(submission, [sheet.name for sheet in sheets.values()], leftovers)
     return Upgrade(
-        data=template_bytes(Filling(sheets=filled)),
+        data=template_bytes(Filling(sheets=filled, optional=optional)),
         version=template_version(submission),
         rows=validated.table.frame.height,
         remarks=tuple(remarks),

@@ -1,0 +1,223 @@
+"""What the status of a row of Tolerances and of Correlations says."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from flexlash.feedback.template.status_rules import (
+    Known,
+    Row,
+    Rule,
+    Stage,
+    entry_text,
+    is_blank,
+    missing,
+    no_number,
+    twice,
+    unknown,
+    unlisted,
+)
+from flexlash.schema.columns import CORRELATIONS, DIMENSIONS, TOLERANCES, Column
+from flexlash.schema.entry_words import inner_name
+from flexlash.schema.tolerance_grades import is_grade
+
+__all__ = ["CORRELATION_STATUS", "GRADED", "tolerance_status"]
+
+GRADED = tuple(name for name, column in DIMENSIONS.items() if column.quantity == "length" and column.grade_at != "none")
+"""Dimensions that a tolerance grade applies to."""
+
+_COLUMNS = {column.key: column for column in TOLERANCES}
+_DEVIATIONS = ("lower_deviation", "upper_deviation")
+_SPREADS = ("limits_sigma", "standard_deviation", "cp", "sample")
+_OF_NORMAL = ("mean_shift", "standard_deviation", "cp", "cpk")
+_NO_NORMAL = ("uniform", "triangular")
+_NO_CLASS = "tolerance class not in Tolerances"
+
+
+def _given(row: Row, *keys: str) -> int:
+    """Return how many of these cells are filled."""
+    return sum(not is_blank(row.get(key)) for key in keys)
+
+
+def _number(row: Row, key: str) -> float:
+    """Return a number, a blank cell as 0, as Excel compares it."""
+    return float(row.get(key) or 0.0)
+
+
+def _count(*keys: str) -> str:
+    """Return the formula of how many of these cells are filled."""
+    return f"({'+'.join(f'({{{key}}}<>{chr(34)}{chr(34)})' for key in keys)})"
+
+
+def _names(*keys: str) -> str:
+    """Return columns as a sentence lists them."""
+    *others, last = (inner_name(_COLUMNS[key]) for key in keys)
+    return f"{', '.join(others)} and {last}"
+
+
+def _is_no_normal(row: Row) -> bool:
+    """Whether the distribution has no mean and standard deviation of its own."""
+    return entry_text(row, "distribution").strip() in _NO_NORMAL
+
+
+def _dimension(key: str) -> Rule:
+    """Return the rule that a dimension is one of the list, which is too long for a formula."""
+    return Rule(
+        text=f"{key.replace('_', ' ')} is not one of its list",
+        excel=f'AND({{{key}}}<>"",COUNTIF(fl_dimensions,TRIM({{{key}}}))=0)',
+        holds=lambda row, _: not is_blank(row.get(key)) and entry_text(row, key).strip() not in DIMENSIONS,
+    )
+
+
+def _other_deviation(key: str) -> Rule:
+    """Return the rule that a deviation does not stand alone."""
+    return Rule(
+        text=f"{inner_name(_COLUMNS[key])} missing",
+        excel=f'AND({{{key}}}="",{_count(*_DEVIATIONS)}=1)',
+        holds=lambda row, _: is_blank(row.get(key)) and _given(row, *_DEVIATIONS) == 1,
+    )
+
+
+_ENTRIES = (
+    missing(_COLUMNS["tolerance_class"]),
+    Rule(
+        text="dimension missing",
+        excel='AND({dimension}="",{based_on}="")',
+        holds=lambda row, _: not _given(row, "dimension", "based_on"),
+    ),
+    _dimension("dimension"),
+    *(unlisted(column) for column in TOLERANCES if column.choices and column.key != "dimension"),
+    *(no_number(column) for column in TOLERANCES if column.is_number),
+)
+_BASE = (
+    Rule(
+        text="based on class needs a row without a dimension",
+        excel='AND({based_on}<>"",{dimension}<>"")',
+        holds=lambda row, _: _given(row, "based_on", "dimension") == 2,  # noqa: PLR2004
+    ),
+    Rule(
+        text="a class based on itself",
+        excel='AND({based_on}<>"",{based_on}={tolerance_class})',
+        holds=lambda row, _: (
+            _given(row, "based_on") == 1 and entry_text(row, "based_on") == entry_text(row, "tolerance_class")
+        ),
+    ),
+    unknown("based_on", "based on class not in Tolerances", "fl_tolerance_rows", "standard"),
+)
+_DRAWING = (
+    Rule(
+        text="grade is not one of its list",
+        excel='AND({grade}<>"",SUMPRODUCT(--EXACT(fl_grades,SUBSTITUTE(TRIM({grade}),"JS","js")))=0)',
+        holds=lambda row, _: _given(row, "grade") == 1 and not is_grade(str(row["grade"]).strip()),
+    ),
+    Rule(
+        text="a grade for a dimension that has none",
+        excel='AND({grade}<>"",COUNTIF(fl_graded_dimensions,TRIM({dimension}))=0)',
+        holds=lambda row, _: _given(row, "grade") == 1 and entry_text(row, "dimension").strip() not in GRADED,
+    ),
+    Rule(
+        text="grade and deviations are both given",
+        excel=f'AND({{grade}}<>"",{_count(*_DEVIATIONS)}>0)',
+        holds=lambda row, _: _given(row, "grade") == 1 and _given(row, *_DEVIATIONS) > 0,
+    ),
+    Rule(
+        text="neither grade nor deviations are given",
+        excel=f'AND({{dimension}}<>"",{{grade}}="",{_count(*_DEVIATIONS)}=0)',
+        holds=lambda row, _: _given(row, "dimension") == 1 and not _given(row, "grade", *_DEVIATIONS),
+    ),
+    *(_other_deviation(key) for key in _DEVIATIONS),
+    Rule(
+        text="lower deviation is above upper deviation",
+        excel="{lower_deviation}>{upper_deviation}",
+        holds=lambda row, _: _number(row, "lower_deviation") > _number(row, "upper_deviation"),
+    ),
+)
+_PROCESS = (
+    Rule(
+        text=f"only one of {_names(*_SPREADS)} may be given",
+        excel=f"{_count(*_SPREADS)}>1",
+        holds=lambda row, _: _given(row, *_SPREADS) > 1,
+    ),
+    Rule(
+        text="Cpk without Cp",
+        excel='AND({cpk}<>"",{cp}="")',
+        holds=lambda row, _: _given(row, "cpk") == 1 and not _given(row, "cp"),
+    ),
+    Rule(
+        text="Cpk is above Cp",
+        excel='AND({cpk}<>"",{cpk}>{cp})',
+        holds=lambda row, _: _given(row, "cpk") == 1 and _number(row, "cpk") > _number(row, "cp"),
+    ),
+    Rule(
+        text=f"only a normal distribution has {_names(*_OF_NORMAL)}",
+        excel=f'AND(OR(TRIM({{distribution}})="uniform",TRIM({{distribution}})="triangular"),{_count(*_OF_NORMAL)}>0)',
+        holds=lambda row, _: _is_no_normal(row) and _given(row, *_OF_NORMAL) > 0,
+    ),
+    Rule(
+        text="a measured distribution without a sample",
+        excel='AND(TRIM({distribution})="measured",{sample}="")',
+        holds=lambda row, _: entry_text(row, "distribution").strip() == "measured" and is_blank(row.get("sample")),
+    ),
+    twice(("tolerance_class", "dimension"), "class and dimension used twice"),
+)
+
+
+def tolerance_status(*, has_measurements: bool) -> Sequence[Stage]:
+    """Return the status of a row of Tolerances, whose samples stand in Measurements where there is that sheet."""
+    without = Rule(
+        text="sample without a sheet Measurements",
+        excel='{sample}<>""',
+        holds=lambda row, _: _given(row, "sample") == 1,
+    )
+    sample = unknown("sample", "sample not in Measurements", "fl_sample_rows") if has_measurements else without
+    return (
+        Stage(name="fl_tolerance_entries", rules=_ENTRIES),
+        Stage(name="fl_tolerance_limits", rules=[*_BASE, *_DRAWING]),
+        Stage(name="fl_tolerance_process", rules=[*_PROCESS, sample]),
+    )
+
+
+def _pair_is_double(row: Row, known: Known) -> bool:
+    """Whether a pair stands in another row of its class, either way round."""
+    name, first, second = (entry_text(row, key) for key in _PAIR)
+    counts = known[",".join(_PAIR)]
+    return all((name, first, second)) and counts[name, first, second] + counts[name, second, first] > 1
+
+
+def _same_cells(one: str, other: str) -> str:
+    """Return the formula of how many rows of a class hold these two dimensions."""
+    return (
+        f"COUNTIFS({{tolerance_class_block}},{{tolerance_class}},"
+        f"{{dimension_1_block}},{{{one}}},{{dimension_2_block}},{{{other}}})"
+    )
+
+
+def _required(column: Column) -> Sequence[Rule]:
+    """Return the rules of a column of Correlations."""
+    rules = [missing(column)] if column.required else []
+    if column.choices:
+        return [*rules, _dimension(column.key)]
+    return [*rules, no_number(column)] if column.is_number else rules
+
+
+_PAIR = ("tolerance_class", "dimension_1", "dimension_2")
+CORRELATION_STATUS = (
+    Stage(
+        name="fl_correlation_entries",
+        rules=[
+            *(rule for column in CORRELATIONS for rule in _required(column)),
+            unknown("tolerance_class", _NO_CLASS, "fl_tolerance_rows", "standard"),
+            Rule(
+                text="a dimension with itself",
+                excel="TRIM({dimension_1})=TRIM({dimension_2})",
+                holds=lambda row, _: entry_text(row, "dimension_1").strip() == entry_text(row, "dimension_2").strip(),
+            ),
+            Rule(
+                text="pair used twice",
+                excel=f"{_same_cells('dimension_1', 'dimension_2')}+{_same_cells('dimension_2', 'dimension_1')}>1",
+                holds=_pair_is_double,
+                together=_PAIR,
+            ),
+        ],
+    ),
+)
