@@ -86,17 +86,17 @@ CORRELATION_ROWS = [
     (_PAIR, "correlation missing"),
     (_PAIR | {"correlation": 1.01}, "correlation is not a number from -1 to 1"),
     (_PAIR | {"correlation": "0,6"}, "correlation is not a number from -1 to 1"),
-    (_PAIR | {"tolerance_class": "row 1", "correlation": -1.0, "reason": "one set-up"}, "pair used twice"),
+    (_PAIR | {"tolerance_class": "row 4", "correlation": -1.0, "reason": "one set-up"}, "pair used twice"),
     (
         {
-            "tolerance_class": "Row 1",
+            "tolerance_class": "Row 4",
             "dimension_1": "disk_thickness",
             "dimension_2": "wall_thickness",
             "correlation": 0.0,
         },
         "pair used twice",
     ),
-    (_PAIR | {"tolerance_class": "row 1", "dimension_2": "mean_radius", "correlation": 1.0}, "complete"),
+    (_PAIR | {"tolerance_class": "row 4", "dimension_2": "mean_radius", "correlation": 1.0}, "complete"),
 ]
 
 

@@ -6,9 +6,12 @@ import pytest
 from grids import for_each
 
 from flexlash.schema.columns import (
+    CORRELATIONS,
     DIMENSIONS,
     ENTRY_SHEETS,
     MATERIALS,
+    MEASUREMENTS,
+    OPTIONAL_SHEETS,
     SETTINGS,
     TOLERANCES,
     VARIANTS,
@@ -61,6 +64,13 @@ TOLERANCE_KEYS = [
     "grade",
     "distribution",
     "limits_sigma",
+    "mean_shift",
+    "standard_deviation",
+    "cp",
+    "cpk",
+    "sample",
+    "scatters_between",
+    "based_on",
 ]
 SETTING_DEFAULTS = {
     "seed": 0,
@@ -70,6 +80,7 @@ SETTING_DEFAULTS = {
     "lost_motion_percent": 4,
     "cylinder_calibration": 1,
     "disk_calibration": 1,
+    "acceptable_ppm": 1350,
 }
 DIMENSION_NAMES = [
     "torque",
@@ -173,6 +184,13 @@ FURTHER_KEYS = [
     "skewness_standard_error",
     "kurtosis",
     "kurtosis_standard_error",
+    *(
+        f"{name}{error}"
+        for name in ("within_lot_sd", "between_lots_sd", "lots_failing")
+        for error in (("", "_standard_error") if name == "lots_failing" else ("_arcmin", "_standard_error_arcmin"))
+    ),
+    *(f"probability_over_limit_sample_{end}" for end in ("low", "high")),
+    *(f"p99_865_sample_{end}_arcmin" for end in ("low", "high")),
     "ppm_over_limit_low",
     "ppm_over_limit_high",
     "ppk_normal",
@@ -214,7 +232,7 @@ REQUIREMENTS = {
     ("Materials", "youngs_modulus_GPa"): "a number in GPa greater than 0",
     ("Materials", "poisson_ratio"): "a number of at least 0 and at most 0.5",
     ("Tolerances", "lower_deviation"): "a number",
-    ("Tolerances", "distribution"): "one of normal, truncated normal, uniform, triangular",
+    ("Tolerances", "distribution"): "one of normal, truncated normal, uniform, triangular, measured",
     ("Tolerances", "limits_sigma"): "a number of at least 0.5 and at most 100",
 }
 EVERY = [column for columns in (*ENTRY_SHEETS.values(), SETTINGS, RESULTS, CROSS_CHECK, FINDINGS) for column in columns]
@@ -225,8 +243,9 @@ def _key(column):
 
 
 def test_entry_sheets():
-    """The template has the sheets Variants, Materials, Tolerances and Settings, in this order."""
-    assert list(ENTRY_SHEETS) == ["Variants", "Materials", "Tolerances", "Settings"]
+    """The sheets are Variants, Materials, Tolerances and Settings, in this order, then the optional ones."""
+    assert list(ENTRY_SHEETS) == ["Variants", "Materials", "Tolerances", "Settings", "Measurements", "Correlations"]
+    assert OPTIONAL_SHEETS == ("Measurements", "Correlations")
 
 
 def test_variants():
@@ -248,9 +267,23 @@ def test_materials():
 
 
 def test_tolerances():
-    """Tolerances has the contract's keys and requires class and dimension."""
+    """Tolerances has the contract's keys and requires the class; a row without a dimension takes over another class."""
     assert [column.key for column in TOLERANCES] == TOLERANCE_KEYS
-    assert [column.key for column in TOLERANCES if column.required] == ["tolerance_class", "dimension"]
+    assert [column.key for column in TOLERANCES if column.required] == ["tolerance_class"]
+
+
+def test_measurements():
+    """Measurements has sample, part and use, then every dimension of Variants under its key; the sample is required."""
+    dimensions = [column.key for column in VARIANTS if column.role == "dimension"]
+    assert [column.key for column in MEASUREMENTS] == ["sample", "part", "use_as", *dimensions]
+    assert [column.key for column in MEASUREMENTS if column.required] == ["sample"]
+
+
+def test_correlations():
+    """Correlations has the contract's keys and requires all but the reason."""
+    keys = ["tolerance_class", "dimension_1", "dimension_2", "correlation", "reason"]
+    assert [column.key for column in CORRELATIONS] == keys
+    assert [column.key for column in CORRELATIONS if not column.required] == ["reason"]
 
 
 def test_settings():
@@ -317,7 +350,7 @@ def test_dimensions():
     ("sheet", "key", "choices", "default"),
     [
         ("Variants", "flexspline_type", ("cup", "hat", "cylinder"), "cup"),
-        ("Tolerances", "distribution", ("normal", "truncated normal", "uniform", "triangular"), "normal"),
+        ("Tolerances", "distribution", ("normal", "truncated normal", "uniform", "triangular", "measured"), "normal"),
     ],
 )
 def test_choices(sheet, key, choices, default):
