@@ -180,7 +180,7 @@ def test_names_are_kept(books):
     assert {name: one.attr_text for name, one in after.defined_names.items()} == {
         name: one.attr_text for name, one in before.defined_names.items()
     }
-    assert len(before.defined_names) == 14
+    assert len(before.defined_names) == 21
 
 
 def test_properties_are_kept(books):
@@ -188,7 +188,7 @@ def test_properties_are_kept(books):
     _, before, after = books
     properties = {one.name: one.value for one in after.custom_doc_props.props}
     assert properties == {one.name: one.value for one in before.custom_doc_props.props}
-    assert properties["flexlash_template_version"] == "3"
+    assert properties["flexlash_template_version"] == "4"
     assert after.properties.title == before.properties.title == "flexlash template"
     assert after.properties.description == before.properties.description
 
@@ -205,7 +205,7 @@ def test_rules_of_cells_are_kept(books):
     _, before, after = books
     for sheet in before:
         assert _rules(after[sheet.title]) == _rules(sheet)
-    assert sum(len(_rules(sheet)) for sheet in before) == 49
+    assert sum(len(_rules(sheet)) for sheet in before) == 57
 
 
 def test_lists_are_kept(books):
