@@ -7,19 +7,12 @@ thicknesses, that of their normal scores being 2 sin(π ρ/6). Backlash 2U: sd i
 import math
 
 import pytest
-from reference_inputs import SCATTER
+from reference_inputs import CORRELATED_WALLS, REFERENCE_ERROR, SCATTER
 
 from flexlash.mechanics.flexspline import backlash
 from flexlash.tolerance import propagate
 
 PAIR = ("wall_thickness", "disk_thickness")
-REFERENCES = {
-    0.0: (2.01204, 1.112602, 1.131560),
-    0.5: (2.22863, 1.116400, 1.135383),
-    0.8: (2.34907, 1.118319, 1.137139),
-    1.0: (2.42602, 1.119490, 1.138189),
-}
-REFERENCE_ERROR = 3e-9
 
 
 def model(**dimensions):
@@ -29,7 +22,7 @@ def model(**dimensions):
 
 @pytest.mark.parametrize("method", ["line", "sobol"])
 @pytest.mark.parametrize("of", ["values", "scores", "ranks"])
-@pytest.mark.parametrize("correlation", REFERENCES)
+@pytest.mark.parametrize("correlation", CORRELATED_WALLS)
 def test_published_spread_of_correlated_thicknesses(correlation, of, method):
     """sd, P97.5 and P99.865 are the references' within four combined standard errors, however ρ is entered.
 
@@ -37,7 +30,7 @@ def test_published_spread_of_correlated_thicknesses(correlation, of, method):
     """
     entered = 2 * math.sin(math.pi * correlation / 6) if of == "scores" else correlation
     spread = propagate(model, SCATTER, method=method, correlation={PAIR: min(entered, 1.0)}, correlation_of=of, seed=1)
-    sd, p97_5, p99_865 = REFERENCES[correlation]
+    sd, p97_5, p99_865 = CORRELATED_WALLS[correlation]
     assert spread.method == method
     assert method == "sobol" or spread.size <= 512
     assert abs(spread.sd - sd * 1e-5) <= 4 * math.hypot(spread.sd_standard_error, REFERENCE_ERROR)

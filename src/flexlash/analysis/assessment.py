@@ -12,6 +12,7 @@ import numpy.typing as npt
 import polars as pl
 
 from flexlash.analysis.backlash_models import BACKLASH_OF
+from flexlash.analysis.class_correlations import class_correlations
 from flexlash.analysis.computed import ComputedRows, Nominal
 from flexlash.mechanics.nominal import nominal_numbers
 from flexlash.mechanics.nominal_record import NominalNumbers
@@ -62,9 +63,11 @@ def assess(validated: Validated, settings: Settings) -> Nominal:
     All variants are looked at together, and one by one only those of which there may be something to say.
     """
     ledger, variants = Ledger.after(validated), validated.variants
+    correlations = class_correlations(validated, ledger)
     if not variants:
-        return Nominal(blocked=ledger.blocked)
+        return Nominal(findings=tuple(ledger.findings), blocked=ledger.blocked)
     arrays, rows = variants.arrays(), np.array(variants.rows)
+    ledger.rows.update(rows[[owner in ledger.classes for owner in variants.classes]].tolist())
     for variant in variants.some(np.flatnonzero(~_limits_are_fine(validated, arrays)).tolist()):
         _report_all_limits(ledger, variant, validated.classes)
     _report_exact(validated, arrays, ledger)
@@ -72,7 +75,7 @@ def assess(validated: Validated, settings: Settings) -> Nominal:
     arrays = arrays.take(sound)
     numbers = pl.DataFrame({"row": rows[sound], "place": sound})
     numbers = numbers.hstack(nominal_numbers(arrays, settings.lost_motion_percent / 100))
-    computed = ComputedRows(validated=validated, numbers=numbers)
+    computed = ComputedRows(validated=validated, numbers=numbers, correlations=correlations)
     mistakes = _by_owner(validated.unit_mistakes.values())
     doubtful = np.flatnonzero(~_numbers_are_fine(arrays, numbers))
     for place, variant in zip(doubtful.tolist(), variants.some(sound[doubtful].tolist()), strict=True):

@@ -71,6 +71,13 @@ class Computed:
         )
 
     @cached_property
+    def correlation(self) -> tuple[tuple[str, str, float], ...]:
+        """Which of its dimensions scatter together: two that both scatter, and the correlation of their scores."""
+        pairs = self.among.correlations.get(plain(self.variant.tolerance_class), {})
+        scattering = {name for name, limit in self.limits.items() if limit.low < limit.high} if pairs else set()
+        return tuple((*pair, value) for pair, value in pairs.items() if scattering.issuperset(pair))
+
+    @cached_property
     def nominal(self) -> NominalNumbers:
         """Its numbers at the entered dimensions."""
         return self.among.nominal(self.place)
@@ -92,11 +99,14 @@ class ComputedRows(RowRecords[Computed]):
     """The computed variants by row number, which rises; held as columns, each a record when it is asked for.
 
     `numbers` has the columns `row`, `place` among the variants of `validated`, and the fields of `NominalNumbers` that
-    some variant has; it is None where no variant is computed. `statistics` and `checks` are what later stages found, by row number.
+    some variant has; it is None where no variant is computed. `correlations` are those of the normal scores of two
+    dimensions of a class, by its plain name, as entered or measured. `statistics` and `checks` are what later stages
+    found, by row number.
     """
 
     validated: Validated = field(default_factory=Validated)
     numbers: pl.DataFrame | None = None
+    correlations: Mapping[str, Mapping[tuple[str, str], float]] = field(default_factory=dict)
     statistics: SpreadRows | None = None
     checks: Mapping[int, Elasticity] = field(default_factory=dict)
 

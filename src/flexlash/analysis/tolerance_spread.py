@@ -143,4 +143,5 @@ def _toleranced(variant: Computed) -> TolerancedRow:
         limits=variant.limits,
         upper_limit=variant.variant.backlash_limit,
         between=variant.between,
+        correlation=variant.correlation,
     )

@@ -628,6 +628,45 @@ CATALOGUE = _rules(
         "which flexlash must be told.",
     ),
     (
+        "E345",
+        "correlation twice",
+        "{place}: the same pair of this class also stands in {other}.",
+        "Keep one row per class and pair; which of the two dimensions comes first does not matter.",
+        "With two rows flexlash cannot know which holds.",
+    ),
+    (
+        "E346",
+        "dimension correlated with itself",
+        "{place} {name} = {value}: another dimension than the first of the row is required.",
+        "Enter the dimension that it scatters together with, or delete the row.",
+        "A correlation ties two different dimensions of one part.",
+    ),
+    (
+        "E347",
+        "correlation of an exact dimension",
+        "{place} {name} = {value}: class {other} leaves this dimension exact, so that it scatters with no other.",
+        "Add its row to Tolerances, or delete this row.",
+        "Only dimensions that scatter can scatter together. A variant that lacks one of the two, or takes it from "
+        "another, such as a blank disk thickness, does without the pair.",
+    ),
+    (
+        "E348",
+        "correlations contradict one another",
+        "{place} {name} = {value} contradicts the other correlations of class {other}; the nearest admissible "
+        "value{detail} is {suggestion}.",
+        "Enter {suggestion}, or mend one of the others.",
+        "What is close to both of two dimensions cannot turn away from their likeness: with 0.9 to each of two, these "
+        "have at least 0.62. In the words of matrices, no eigenvalue may be negative.",
+    ),
+    (
+        "E349",
+        "lot correlated with a part",
+        "{place}: in class {other} {value} is one value for a whole lot, and {detail} differs from part to part: they "
+        "cannot scatter together.",
+        "Let both scatter between lots or both between parts (Tolerances, Scatters between), or delete the row.",
+        "A dimension that all parts of a lot share cannot follow one that each of them has for itself.",
+    ),
+    (
         "W401",
         "disk does not meet the wall",
         "{place} {name} = {value} mm differs from the mean radius {other} mm.",
@@ -931,6 +970,23 @@ CATALOGUE = _rules(
         "sample shows them. It is used as it stands.",
     ),
     (
+        "W448",
+        "correlation beside the measured one",
+        "{place} {name} = {value} is used in class {other}, but the parts measured together say {detail}.",
+        "Check the entered value; delete the row to use the measured one.",
+        "An entered correlation goes before a measured one. It lies outside the interval that holds the true "
+        "correlation in 95 of 100 samples.",
+    ),
+    (
+        "W449",
+        "measured correlation not as measured",
+        "{place}: of the correlations measured in sample {value}, class {other} takes {detail}.",
+        "Measure the same parts in all dimensions, let them scatter between lots or between parts alike, or enter the "
+        "correlations in Correlations.",
+        "Correlations of different parts can contradict one another; the nearest that do not are then used. A "
+        "dimension that a whole lot shares cannot follow one that differs from part to part.",
+    ),
+    (
         "W452",
         "sheet without a table",
         "{place}: this sheet has the name of an entry sheet, but no header row of {other}; nothing of it is used.",
@@ -1091,5 +1147,13 @@ CATALOGUE = _rules(
         "Nothing to do if these are different parts; else keep one row of each part.",
         "Measuring one part again tells of the gauge, not of the process: the sample looks larger than it is, and its "
         "interval narrower.",
+    ),
+    (
+        "I531",
+        "dimensions measured together",
+        "{place}: in class {other} the parts of sample {value} scatter together as measured: {detail}.",
+        "Nothing to do; enter another value in Correlations, 0 for none, if it is known better.",
+        "Two dimensions that are measured on the same parts have the correlation of these parts. That of few parts is "
+        "uncertain, as its interval says.",
     ),
 )

@@ -14,8 +14,9 @@ from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import columns_of
 from flexlash.schema.spellings import affordable, misspelt, plain, spelt_alike, suggested
-from flexlash.schema.variant import Material, Settings, ToleranceRow
+from flexlash.schema.variant import CorrelationRow, Material, Settings, ToleranceRow
 from flexlash.validation.cell_values import is_no_value, no_value_facts
+from flexlash.validation.correlation_rows import correlation_rows_of
 from flexlash.validation.csv_findings import report_dialect
 from flexlash.validation.entry_sheets import (
     entry_sheets,
@@ -82,6 +83,8 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
         tolerances=tables.get("Tolerances"),
         measurements=tables.get("Measurements"),
         measured=samples.dimensions,
+        correlations=tables.get("Correlations"),
+        correlation_rows=used.correlations,
         variants=VariantRows(frame=sound, materials=used.materials, settings=used.settings),
         classes=used.classes,
         materials=used.materials,
@@ -125,11 +128,12 @@ def _sound(frame: pl.DataFrame, faulty: Collection[int]) -> pl.DataFrame:
 
 @dataclass(frozen=True, kw_only=True)
 class _Used:
-    """What the rows of Variants draw on: materials and classes by plain name, and the settings."""
+    """What the rows of Variants draw on: materials and classes by plain name, settings, sound rows of Correlations."""
 
     materials: Mapping[str, Material]
     classes: Mapping[str, Sequence[ToleranceRow]]
     settings: Settings
+    correlations: Sequence[CorrelationRow]
 
 
 def _used(
@@ -155,7 +159,9 @@ def _used(
             ledger.add("I505", value="rows for tolerance class standard", other="class")
     report_used_samples(samples, classes, tables.get("Tolerances"), ledger)
     settings = settings_of(tables["Settings"], ledger) if "Settings" in tables else Settings()
-    return _Used(materials=materials, classes=classes, settings=settings)
+    tied = tables.get("Correlations")
+    correlations = () if tied is None else correlation_rows_of(tied, classes, ledger)
+    return _Used(materials=materials, classes=classes, settings=settings, correlations=correlations)
 
 
 def _check_rows(table: Table, used: _Used, ledger: Ledger) -> None:

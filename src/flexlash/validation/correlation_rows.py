@@ -1,0 +1,136 @@
+"""Correlations: from the typed table to records, and what is wrong with single rows of it."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from flexlash.schema.columns import DIMENSIONS, columns_of
+from flexlash.schema.spellings import affordable, misspelt, plain, spelt_alike, suggested
+from flexlash.schema.variant import CorrelationRow, ToleranceRow
+from flexlash.validation.cell_values import is_no_value, no_value_facts
+from flexlash.validation.ledger import Ledger
+from flexlash.validation.validated import Table
+
+__all__ = ["correlation_rows_of"]
+
+_COLUMNS = columns_of("Correlations")
+_PAIR = ("dimension_1", "dimension_2")
+_NEEDED = ("tolerance_class", *_PAIR, "correlation")
+_ORDER = {name: place for place, name in enumerate(DIMENSIONS)}
+
+_NEAR = 0.7
+"""Likeness from which on a class is suggested."""
+
+
+def correlation_rows_of(
+    table: Table, classes: Mapping[str, Sequence[ToleranceRow]], ledger: Ledger
+) -> tuple[CorrelationRow, ...]:
+    """Return the sound rows of a sheet, each pair in the order of `DIMENSIONS`; faulty ones spoil their class.
+
+    `classes` are those of Tolerances by plain name.
+    """
+    known = {key: rows[0].tolerance_class if rows else key for key, rows in classes.items()}
+    named = _Names(known, few=table.frame["tolerance_class"].n_unique() <= affordable(known))
+    doubled = _report_twice(table, ledger)
+    found = []
+    for record in table.frame.iter_rows(named=True):
+        row, name = record["row"], record["tolerance_class"]
+        if name is None or (row, "tolerance_class") in table.faulty:
+            ledger.everything = True
+            continue
+        owner = _owner(table, ledger, row, name, named)
+        if owner is None:
+            continue
+        faulty = row in doubled or any((row, key) in table.faulty or record[key] is None for key in _NEEDED)
+        if _reports_pair(table, ledger, record, owner, classes[owner]) or faulty:
+            ledger.spoil("class", owner, table.sheet, row)
+            continue
+        first, second = sorted((record[key] for key in _PAIR), key=_ORDER.__getitem__)
+        found.append(
+            CorrelationRow(
+                row=row, tolerance_class=known[owner], first=first, second=second, correlation=record["correlation"]
+            )
+        )
+    return tuple(found)
+
+
+class _Names(dict[str, dict[str, str | None]]):
+    """What unknown classes probably mean, looked up once each, where so `few` are named that all can be compared."""
+
+    def __init__(self, known: Mapping[str, str], *, few: bool) -> None:
+        super().__init__()
+        self.known = known
+        self.few = few
+        self._spelt = spelt_alike(known.values())
+
+    def __missing__(self, value: str) -> dict[str, str | None]:
+        """Look a name up."""
+        self[value] = (
+            {
+                "suggestion": suggested(value, list(self.known.values()), _NEAR),
+                "certain_value": misspelt(value, self._spelt),
+            }
+            if self.few
+            else {}
+        )
+        return self[value]
+
+
+def _owner(table: Table, ledger: Ledger, row: int, name: str, named: _Names) -> str | None:
+    """Return the plain name of the class of a row; of one that there is not, None, after it spoilt what it may mean."""
+    key = plain(name)
+    if key in named.known:
+        if name != (meant := named.known[key]):
+            _report(table, ledger, "I504", row, "tolerance_class", value=name, suggestion=meant, certain_value=meant)
+        return key
+    if is_no_value(name):
+        _report(
+            table, ledger, "E221", row, "tolerance_class", value=name, **no_value_facts(_COLUMNS["tolerance_class"])
+        )
+        return None
+    facts = named[name]
+    _report(table, ledger, "E309", row, "tolerance_class", value=name, **facts)
+    if (likely := plain(facts.get("suggestion") or "")) in named.known:
+        ledger.spoil("class", likely, table.sheet, row)
+    return None
+
+
+def _report_twice(table: Table, ledger: Ledger) -> set[int]:
+    """Report every row whose class and pair, in either order, another row has too; return the rows."""
+    groups: dict[tuple[str, frozenset[str]], list[int]] = defaultdict(list)
+    for row, name, *pair in table.frame.select("row", "tolerance_class", *_PAIR).iter_rows():
+        if name is not None and None not in pair and pair[0] != pair[1]:
+            groups[plain(name), frozenset(pair)].append(row)
+    doubled = {row: others for rows in groups.values() for row, others in table.partners(rows, _PAIR[1])}
+    for row, others in doubled.items():
+        _report(table, ledger, "E345", row, _PAIR[1], value=table.entered(row, _PAIR[1]), other=others)
+    return set(doubled)
+
+
+def _reports_pair(
+    table: Table, ledger: Ledger, record: Mapping[str, Any], owner: str, rows: Sequence[ToleranceRow]
+) -> bool:
+    """Report a dimension that is tied to itself, or that its class leaves exact; return whether there is one.
+
+    Of a class with faulty rows it cannot be told which dimensions it leaves exact.
+    """
+    row, (first, second) = record["row"], (record[key] for key in _PAIR)
+    if first is not None and first == second:
+        _report(table, ledger, "E346", row, _PAIR[1], value=table.entered(row, _PAIR[1]))
+        return True
+    if owner in ledger.classes:
+        return False
+    scattering = {one.dimension for one in rows if one.grade or one.lower < one.upper}
+    exact = [key for key in _PAIR if record[key] in DIMENSIONS and record[key] not in scattering]
+    for key in exact:
+        name = record["tolerance_class"]
+        _report(table, ledger, "E347", row, key, value=table.entered(row, key), other=name)
+    return bool(exact)
+
+
+def _report(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts: Any) -> None:
+    """Record a finding at a cell of Correlations."""
+    name = _COLUMNS[key].name
+    ledger.add(code, sheet=table.sheet, cell=table.address(row, key), column=key, name=name, **facts)
