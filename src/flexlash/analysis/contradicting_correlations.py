@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Mapping
 
+import numpy as np
+
 from flexlash.tolerance.correlation import CorrelationMatrix
 from flexlash.tolerance.nearest_correlation import admissible, nearest_correlations
 
@@ -38,9 +40,11 @@ def contradictions(entered: Collection[Pair], correlations: Mapping[Pair, float]
     Arguments: the pairs that are entered; all correlations by pairs, of which the others are measured and
         contradict nothing among themselves.
 
-    >>> tied = {("a", "b"): 0.9, ("a", "c"): 0.9, ("b", "c"): -0.5}
+    >>> tied = {("a", "b"): 0.9, ("a", "c"): 0.9, ("b", "c"): 0.5}
     >>> list(contradictions(tied, tied))
-    [(('a', 'b'), 0.1283, True)]
+    [(('a', 'b'), 0.8274, True)]
+    >>> list(contradictions([("b", "c")], tied))
+    [(('b', 'c'), 0.62, True)]
     """
     told: set[Pair] = set()
     for names in _possible(correlations):
@@ -66,10 +70,12 @@ def without_contradiction(measured: Mapping[Pair, float]) -> dict[Pair, float]:
     matrix = _matrix(measured)
     if not measured or admissible(matrix.scores):
         return dict(measured)
-    place = {name: index for index, name in enumerate(matrix.names)}
-    entered = matrix.scores != 0
-    nearest = nearest_correlations(matrix.scores, entered)
-    return {pair: float(nearest[place[pair[0]], place[pair[1]]]) for pair in measured}
+    places = {pair: (matrix.names.index(pair[0]), matrix.names.index(pair[1])) for pair in measured}
+    may_change = np.zeros(matrix.scores.shape, dtype=bool)
+    for first, second in places.values():
+        may_change[first, second] = may_change[second, first] = True
+    nearest = nearest_correlations(matrix.scores, may_change)
+    return {pair: float(nearest[place]) for pair, place in places.items()}
 
 
 def _matrix(correlations: Mapping[Pair, float]) -> CorrelationMatrix:
