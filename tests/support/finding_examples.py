@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import openpyxl
+from entry_books import entry_book
 from measured_parts import HEADERS, measured_rows, samples_of
 from openpyxl.packaging.custom import StringProperty
 from small_workbook import MAIN, OLE2, WORKBOOK, archive_of, parts_of
@@ -178,6 +179,34 @@ def _tables(folder: Path) -> Made:
     return _file(folder, _text(variants), **options)
 
 
+def _tied(folder: Path) -> Made:
+    """Write correlations with faults, each in a class of its own."""
+    wall, disk, radius, young = "wall_thickness", "disk_thickness", "mean_radius", "youngs_modulus"
+    pairs = [
+        ("twice", wall, disk, 0.5),
+        ("twice", disk, wall, 0.6),
+        ("itself", wall, wall, 0.5),
+        ("exact", wall, "torque", 0.5),
+        ("contrary", wall, disk, 0.9),
+        ("contrary", wall, radius, 0.9),
+        ("contrary", disk, radius, 0.5),
+        ("lots", young, wall, 0.5),
+    ]
+    keys = ("tolerance_class", "dimension_1", "dimension_2", "correlation")
+    classes = list(dict.fromkeys(pair[0] for pair in pairs))
+    tolerances = [
+        {"tolerance_class": name, "dimension": dimension, "lower_deviation": -0.01, "upper_deviation": 0.01}
+        for name in classes
+        for dimension in (wall, disk, radius, young)
+    ]
+    return entry_book(
+        folder / "study.xlsx",
+        variants=[{**CUP, "variant": f"of {name}", "tolerance_class": name, disk + "_mm": 1.6} for name in classes],
+        tolerances=tolerances,
+        correlations=[dict(zip(keys, pair, strict=True)) for pair in pairs],
+    ), {}
+
+
 def _settings(folder: Path) -> Made:
     """Write settings with faults and a sheet of later versions."""
     settings = [["Setting", "Value"], ["samples", 1.5], ["seed", 1], ["seed", 2]]
@@ -297,6 +326,7 @@ FOREIGN = parts_of()[WORKBOOK].replace(MAIN, "http://example.com/main")
 SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "needs fixing": _needs_fixing,
     "tables": _tables,
+    "correlations": _tied,
     "variants": _variants,
     "settings": _settings,
     "calibrated": _calibrated,
