@@ -14,6 +14,7 @@ import polars as pl
 from flexlash.analysis.backlash_models import BACKLASH_OF
 from flexlash.analysis.class_correlations import class_correlations
 from flexlash.analysis.computed import ComputedRows, Nominal
+from flexlash.analysis.sample_findings import report_samples
 from flexlash.mechanics.nominal import nominal_numbers
 from flexlash.mechanics.nominal_record import NominalNumbers
 from flexlash.mechanics.stiffness import catalogue_torque
@@ -71,6 +72,7 @@ def assess(validated: Validated, settings: Settings) -> Nominal:
     for variant in variants.some(np.flatnonzero(~_limits_are_fine(validated, arrays)).tolist()):
         _report_all_limits(ledger, variant, validated.classes)
     _report_exact(validated, arrays, ledger)
+    report_samples(validated, ledger)
     sound = np.flatnonzero(~np.isin(rows, list(ledger.rows)))
     arrays = arrays.take(sound)
     numbers = pl.DataFrame({"row": rows[sound], "place": sound})

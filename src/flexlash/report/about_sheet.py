@@ -35,6 +35,7 @@ SHEETS = {
     "Trace steps": "The sums over points and the search behind single lines of Trace.",
     "Sensitivity": "Which dimension causes the spread: tornado of the worst variant, shares of all.",
     "Tolerances used": "Limits, mean and scatter of every dimension of every variant, and where these are from.",
+    "Samples": "What the measured parts tell of each dimension: mean, scatter, Cp, Cpk with 95 % intervals, normality.",
     "Sections": "Where along the part the nominal backlash arises.",
     "Strength": "Stress in each section, when it yields or buckles, how stiff the part is.",
     "Elasticity": "The formula beside two-dimensional elasticity.",

@@ -22,6 +22,7 @@ from flexlash.report.findings_sheet import write_findings
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import ReportData, report_data
 from flexlash.report.results_sheet import write_results
+from flexlash.report.samples_sheet import write_samples
 from flexlash.report.sections_sheet import write_sections
 from flexlash.report.sensitivity_sheet import write_sensitivity
 from flexlash.report.strength_sheet import write_strength
@@ -59,6 +60,7 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     trace = trace_sheet(book)
     write_sensitivity(book, outcome, drawn)
     write_used(book, outcome, drawn)
+    write_samples(book, outcome, drawn)
     write_sections(book, drawn, extent)
     write_strength(book, drawn, extent)
     if "elasticity_windup_rad" in outcome.results.columns:

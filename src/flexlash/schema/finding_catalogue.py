@@ -955,7 +955,8 @@ CATALOGUE = _rules(
     (
         "W445",
         "few measured parts",
-        "{place}: sample {value} has only {found} of {dimension}; the standard deviation may be {detail} of it.",
+        "{place}: sample {value} has only {found} of {dimension}; the true standard deviation lies between {detail} "
+        "what they show.",
         "Measure at least 20 parts, better 50.",
         "What a few parts tell of a process is uncertain. The report shows the interval that their number leaves "
         "beside every figure that hangs on it.",
@@ -968,6 +969,15 @@ CATALOGUE = _rules(
         "One slip of a point, a unit or two digits makes the standard deviation many times what the process has. A "
         "value is told when it lies more than eight standard deviations from the median, as the middle half of the "
         "sample shows them. It is used as it stands.",
+    ),
+    (
+        "W447",
+        "measured values that are not normal",
+        "{place}: the {found} of {dimension} in sample {value} do not look normal (Anderson–Darling {detail}).",
+        "Choose the distribution measured, or look for the reason: two machines, drift, sorted parts, a coarse gauge.",
+        "Of normal processes one in twenty has p below 0.05. Where values are not normal, the tails of the normal "
+        "distribution of their mean and standard deviation are wrong, and with them shares over the limit of a few per "
+        "mille or less.",
     ),
     (
         "W448",
