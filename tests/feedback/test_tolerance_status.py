@@ -14,7 +14,8 @@ from flexlash.schema.columns import ENTRY_SHEETS
 _ROW = {"tolerance_class": "mine", "dimension": "wall_thickness", "lower_deviation": -0.02, "upper_deviation": 0.02}
 _GRADE = {"lower_deviation": None, "upper_deviation": None, "grade": "IT9"}
 _BASE = {"dimension": None, "lower_deviation": None, "upper_deviation": None, "based_on": "standard"}
-_SHOP = {"limits_sigma": None, "distribution": None}
+_ONE = "only one of limits at ± sigma, standard deviation, Cp and sample counts"
+_NO_PROCESS = "a uniform or triangular distribution has no process of its own"
 
 TOLERANCE_ROWS = [
     ({}, "complete"),
@@ -53,16 +54,15 @@ TOLERANCE_ROWS = [
     ({"cp": 1.1, "cpk": -0.2}, "complete"),
     ({"cpk": 0.9}, "Cpk without Cp"),
     ({"cp": 0.8, "cpk": 0.9}, "Cpk is above Cp"),
-    ({"cp": 1.1, "limits_sigma": 3.0}, "only one of limits at ± sigma, standard deviation, Cp and sample may be given"),
-    ({"cp": 1.1, "sample": "lot 12"}, "only one of limits at ± sigma, standard deviation, Cp and sample may be given"),
-    (
-        {"distribution": "uniform", "cp": 1.1},
-        "only a normal distribution has mean shift, standard deviation, Cp and Cpk",
-    ),
-    (
-        {"distribution": "triangular", "mean_shift": 0.1},
-        "only a normal distribution has mean shift, standard deviation, Cp and Cpk",
-    ),
+    ({"cp": 1.1, "limits_sigma": 3.0}, _ONE),
+    ({"cp": 1.1, "sample": "lot 12"}, _ONE),
+    ({"distribution": "uniform", "cp": 1.1}, _NO_PROCESS),
+    ({"distribution": "Triangular ", "mean_shift": 0.1}, _NO_PROCESS),
+    ({"distribution": "uniform", "sample": "lot 12"}, _NO_PROCESS),
+    ({"distribution": "uniform", "limits_sigma": 3.0}, "complete"),
+    ({"lower_deviation": 0.02, "cp": 1.0}, "both deviations are alike: no process scatters between them"),
+    ({"sample": "lot 12", "mean_shift": 0.001}, "a sample has its own mean: no mean shift, no Cpk"),
+    ({"sample": "lot 12", "cpk": 1.0}, "Cpk without Cp"),
     ({"distribution": "truncated normal", "mean_shift": 0.001}, "complete"),
     ({"distribution": "measured"}, "a measured distribution without a sample"),
     ({"distribution": "measured", "sample": "lot 12"}, "complete"),
@@ -70,6 +70,9 @@ TOLERANCE_ROWS = [
     ({"sample": "lot 13"}, "sample not in Measurements"),
     (_BASE, "complete"),
     (_BASE | {"based_on": "row 0"}, "complete"),
+    (_BASE | {"grade": "IT9"}, "based on class stands alone: nothing else in its row"),
+    (_BASE | {"tolerance_class": "two"}, "class is based on another twice"),
+    (_BASE | {"tolerance_class": "Two", "based_on": "row 0"}, "class is based on another twice"),
     (_BASE | {"based_on": "nothing"}, "based on class not in Tolerances"),
     (_BASE | {"based_on": "MINE", "tolerance_class": "mine"}, "a class based on itself"),
     ({"based_on": "standard"}, "based on class needs a row without a dimension"),

@@ -57,7 +57,9 @@ TITLES = {
 _OUTLINED = ("Refinements", "Process")
 """Groups of columns that can be folded away."""
 
-_PRINTED_ROWS = 100
+_PRINTED_ROWS = {"Variants": 100, "Tolerances": 45, "Correlations": 25}
+"""Rows that are printed at least of a sheet whose formulas reach further down than its entries."""
+
 _OWN_WIDTH = 16
 
 _DATE = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=None)
@@ -126,7 +128,7 @@ class _Template:
                 if name == "Variants":
                     self._variants(sheet, entries, texts)
                 width = len(entries.columns) + len(entries.own)
-                sheet.print_area(0, 0, HEADER_ROW + max(_PRINTED_ROWS, len(texts)), width)
+                sheet.print_area(0, 0, HEADER_ROW + max(_PRINTED_ROWS[name], len(texts)), width)
         write_dictionary(self.sheets["Dictionary"], self.formats, self.entries)
 
     def _format(self, column: Column) -> Any:

@@ -29,7 +29,8 @@ GRADED = tuple(name for name, column in DIMENSIONS.items() if column.quantity ==
 _COLUMNS = {column.key: column for column in TOLERANCES}
 _DEVIATIONS = ("lower_deviation", "upper_deviation")
 _SPREADS = ("limits_sigma", "standard_deviation", "cp", "sample")
-_OF_NORMAL = ("mean_shift", "standard_deviation", "cp", "cpk")
+_OF_A_PROCESS = ("mean_shift", "standard_deviation", "cp", "cpk", "sample")
+_BESIDE_BASE = tuple(key for key in _COLUMNS if key not in {"tolerance_class", "dimension", "based_on"})
 _NO_NORMAL = ("uniform", "triangular")
 _NO_CLASS = "tolerance class not in Tolerances"
 
@@ -49,15 +50,16 @@ def _count(*keys: str) -> str:
     return f"({'+'.join(f'({{{key}}}<>{chr(34)}{chr(34)})' for key in keys)})"
 
 
-def _names(*keys: str) -> str:
-    """Return columns as a sentence lists them."""
-    *others, last = (inner_name(_COLUMNS[key]) for key in keys)
-    return f"{', '.join(others)} and {last}"
-
-
 def _is_no_normal(row: Row) -> bool:
     """Whether the distribution has no mean and standard deviation of its own."""
     return entry_text(row, "distribution").strip() in _NO_NORMAL
+
+
+def _has_two_bases(row: Row, known: Known) -> bool:
+    """Whether a row and another of its class name what the class is based on: rows without a dimension."""
+    return (
+        _given(row, "based_on") == 1 and known["tolerance_class,dimension"][entry_text(row, "tolerance_class"), ""] > 1
+    )
 
 
 def _dimension(key: str) -> Rule:
@@ -96,6 +98,11 @@ _BASE = (
         holds=lambda row, _: _given(row, "based_on", "dimension") == 2,  # noqa: PLR2004
     ),
     Rule(
+        text="based on class stands alone: nothing else in its row",
+        excel=f'AND({{based_on}}<>"",{_count(*_BESIDE_BASE)}>0)',
+        holds=lambda row, _: _given(row, "based_on") == 1 and _given(row, *_BESIDE_BASE) > 0,
+    ),
+    Rule(
         text="a class based on itself",
         excel='AND({based_on}<>"",{based_on}={tolerance_class})',
         holds=lambda row, _: (
@@ -103,6 +110,12 @@ _BASE = (
         ),
     ),
     unknown("based_on", "based on class not in Tolerances", "fl_tolerance_rows", "standard"),
+    Rule(
+        text="class is based on another twice",
+        excel='AND({based_on}<>"",COUNTIFS({tolerance_class_block},{tolerance_class},{dimension_block},"")>1)',
+        holds=_has_two_bases,
+        together=("tolerance_class", "dimension"),
+    ),
 )
 _DRAWING = (
     Rule(
@@ -134,7 +147,7 @@ _DRAWING = (
 )
 _PROCESS = (
     Rule(
-        text=f"only one of {_names(*_SPREADS)} may be given",
+        text="only one of limits at ± sigma, standard deviation, Cp and sample counts",
         excel=f"{_count(*_SPREADS)}>1",
         holds=lambda row, _: _given(row, *_SPREADS) > 1,
     ),
@@ -149,9 +162,23 @@ _PROCESS = (
         holds=lambda row, _: _given(row, "cpk") == 1 and _number(row, "cpk") > _number(row, "cp"),
     ),
     Rule(
-        text=f"only a normal distribution has {_names(*_OF_NORMAL)}",
-        excel=f'AND(OR(TRIM({{distribution}})="uniform",TRIM({{distribution}})="triangular"),{_count(*_OF_NORMAL)}>0)',
-        holds=lambda row, _: _is_no_normal(row) and _given(row, *_OF_NORMAL) > 0,
+        text="a uniform or triangular distribution has no process of its own",
+        excel=f'AND(OR(TRIM({{distribution}})="uniform",TRIM({{distribution}})="triangular"),{_count(*_OF_A_PROCESS)}>0)',
+        holds=lambda row, _: _is_no_normal(row) and _given(row, *_OF_A_PROCESS) > 0,
+    ),
+    Rule(
+        text="both deviations are alike: no process scatters between them",
+        excel=f'AND({{lower_deviation}}<>"",{{lower_deviation}}={{upper_deviation}},{_count(*_OF_A_PROCESS)}>0)',
+        holds=lambda row, _: (
+            _given(row, *_DEVIATIONS) == 2  # noqa: PLR2004
+            and row["lower_deviation"] == row["upper_deviation"]
+            and _given(row, *_OF_A_PROCESS) > 0
+        ),
+    ),
+    Rule(
+        text="a sample has its own mean: no mean shift, no Cpk",
+        excel=f'AND({{sample}}<>"",{_count("mean_shift", "cpk")}>0)',
+        holds=lambda row, _: _given(row, "sample") == 1 and _given(row, "mean_shift", "cpk") > 0,
     ),
     Rule(
         text="a measured distribution without a sample",
