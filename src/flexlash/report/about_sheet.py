@@ -12,6 +12,7 @@ from flexlash.report.extent import MOST_FINDINGS, Extent, extent_of
 from flexlash.report.layout.links import write_link
 from flexlash.report.layout.styles import Book
 from flexlash.report.results_sheet import AS_SUBMITTED, ERROR_DIGITS, SHARE_DECIMALS
+from flexlash.report.wording.correlation_words import correlation_sentences, first_order_sentence, share_sentence
 from flexlash.report.wording.verdict import NO_VERDICT, RULES
 from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, SETTINGS
@@ -136,6 +137,7 @@ def _statistics(outcome: Outcome) -> Iterator[str]:
     """Yield how the spread was made and how good it is."""
     yield "Each tolerance gives limits; parts scatter around the middle of the limits, not around the entry."
     yield "normal: σ = (upper − lower)/(2k), unbounded; truncated normal: cut at the limits; others: between them."
+    yield from correlation_sentences(outcome.computed)
     yield from _SAMPLING[outcome.settings.method]
     yield "P99.865 of a normal is mean + 3 sd. A number ± 1.96 of its standard errors is its 95 % interval."
     if "cross_check" in outcome.results.columns:
@@ -145,15 +147,12 @@ def _statistics(outcome: Outcome) -> Iterator[str]:
             "exceeds in fewer than one row in 10,000."
         )
     yield "Worst case: every dimension at the tolerance limit that hurts, whatever k; normal units can lie beyond it."
-    yield "First-order sd: root of the sum of squared (slope × sd) at mid-limits, as in the GUM."
+    yield first_order_sentence(outcome.computed)
     yield (
         "First order enough: whether the backlash at mid-limits ± k·(first-order sd) meets the coverage interval "
         "within half a unit in the second digit of the first-order sd in arcmin, JCGM 101 clause 8."
     )
-    yield (
-        "Shares: first-order Sobol' indices, each dimension's own part of the variance; total indices add every "
-        "interaction it takes part in. Both are estimates, good to about 0.002 unless interactions are strong."
-    )
+    yield share_sentence(outcome.computed)
     yield (
         "Ppk upper = (limit − P50)/(P99.865 − P50), ISO 22514-2; by normal theory (limit − mean)/(3 sd), which holds "
         "for a normal backlash alone."

@@ -13,6 +13,7 @@ from flexlash.report.layout.result_formats import SHARE_OF_VARIANCE_ERROR
 from flexlash.report.layout.styles import GRID, PALETTE, Book, percent_of
 from flexlash.report.report_data import Drawn
 from flexlash.report.results_sheet import SHARE_DECIMALS
+from flexlash.report.wording.correlation_words import shared_out
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import shown
 from flexlash.schema.units import ARCMIN
@@ -48,7 +49,8 @@ def write_sensitivity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> N
         apart = not fits(widths, SMALL)
         width = min(_CHART_WIDTH, _PIXELS * (totals - 1 - _CHART_PLACE)) if apart else _CHART_WIDTH
         _write_tornado(book, sheet, drawn[0], width)
-    _write_shares(book, sheet, rows, names)
+    coupled = shared_out(outcome.computed)
+    _write_shares(book, sheet, rows, names, " " * bool(coupled) + coupled)
     sheet.set_column(totals - 1, totals - 1, _GAP)
     print_readably(sheet, widths, breaks=[totals], least=SMALL)
     sheet.repeat_rows(_HEADER)
@@ -101,12 +103,17 @@ def _tornado(book: Book, name: str, last: int, middle: float) -> Any:
     return chart
 
 
-def _write_shares(book: Book, sheet: Any, rows: Sequence[tuple[str, SpreadStatistics]], names: Sequence[str]) -> None:
-    """Write the shares of variance of every computed variant, one column per dimension that varies, to be filtered."""
+def _write_shares(
+    book: Book, sheet: Any, rows: Sequence[tuple[str, SpreadStatistics]], names: Sequence[str], further: str
+) -> None:
+    """Write the shares of variance of every computed variant, one column per dimension that varies, to be filtered.
+
+    `further` is what the note on them adds.
+    """
     right = len(names) + 1
     text = (
         "Share of each dimension in the variance of the backlash (first-order Sobol' index); what is missing to "
-        "100 % is interaction. Total indices, interactions included, follow to the right."
+        f"100 % is interaction. Total indices, interactions included, follow to the right.{further}"
     )
     sheet.write_string(_HEADER - 1, 0, text, book.format("quiet"))
     sheet.write_string(_HEADER, 0, "Variant", book.format("header"))

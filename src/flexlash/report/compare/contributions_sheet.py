@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from flexlash.analysis.outcome import Outcome
@@ -22,6 +22,7 @@ from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.report_data import Drawn
+from flexlash.report.wording.correlation_words import shared_out
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.schema.findings import shown
 
@@ -70,7 +71,10 @@ def write_contributions(book: Book, outcome: Outcome, drawn: Sequence[Drawn], co
         sheet.write_string(row, 0, f"•  {sentence}", book.format("text"))
         row += 1
     if causes:
-        row = _write_notes(book, sheet, causes, drawn, _write_heat(book, sheet, causes, drawn, row + 1))
+        row = _write_heat(book, sheet, causes, drawn, row + 1)
+        for note in _notes(causes, drawn, shared_out(outcome.computed)):
+            sheet.write_string(row, 0, note, book.format("quiet"))
+            row += 1
     if any(variant.computed.variant.flexspline_type in CONNECTED for variant in drawn):
         width = max(_PAGE, sum(widths))
         height = width // 3
@@ -142,22 +146,18 @@ def _colour(sheet: Any, cells: tuple[int, int, int, int], most: float) -> None:
     sheet.conditional_format(*cells, scale)
 
 
-def _write_notes(book: Book, sheet: Any, causes: Sequence[Cause], drawn: Sequence[Drawn], row: int) -> int:
-    """Write below the heat map what it shows; return the row after that."""
+def _notes(causes: Sequence[Cause], drawn: Sequence[Drawn], coupled: str) -> Iterator[str]:
+    """Yield what the heat map shows; `coupled` is what is said of dimensions that scatter together."""
     which = "worst first"
     if len(causes) > MAPPED:
         which = f"the {MAPPED} worst of {len(causes):,}, worst first; the columns to the right are over all of them"
-    notes = [
-        f"Variants: {which}. Shares are first-order Sobol' indices; what a column lacks to 100 % is interaction.",
-        "A blank cell: the variant does not have the dimension, or no tolerance for it.",
-        *left_out(causes),
-    ]
+    yield f"Variants: {which}. Shares are first-order Sobol' indices; what a column lacks to 100 % is interaction."
+    if coupled:
+        yield coupled
+    yield "A blank cell: the variant does not have the dimension, or no tolerance for it."
+    yield from left_out(causes)
     if len(drawn) > MAPPED:
-        notes.append(f"The chart below has the {len(drawn)} variants of the sheet Ranking.")
-    for note in notes:
-        sheet.write_string(row, 0, note, book.format("quiet"))
-        row += 1
-    return row
+        yield f"The chart below has the {len(drawn)} variants of the sheet Ranking."
 
 
 def _disk_shares(book: Book, compared: Stored, size: float) -> Any:
