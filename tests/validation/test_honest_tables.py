@@ -4,20 +4,20 @@ import pytest
 
 from flexlash.pipeline import check
 from flexlash.schema import spellings
-from flexlash.validation import validate
+from flexlash.validation import meant_names
 
 
 @pytest.fixture
 def asked(monkeypatch):
     """Return the texts for which a near name was sought while checking."""
     texts = []
-    sought = validate.suggested
+    sought = meant_names.suggested
 
     def counted(text, *rest):
         texts.append(text)
         return sought(text, *rest)
 
-    monkeypatch.setattr(validate, "suggested", counted)
+    monkeypatch.setattr(meant_names, "suggested", counted)
     return texts
 
 

@@ -14,6 +14,7 @@ import polars as pl
 from flexlash.analysis.backlash_models import BACKLASH_OF
 from flexlash.analysis.class_correlations import class_correlations
 from flexlash.analysis.computed import ComputedRows, Nominal
+from flexlash.analysis.process_checks import processes_are_usual, report_processes
 from flexlash.analysis.sample_findings import report_samples
 from flexlash.mechanics.nominal import nominal_numbers
 from flexlash.mechanics.nominal_record import NominalNumbers
@@ -32,6 +33,7 @@ from flexlash.tolerance.dimension_limits import (
     limits_alike,
     limits_of,
     shape_problems,
+    varying,
 )
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import UnitMistake, Validated
@@ -100,6 +102,7 @@ def _limits_are_fine(validated: Validated, arrays: VariantArrays) -> npt.NDArray
             rows = validated.classes[owner]
             limits = limits_alike(sizes, rows, BACKLASH_OF[flexspline_type])
             fine[places] = beyond_doubt(flexspline_type, sizes, limits) & _widths_are_usual(sizes, limits, rows)
+            fine[places] &= processes_are_usual(limits, rows)
     return fine
 
 
@@ -156,6 +159,7 @@ def _report_all_limits(ledger: Ledger, variant: Variant, classes: Mapping[str, S
         _report_limits(ledger, variant, problem)
     kinds = {problem.dimension: problem.kind for problem in problems if problem.kind != "overlap"}
     _judge_widths(ledger, variant, rows, found, kinds)
+    report_processes(ledger, variant, rows, found)
 
 
 def _report_numbers(
@@ -254,10 +258,8 @@ def _report_exact(validated: Validated, arrays: VariantArrays, ledger: Ledger) -
     if table is None:
         return
     exact: dict[str, set[str]] = defaultdict(set)
-    for flexspline_type, owner, _, sizes in arrays.alike(validated.variants.classes):
-        limits = limits_alike(sizes, standard, BACKLASH_OF[flexspline_type])
-        scattered = {name for name, one in limits.items() if one.given.any()}
-        exact[owner] |= scattered - {row.dimension for row in validated.classes[owner]}
+    for _, owner, _, sizes in arrays.alike(validated.variants.classes):
+        exact[owner] |= varying(sizes, standard) - {row.dimension for row in validated.classes[owner]}
     for row, name in table.frame.select("row", "tolerance_class").iter_rows():
         if left := exact.pop(plain(name or ""), None):
             words = ", ".join(column.plain_name for one, column in DIMENSIONS.items() if one in left)

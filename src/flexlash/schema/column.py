@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any, Literal, TypeAlias
@@ -68,6 +69,7 @@ class Column:
     tolerance grade of a length is read: the length itself, the diameter of a radius, or none where no grade applies.
     A number outside its `usual` span, in the printed unit, is warned of. `also_called` are whole names of the column
     that engineers use in English, German, French and Italian, without spaces; a header of such a name is a question.
+    Each row of the sheet has an entry here or in the column that is named as the one `instead`.
     """
 
     sheet: str
@@ -90,6 +92,7 @@ class Column:
     grade_at: Literal["length", "diameter", "none"] = "length"
     usual: tuple[float, float] | None = None
     also_called: str = ""
+    instead: str = ""
 
     @classmethod
     def entry(cls, sheet: str, role: Role, key: str, label: str, text: str, **rest: Any) -> Column:
@@ -125,6 +128,10 @@ class Column:
     def is_number(self) -> bool:
         """Whether the field holds numbers."""
         return self.type in {"number", "integer"}
+
+    def is_needed(self, present: Collection[str]) -> bool:
+        """Whether a sheet that has the columns of these keys cannot do without this one."""
+        return self.required or bool(self.instead and self.instead not in present)
 
     @cached_property
     def rules(self) -> dict[str, ColumnRule]:

@@ -204,6 +204,7 @@ TOLERANCES = (
         type="choice",
         choices=tuple(DIMENSIONS),
         group="Class",
+        instead="based_on",
     ),
     _tolerance(
         "requirement",
@@ -268,6 +269,7 @@ TOLERANCES = (
         "deviation unit.",
         since=4,
         group="Process",
+        also_called="shift meanoffset mittelwertverschiebung mittenabweichung décalage",
     ),
     _tolerance(
         "requirement",
@@ -277,6 +279,7 @@ TOLERANCES = (
         **POSITIVE,
         since=4,
         group="Process",
+        also_called="sd s stdev stddev standardabweichung écarttype scartotipo sigma",
     ),
     _tolerance(
         "requirement",
@@ -308,6 +311,7 @@ TOLERANCES = (
         type="text",
         since=4,
         group="Process",
+        also_called="stichprobe messreihe échantillon campione",
     ),
     _tolerance(
         "requirement",
@@ -328,6 +332,7 @@ TOLERANCES = (
         type="text",
         since=4,
         group="Inheritance",
+        also_called="basedon base basis basisklasse baseclass parentclass inherits",
     ),
 )
 

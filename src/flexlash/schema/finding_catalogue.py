@@ -366,6 +366,22 @@ CATALOGUE = _rules(
         "Names may have 200 characters, notes and sources 1,000.",
     ),
     (
+        "E223",
+        "unknown sample",
+        '{place} {name} = "{value}" {detail}.',
+        "Write the name of a sample as Measurements has it, or add its rows and the column of the dimension there.",
+        "A row of Tolerances takes mean and standard deviation from the values of its dimension in a sample of "
+        "Measurements; letter case and spaces of the name do not matter.",
+    ),
+    (
+        "E224",
+        "unknown class to base on",
+        '{place} {name} = "{value}" is not a class of Tolerances.',
+        "Write the name of a class as Tolerances has it, or add rows for it.",
+        "A class takes over every row of the class it is based on that it does not have itself. Class standard is "
+        "built in and may be named though no row stands for it.",
+    ),
+    (
         "E301",
         "no radius",
         "{place}: neither {name} nor Bore diameter is given; one of them is required.",
@@ -594,6 +610,46 @@ CATALOGUE = _rules(
         "A large table is computed in chunks. A chunk that loses its process three times is halved until the row is "
         "found; all other rows are computed. This is a fault of the program or of the machine, such as too little "
         "memory, not of the file.",
+    ),
+    (
+        "E335",
+        "process told twice",
+        "{place} {name} = {value}, beside {other}: a row tells how its dimension scatters in one way.",
+        "Clear one of the two cells.",
+        "Limits at ± sigma, Standard deviation, Cp and Sample each give the standard deviation, and Sample the mean as "
+        "well. With two of them flexlash cannot know which holds.",
+    ),
+    (
+        "E336",
+        "Cpk does not go with Cp",
+        "{place} {name} = {value}: {detail}.",
+        "Enter Cp, or correct one of the two; without Cpk the process lies in the middle of the limits.",
+        "Cp tells how a process scatters within its limits, Cpk how much of that room it has on its nearer side. Off "
+        "the middle Cpk is less than Cp, in the middle they are alike, and it is never more.",
+    ),
+    (
+        "E337",
+        "no process of its own",
+        "{place} {name} = {value}: {detail}.",
+        "Clear the cell, or change the distribution or the deviations.",
+        "Mean shift, Standard deviation, Cp and Cpk are those of a normal or truncated normal process between limits "
+        "that differ; a measured one has those of its sample.",
+    ),
+    (
+        "E338",
+        "base of a class that cannot hold",
+        "{place} {name} = {value}: {detail}.",
+        "Keep one row per class that names the class it is based on, all else in it blank, and no circle of classes.",
+        "A class takes over every row of the class it is based on that it does not have itself, and what that one "
+        "takes over in turn.",
+    ),
+    (
+        "E339",
+        "process far off its limits",
+        "{place} {name} = {value}: {detail}.",
+        "Check mean, standard deviation and sample of the row of Tolerances, their unit, and the limits.",
+        "Of such a process next to no part would be within the limits of the drawing, so that an entry cannot be "
+        "meant: a unit mistaken by a thousand, deviations taken for values, the sample of another dimension.",
     ),
     (
         "E340",
@@ -908,9 +964,9 @@ CATALOGUE = _rules(
         "column takes no part",
         "{place}: the column {value} looks like {detail}, but takes no part in the calculation.",
         "Enter lower and upper deviation, or a grade, on Tolerances (beside a text table: --tolerances FILE.csv).",
-        "Scatter comes from the sheet Tolerances alone: one row per class and dimension; Limits at ± sigma there says "
-        "how wide a normal distribution is within its limits. Means, standard deviations, Cp and Cpk are not taken by "
-        "this version. The column is carried to the report.",
+        "Scatter comes from the sheet Tolerances alone: one row per class and dimension, with the limits of the "
+        "drawing and, where it is known, the process between them: Limits at ± sigma, Mean shift, Standard deviation, "
+        "Cp, Cpk or a sample of measured parts. The column is carried to the report.",
     ),
     (
         "W435",
@@ -930,7 +986,8 @@ CATALOGUE = _rules(
         "W438",
         "class leaves dimensions exact",
         '{place}: class "{value}" has no row for {detail}, which class standard scatters; taken as exact.',
-        "Add a row for each; for a dimension that is meant to be exact, a row with both deviations 0.",
+        "Add a row for each, or one that bases the class on standard (Based on class); for a dimension that is meant "
+        "to be exact, a row with both deviations 0.",
         "A dimension without a row in a variant's class does not scatter, so that a class of your own which lists the "
         "walls alone takes the scatter of the material away. Only dimensions that a variant of the class has count.",
     ),
@@ -951,6 +1008,30 @@ CATALOGUE = _rules(
         "Check the deviations and their unit in Tolerances; for an exact dimension enter 0 for both.",
         "Half the distance between the limits is less than a millionth of the entered value, closer than parts can be "
         "measured: often a deviation in metres in a column of millimetres.",
+    ),
+    (
+        "W442",
+        "mean outside the limits",
+        "{place} {name} = {value}: {detail}.",
+        "Check the mean shift, Cpk or sample of the row of Tolerances, their unit, and the limits.",
+        "More than half of the parts of such a process are outside the limits of the drawing. It is computed as "
+        "entered; worst case and share outside the limits are those of the drawing.",
+    ),
+    (
+        "W443",
+        "Cpk and mean shift disagree",
+        "{place} {name} = {value}: with this Mean shift Cpk is {other}; the mean shift is used.",
+        "Clear the mean shift to take the mean from Cp and Cpk, or clear Cpk.",
+        "Cp and Cpk give how far the mean lies off the middle, and the harmful side is taken. A mean shift says it "
+        "itself, with its side.",
+    ),
+    (
+        "W444",
+        "implausible standard deviation",
+        "{place} {name} = {value}: {detail}; 1 to 12 are plausible.",
+        "Check the standard deviation and its unit, that of the deviations.",
+        "Half the width of the limits over the standard deviation is three times Cp. Far more or less is often a "
+        "standard deviation in another unit. It is used as entered.",
     ),
     (
         "W445",

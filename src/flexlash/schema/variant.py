@@ -79,10 +79,16 @@ class MeasuredDimension:
         """Mean of the values."""
         return math.fsum(self.values) / len(self.values)
 
+    @property
+    def scatters(self) -> bool:
+        """Whether some of the values differ."""
+        return min(self.values) < max(self.values)
+
     @cached_property
     def standard_deviation(self) -> float:
-        """Standard deviation of the values (n − 1), about their rounded mean."""
-        return math.sqrt(math.fsum((value - self.mean) ** 2 for value in self.values) / (len(self.values) - 1))
+        """Standard deviation of the values (n − 1), about their rounded mean; 0 where they do not differ."""
+        squares = math.fsum((value - self.mean) ** 2 for value in self.values)
+        return math.sqrt(squares / (len(self.values) - 1)) if self.scatters else 0.0
 
     @cached_property
     def _digest(self) -> int:

@@ -30,6 +30,7 @@ __all__ = [
     "limits_alike",
     "limits_of",
     "shape_problems",
+    "varying",
 ]
 
 _ROUNDING = 1e-12
@@ -119,8 +120,7 @@ class LimitArrays(NamedTuple):
     """The limits of a dimension of many variants [SI], each of shape (variants,).
 
     `mean` and `sd` are those of a normal or measured process, before any cut; `least` and `most` the ends of what the
-    limits and the parts reach; `given` says where `limits_of` gives the dimension limits. What a grade does not
-    tabulate is NaN.
+    limits and the parts reach. What a grade does not tabulate is NaN.
     """
 
     low: Array
@@ -129,7 +129,6 @@ class LimitArrays(NamedTuple):
     sd: Array
     least: Array
     most: Array
-    given: npt.NDArray[np.bool_]
 
 
 def limits_alike(
@@ -140,20 +139,35 @@ def limits_alike(
     for row in rows:
         if (nominal := sizes.get(row.dimension)) is None:
             continue
-        if row.grade:
-            parts = 2 if DIMENSIONS[row.dimension].grade_at == "diameter" else 1
-            lower, upper = (found / parts for found in deviations_of(row.grade, parts * nominal))
-        else:
-            lower, upper = (
-                side * nominal if row.relative else np.full(len(nominal), side) for side in (row.lower, row.upper)
-            )
+        lower, upper = _deviations_alike(row, nominal)
         low, high = nominal + lower, nominal + upper
         shift, own_sd = process_of(row, nominal, low, high, _sides(row, sizes, low, high, output))
         mean = (low + high) / 2 + shift
         sd = np.broadcast_to((high - low) / (2 * row.limits_sigma) if own_sd is None else own_sd, low.shape)
         least, most = _reached(row, low, high, mean, sd)
-        limits[row.dimension] = LimitArrays(low, high, mean, sd, least, most, (lower < upper) | (abs(lower) > 0))
+        limits[row.dimension] = LimitArrays(low, high, mean, sd, least, most)
     return limits
+
+
+def _deviations_alike(row: ToleranceRow, nominal: Array) -> tuple[Array, Array]:
+    """Lower and upper deviations [SI] from many entered values, as `_deviations`; NaN where a grade has no entry."""
+    if row.grade:
+        parts = 2 if DIMENSIONS[row.dimension].grade_at == "diameter" else 1
+        lower, upper = (found / parts for found in deviations_of(row.grade, parts * nominal))
+        return lower, upper
+    lower, upper = (side * nominal if row.relative else np.full(len(nominal), side) for side in (row.lower, row.upper))
+    return lower, upper
+
+
+def varying(sizes: Mapping[str, Array], rows: Iterable[ToleranceRow]) -> set[str]:
+    """Return the dimensions that a class gives limits in one of some variants alike, whatever their process is."""
+    found = set()
+    for row in rows:
+        if row.dimension in sizes:
+            lower, upper = _deviations_alike(row, sizes[row.dimension])
+            if ((lower < upper) | (abs(lower) > 0)).any():
+                found.add(row.dimension)
+    return found
 
 
 def _reached(row: ToleranceRow, low: Array, high: Array, mean: Array, sd: Array) -> tuple[Array, Array]:

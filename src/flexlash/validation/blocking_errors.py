@@ -114,10 +114,11 @@ def _every(sheet: str) -> str:
 
 def _sentences(sheet: str, waiting: Iterable[Waiting]) -> dict[tuple[str, int], str]:
     """Return which rows wait for a material or class, for the errors in it, by the sheet and row of these."""
-    sentences: dict[tuple[str, int], str] = {}
+    sentences: dict[tuple[str, int], str] = defaultdict(str)
     for one in waiting:
         wait = f"{_rows_words(one.rows)} of {shown(sheet)} wait{'s' if len(one.rows) == 1 else ''}"
-        sentences |= dict.fromkeys(one.sources, f" {wait} for {one.kind} {shown(one.name)}.")
+        for source in dict.fromkeys(one.sources):
+            sentences[source] += f" {wait} for {one.kind} {shown(one.name)}."
     return sentences
 
 

@@ -13,7 +13,7 @@ from flexlash.validation.validated import Blocked, Validated
 
 __all__ = ["consolidated", "in_order", "shared_by_excerpts"]
 
-_UNKNOWN = frozenset({"E209", "E210", "E211", "E307", "E309"})
+_UNKNOWN = frozenset({"E209", "E210", "E211", "E223", "E224", "E307", "E309"})
 """Codes of names that are unknown however they are spelt."""
 
 

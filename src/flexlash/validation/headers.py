@@ -22,8 +22,11 @@ __all__ = ["STATUS_HEADER", "closest", "count_headings", "find_headings", "known
 STATUS_HEADER = "Row status"
 """Header of the template's own formula column, which is never data."""
 
-_OF_TOLERANCES = frozenset({"tolerance_class", "lower_deviation", "upper_deviation", "deviation_unit", "limits_sigma"})
-"""Columns of the template whose names speak of tolerances themselves."""
+_OF_TOLERANCES = frozenset({
+    "tolerance_class", "lower_deviation", "upper_deviation", "deviation_unit", "limits_sigma",
+    "mean_shift", "standard_deviation", "cp", "cpk",
+})  # fmt: skip
+"""Columns of the template whose names speak of tolerances or of a process themselves."""
 
 
 def _as_header(cell: RawValue) -> str:
@@ -117,7 +120,7 @@ class _Recogniser:
     def _require(self, heading: Heading, next_index: int) -> None:
         """Tell which required columns are missing, at the cell where they could be added."""
         for key, column in self.columns.items():
-            if not column.required or key in heading.columns:
+            if key in heading.columns or not column.is_needed(heading.columns.keys() | {*heading.doubtful.values()}):
                 continue
             self.ledger.everything = True
             if key not in heading.doubtful.values():
@@ -138,7 +141,7 @@ class _Recogniser:
         meanings = {}
         for index in unknown:
             diameter, keys = diameters.get(index), likely.get(index, [])
-            is_needed = any(self.columns[key].required and key not in present for key in keys)
+            is_needed = any(self.columns[key].is_needed(present) and key not in present for key in keys)
             if diameter:
                 heading.diameters.update({index} if "radius" in diameter else ())
                 meanings[index] = _Unknown([diameter])
@@ -215,7 +218,7 @@ class _Recogniser:
 
     def _error_if_filled(self, code: str, index: int, column: Column) -> str:
         """Return the code of an error, or of a warning where nothing is lost: no value, and no column that must be."""
-        return code if index in self._filled or column.required else "W435"
+        return code if index in self._filled or column.is_needed(()) else "W435"
 
     def _report_unit(self, column: Column, unit: Unit | None, facts: dict[str, Any], text: str | None) -> None:
         """Tell a unit that was assumed or converted."""

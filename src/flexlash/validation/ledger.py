@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Literal
 
 from flexlash.schema.cell_addresses import CellAddress
+from flexlash.schema.columns import columns_of
 from flexlash.schema.findings import Finding, finding
 from flexlash.schema.variant import Variant
 from flexlash.validation.validated import Blocked, Owner, Table, UnitMistake, Validated
@@ -67,6 +68,11 @@ class Ledger:
         self.findings.append(found)
         if found.level == "error":
             self.rows.update(rows)
+
+    def add_in(self, table: Table, code: str, row: int, key: str, **facts: Any) -> None:
+        """Record a finding at a cell of a row of Materials, Tolerances or another entry sheet than Variants."""
+        name = columns_of(table.schema)[key].name
+        self.add(code, sheet=table.sheet, cell=table.address(row, key), column=key, name=name, **facts)
 
     def add_at(self, code: str, variant: Variant, key: str, **facts: Any) -> None:
         """Record a finding at a cell of a variant that validation has returned."""

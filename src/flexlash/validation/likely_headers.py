@@ -65,7 +65,7 @@ def _called(unknown: Mapping[int, str], absent: Sequence[Column]) -> dict[int, s
 
 def _missing(columns: Mapping[str, Column], present: set[str]) -> list[str]:
     """Return the columns that a sheet needs and lacks."""
-    needed = [key for key, column in columns.items() if column.required]
+    needed = [key for key, column in columns.items() if column.is_needed(present)]
     if _RADII[0] in columns:
         needed += [_RADII[0]] if present.isdisjoint(_RADII) else []
         needed.append("disk_inner_radius_mm")

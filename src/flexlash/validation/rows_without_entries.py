@@ -64,9 +64,9 @@ class NoEntries:
         indices = heading.columns
         self.schema = schema
         self.first = indices.get(first)
-        self.texts = {
-            indices[key] for key in others if key in indices and columns[key].required and not columns[key].is_number
-        }
+        instead = {column.instead for column in columns.values()}
+        needed = {key for key in others if columns[key].is_needed(()) or key in instead}
+        self.texts = {indices[key] for key in needed if key in indices and not columns[key].is_number}
         self.numbers = {indices[key] for key in others if key in indices and columns[key].is_number}
         self.part = indices.get("part") if schema == "Measurements" else None
         self.others = {indices[key] for key in others if key in indices}

@@ -30,7 +30,8 @@ _MEANT_BESIDE = "setting"
 _JUDGED_LATER = ("Settings", "value")
 """The cell whose meaning depends on the cell beside it."""
 
-_DEVIATIONS = frozenset({"lower_deviation", "upper_deviation"})
+_DEVIATIONS = frozenset({"lower_deviation", "upper_deviation", "mean_shift", "standard_deviation"})
+"""Columns of Tolerances whose numbers are in the deviation unit."""
 
 
 def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
@@ -189,7 +190,7 @@ class _Cell:
 
     @property
     def measure(self) -> Measure:
-        """What numbers of the cell stand for, by its header or, for a deviation, by the cells beside it."""
+        """What numbers of the cell stand for, by its header or, in the deviation unit, by the cells beside it."""
         if self.column.key not in _DEVIATIONS:
             return Measure.of(self.column, self.table.heading.factors[self.column.key])
         indices = self.table.heading.columns

@@ -20,13 +20,15 @@ _KEY = "tolerance_class"
 def report_unused_classes(tolerances: Table | None, variants: Table, known: Iterable[str], ledger: Ledger) -> None:
     """Warn once of each unused class whose name is nearly that of a class in use; `known` are plain names.
 
-    A class that is used but not known has an error of its own; standard, which is in every template, is none.
+    A class that another is based on is used. One that is used but not known has an error of its own; standard, which is
+    in every template, is none.
     """
     if tolerances is None:
         return
     column = columns_of("Tolerances")[_KEY]
+    bases = tolerances.frame["based_on"].drop_nulls().unique(maintain_order=True).to_list()
     entered = variants.whole.classes if variants.whole else variants.frame[_KEY].fill_null("standard").to_list()
-    used = {plain(name): name for name in reversed(entered)}
+    used = {plain(name): name for name in (*reversed(bases), *reversed(entered))}
     candidates = {key: used[key] for key in known if key in used}
     swapped = _by_letters(candidates)
     for row, name in islice(_unused(tolerances, {"", "standard", *used}), affordable(candidates)):

@@ -13,9 +13,10 @@ from flexlash.reading.raw import RawSheet, Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import columns_of
-from flexlash.schema.spellings import affordable, misspelt, plain, spelt_alike, suggested
+from flexlash.schema.spellings import plain
 from flexlash.schema.variant import CorrelationRow, Material, Settings, ToleranceRow
 from flexlash.validation.cell_values import is_no_value, no_value_facts
+from flexlash.validation.class_bases import class_names
 from flexlash.validation.correlation_rows import correlation_rows_of
 from flexlash.validation.csv_findings import report_dialect
 from flexlash.validation.entry_sheets import (
@@ -32,6 +33,7 @@ from flexlash.validation.materials_and_classes import (
     standard_class,
     tolerance_classes_of,
 )
+from flexlash.validation.meant_names import MeantNames
 from flexlash.validation.measured_samples import Samples, measured_samples
 from flexlash.validation.row_checks import check_cells, check_relations
 from flexlash.validation.settings_table import settings_of
@@ -42,15 +44,9 @@ from flexlash.validation.used_samples import report_used_samples
 from flexlash.validation.validated import Table, Validated
 from flexlash.validation.variant_rows import VariantRows
 
-__all__ = ["MOST_NAMES", "TEMPLATE_VERSION", "validate"]
+__all__ = ["TEMPLATE_VERSION", "validate"]
 
 _OTHER_SOURCES = "Other sources"
-
-MOST_NAMES = 100_000
-"""Most materials or classes named, beyond which none of them is compared with those that there are."""
-
-_NEAR = 0.7
-"""Likeness from which on a material or class is suggested; short names of steels share letters by chance."""
 
 
 def validate(submission: Submission, limits: ReadingLimits | None = None) -> Validated:
@@ -128,10 +124,14 @@ def _sound(frame: pl.DataFrame, faulty: Collection[int]) -> pl.DataFrame:
 
 @dataclass(frozen=True, kw_only=True)
 class _Used:
-    """What the rows of Variants draw on: materials and classes by plain name, settings, sound rows of Correlations."""
+    """What the rows of Variants draw on: materials and classes by plain name, settings, sound rows of Correlations.
+
+    `class_names` are the classes of the sheet as first written.
+    """
 
     materials: Mapping[str, Material]
     classes: Mapping[str, Sequence[ToleranceRow]]
+    class_names: Mapping[str, str]
     settings: Settings
     correlations: Sequence[CorrelationRow]
 
@@ -150,7 +150,9 @@ def _used(
         materials = built_in_materials()
         if is_workbook:
             ledger.add("I505", value="sheet Materials", other="materials")
-    classes = tolerance_classes_of(tables["Tolerances"], ledger) if "Tolerances" in tables else {}
+    classes: dict[str, list[ToleranceRow]] = {}
+    if "Tolerances" in tables:
+        classes = tolerance_classes_of(tables["Tolerances"], ledger, samples.dimensions, samples.faults)
     # Where the classes have no column, which of them there are cannot be told.
     are_named = "Tolerances" in tables and "tolerance_class" in tables["Tolerances"].heading.columns
     if "standard" not in classes and (are_named or "Tolerances" not in present):
@@ -161,7 +163,8 @@ def _used(
     settings = settings_of(tables["Settings"], ledger) if "Settings" in tables else Settings()
     tied = tables.get("Correlations")
     correlations = () if tied is None else correlation_rows_of(tied, classes, ledger)
-    return _Used(materials=materials, classes=classes, settings=settings, correlations=correlations)
+    names = class_names(tables["Tolerances"]) if "Tolerances" in tables else {}
+    return _Used(materials=materials, classes=classes, class_names=names, settings=settings, correlations=correlations)
 
 
 def _check_rows(table: Table, used: _Used, ledger: Ledger) -> None:
@@ -174,7 +177,7 @@ def _check_rows(table: Table, used: _Used, ledger: Ledger) -> None:
     check_relations(table, ledger)
     _check_duplicates(table, ledger)
     materials = [material.name for material in used.materials.values()]
-    classes = [rows[0].tolerance_class if rows else key for key, rows in used.classes.items()]
+    classes = [used.class_names.get(key, key) for key in used.classes]
     _check_references(table, ledger, "material", "E307", materials)
     _check_references(table, ledger, "tolerance_class", "E309", classes)
     if "standard" in ledger.classes:
@@ -185,9 +188,9 @@ def _check_references(table: Table, ledger: Ledger, key: str, code: str, names: 
     """Check that every row names a material or a class that there is; rows of a faulty one are not computed."""
     if ledger.everything and not names:
         return
-    known, faulty = spelt_alike(names), ledger.materials if key == "material" else ledger.classes
-    named = table.whole.named[key] if table.whole else table.frame[key].drop_nulls().n_unique()
-    meant = _Meant(names, known, few=named <= min(affordable(names), MOST_NAMES))
+    faulty = ledger.materials if key == "material" else ledger.classes
+    meant = MeantNames(names, table.whole.named[key] if table.whole else table.frame[key].drop_nulls().n_unique())
+    known = meant.known
     spellings = {name: plain(name) for name in table.frame[key].drop_nulls().unique()}
     for row, value in table.frame.select("row", key).iter_rows():
         if value is None or (row, key) in table.faulty:
@@ -207,25 +210,6 @@ def _unknown(key: str, code: str, value: str, meant: Mapping[str, Mapping[str, s
     if is_no_value(value):
         return {"code": "E221", **no_value_facts(columns_of("Variants")[key])}
     return {"code": code, **meant[value]}
-
-
-class _Meant(dict[str, dict[str, str | None]]):
-    """What unknown names probably mean, looked up once each, where so `few` are named that all can be compared."""
-
-    def __init__(self, names: Sequence[str], known: Mapping[str, str], *, few: bool) -> None:
-        super().__init__()
-        self.names = names
-        self.known = known
-        self.few = few
-
-    def __missing__(self, value: str) -> dict[str, str | None]:
-        """Look a name up."""
-        self[value] = (
-            {"suggestion": suggested(value, self.names, _NEAR), "certain_value": misspelt(value, self.known)}
-            if self.few
-            else {}
-        )
-        return self[value]
 
 
 def _check_duplicates(table: Table, ledger: Ledger) -> None:

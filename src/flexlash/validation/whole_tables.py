@@ -26,9 +26,9 @@ from flexlash.validation.cell_values import Fault, as_text
 from flexlash.validation.headers import find_headings
 from flexlash.validation.hidden_content import DIGITS
 from flexlash.validation.ledger import Ledger
+from flexlash.validation.meant_names import MOST_NAMES
 from flexlash.validation.typed_columns import entries_of, longest_text, surplus_of
 from flexlash.validation.units_row import take_units_row
-from flexlash.validation.validate import MOST_NAMES
 from flexlash.validation.validated import MANY, Heading, Table
 
 __all__ = ["Assumed", "Block", "Gathered", "Gatherer"]

@@ -1,0 +1,62 @@
+"""Whether a process can be meant beside the limits that its drawing has."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flexlash.schema.arrays import Array
+
+__all__ = ["ProcessVerdict", "is_usual_process", "process_verdict"]
+
+_FEWEST, _MOST = 1.0, 12.0
+"""Standard deviations between the middle of the limits and either of them that processes have."""
+
+_LEAST = 0.5
+"""The same below which hardly a part in three is within its limits: the least that Limits at ± sigma may be."""
+
+_FARTHEST = 3.0
+"""Standard deviations beyond the limits from which on hardly one part in a thousand is within them."""
+
+_ROUNDING = 1e-9
+
+
+class ProcessVerdict(NamedTuple):
+    """What is wrong with a process: the code of the finding, whether mean or scatter is to blame, and the words."""
+
+    code: str
+    blamed: str
+    words: str
+
+
+def process_verdict(low: float, high: float, mean: float, sd: float, *, is_entered: bool) -> ProcessVerdict | None:
+    """Return what is wrong with a process of this mean and sd between limits that differ, None where it can be meant.
+
+    All four in one unit. A standard deviation that is itself entered must also be a usual one, since it may be in
+    another unit.
+
+    >>> process_verdict(-2.0, 2.0, 5.5, 1.0, is_entered=True).words
+    'the mean of the process lies 3.5 standard deviations beyond the limits; at most 3 is possible'
+    """
+    sigma, beyond = (high - low) / (2 * sd), max(low - mean, mean - high)
+    if sigma < _LEAST * (1 - _ROUNDING):
+        words = f"{sigma:.3g} standard deviations from the middle of the limits to either; at least 0.5 is required"
+        return ProcessVerdict("E339", "scatter", f"the process has {words}")
+    if beyond > _FARTHEST * sd * (1 + _ROUNDING):
+        words = f"{beyond / sd:.3g} standard deviations beyond the limits; at most {_FARTHEST:g} is possible"
+        return ProcessVerdict("E339", "mean", f"the mean of the process lies {words}")
+    if beyond > _ROUNDING * (high - low):
+        return ProcessVerdict("W442", "mean", "the mean of the process lies outside the limits")
+    if is_entered and not _FEWEST * (1 - _ROUNDING) <= sigma <= _MOST * (1 + _ROUNDING):
+        words = f"only {sigma:.3g}" if sigma < 1 else f"{sigma:.4g}"
+        return ProcessVerdict("W444", "scatter", f"it puts the limits at ± {words} standard deviations")
+    return None
+
+
+def is_usual_process(low: Array, high: Array, mean: Array, sd: Array) -> npt.NDArray[np.bool_]:
+    """Return of which of many processes `process_verdict` surely says nothing."""
+    half, slack = (high - low) / 2, 1 - 2 * _ROUNDING
+    within = abs(mean - (low + high) / 2) <= half * slack
+    return within & (half >= _FEWEST * sd) & (half <= _MOST * sd)
