@@ -161,7 +161,7 @@ def test_a_variant_without_a_limit_is_not_judged(table, sound):
     told = page_facts(outcome, Found.of(outcome, ran=True), ran=True, data=report_data(outcome))
     (row,), (page,) = told["table"], told["variants"]
     assert {row[key] for key in ("verdict", "light", "limit", "distance", "over_limit")} == {""}
-    assert [one["topic"] for one in page["sentences"]] == ["Verdict", "Why"]
+    assert [one["topic"] for one in page["sentences"]] == ["Verdict", "Lots and parts", "Why"]
     assert "No limit was given" in page["sentences"][0]["text"]
     assert [(tile["number"], tile["words"]) for tile in told["verdict_tiles"]] == [
         ("1", "without a limit"),

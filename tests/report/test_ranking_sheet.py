@@ -140,9 +140,9 @@ def test_formulas_move_with_their_row(study):
     """A difference refers to its own row relatively, so that a table sorted by the reader stays right."""
     sheet = _sheet(study[1])
     for number in (FIRST_ROW + 1, FIRST_ROW + 11):
-        base = f"$G${BASE_ROW + 1}"
-        assert sheet.cell(number, 18).value == f'=IF(ISNUMBER({base}),G{number}-{base},"")'
-        assert sheet.cell(number, 12).value == f"=K{number}-I{number}"
+        base = f"$H${BASE_ROW + 1}"
+        assert sheet.cell(number, 19).value == f'=IF(ISNUMBER({base}),H{number}-{base},"")'
+        assert sheet.cell(number, 13).value == f"=L{number}-J{number}"
 
 
 @pytest.mark.slow

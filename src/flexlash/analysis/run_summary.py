@@ -15,6 +15,7 @@ from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.finding_catalogue import Level
 from flexlash.schema.findings import CATALOGUE, Finding, shown
 from flexlash.schema.limit_verdict import BOUNDS, VERDICTS, misses_limit
+from flexlash.schema.lot_words import lots_words, some_lots_fail
 from flexlash.schema.number_words import ALL_UNITS, angle_words, grouped, rounded, share_words
 from flexlash.validation.blocking_errors import Waiting, waiting_rows
 
@@ -282,7 +283,8 @@ def lines_of_limits(counts: Mapping[str, int], worst: Iterable[Mapping[str, Any]
     for row in over[:most]:
         words = share_words(row)
         units = f"{words} units" if words in ALL_UNITS else f"{words} of units"
-        yield f"  {shown(row['variant'], longest=200)}: {units} are over {row['backlash_limit_arcmin']:g}′."
+        lots = f"; {lots_words(row, 'fails', 'fail')}" if some_lots_fail(row) else ""
+        yield f"  {shown(row['variant'], longest=200)}: {units} are over {row['backlash_limit_arcmin']:g}′{lots}."
 
 
 def points_words(outcome: Outcome) -> str:

@@ -18,7 +18,7 @@ _NAMED = 3
 _LISTED = 20
 """Most variants that are told one by one."""
 
-_SHARE = ("probability", "share")
+_SHARE = ("probability", "share", "lots_failing")
 _UNITS = ((1e-3, 100.0, " %"), (1e-7, 1e6, " ppm"), (0.0, 1e9, " ppb"))
 """Shares of at least the first number are told in the unit, which is the factor times the share."""
 

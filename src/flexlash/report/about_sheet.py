@@ -140,6 +140,7 @@ def _statistics(outcome: Outcome) -> Iterator[str]:
     yield from correlation_sentences(outcome.computed)
     yield from _SAMPLING[outcome.settings.method]
     yield "P99.865 of a normal is mean + 3 sd. A number ± 1.96 of its standard errors is its 95 % interval."
+    yield from _lots(outcome.settings.acceptable_ppm)
     if "cross_check" in outcome.results.columns:
         yield (
             "Cross-check: plain Monte Carlo beside the spread. They agree when mean, sd, all percentiles and the "
@@ -160,6 +161,27 @@ def _statistics(outcome: Outcome) -> Iterator[str]:
     yield "Exact to rounding: nominal columns, worst case, first-order sd. All other statistics are estimates."
 
 
+def _lots(acceptable_ppm: float) -> Iterator[str]:
+    """Yield what a lot is, how the spread divides into lots and parts, and when a lot fails."""
+    yield (
+        "Lots and parts: a lot has one value of each dimension that scatters between lots (elastic constants and "
+        "calibrations, unless Tolerances says otherwise), each of its parts a value of its own of every other one."
+    )
+    yield (
+        "Within-lot sd: root of the mean over lots of the variance of their parts. Between-lots sd: standard deviation "
+        "of the means of lots. Their squares add up to that of the standard deviation. As ± in words: 1.96 of them."
+    )
+    yield (
+        "The probability over the limit is the share of the units of all lots. A lot fails where more than "
+        f"{acceptable_ppm:,g} ppm of its units are over the limit (Settings: acceptable_ppm). Where nothing scatters "
+        "between lots all of them fail or none; where nothing scatters within them as many lots fail as units."
+    )
+    yield (
+        "A calibration is one unknown value for all lots. It counts as scattering between them, so that the share of "
+        "lots failing then says how likely it is that they fail."
+    )
+
+
 def _verdict() -> Iterator[str]:
     """Yield how the verdict on a variant is formed."""
     yield from (f"{colour.capitalize()}: {rule}." for colour, rule in RULES.items())
@@ -167,6 +189,10 @@ def _verdict() -> Iterator[str]:
         "By percentiles: green where P99.865 is at most the limit, else amber where P97.5 is, else red; "
         f"{NO_VERDICT} where no limit was given. It judges the backlash alone, by the estimate as it stands; a ? says "
         "that the 95 % interval of the share over the limit reaches another verdict, so that more samples may turn it."
+    )
+    yield (
+        "It is about the units of all lots together. How many lots fail by themselves is told beside it and changes no "
+        "verdict."
     )
     yield "A variant with warnings has its verdict all the same: a part beyond yield can be green. See Findings."
 

@@ -18,6 +18,7 @@ from flexlash.report.layout.styles import Book, decimals_of
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.verdict import COLOURS, RULES, light
+from flexlash.schema.lot_words import lots_words
 
 __all__ = ["BASE_ROW", "DIFFERENCES", "FIRST_ROW", "HEADER", "column_of", "write_ranking"]
 
@@ -26,7 +27,7 @@ HEADER = 6
 FIRST_ROW = 7
 """Rows, from 0, of the base variant, of the headings and of the worst variant."""
 
-_WORDS = (("Rank", 6), ("Variant", 27), ("Verdict", 8), ("Units over the limit", 31))
+_WORDS = (("Rank", 6), ("Variant", 27), ("Verdict", 8), ("Units over the limit", 31), ("Lots failing", 22))
 _FIGURES = {
     "P2.5": "p2_5_standard_error_arcmin",
     "P25": "p50_standard_error_arcmin",
@@ -155,6 +156,7 @@ def _write_words(book: Book, sheet: Any, rank: int, variant: Drawn, link: tuple[
     sheet.write_string(row, 2, verdict, book.format(COLOURS[verdict]))
     if variant.row["probability_over_limit"] is not None:
         sheet.write_string(row, 3, share_words(variant.row), book.format("indented"))
+        sheet.write_string(row, 4, lots_words(variant.row), book.format("indented"))
     if variant.row["main_contributor"]:
         sheet.write_string(row, _CAUSE, dimension_words(variant.row["main_contributor"]), book.format("indented"))
         sheet.write_number(row, _CAUSE + 1, variant.row["main_contributor_share"], book.format("text", "0%"))

@@ -42,6 +42,8 @@ _RESULTS = {
     "Worst case low": "worst_case_low_arcmin",
     "Worst case high": "worst_case_high_arcmin",
     "Cylinder only": "cylinder_only_backlash_arcmin",
+    "Within-lot sd": "within_lot_sd_arcmin",
+    "Between-lots sd": "between_lots_sd_arcmin",
 }
 
 FIGURE_ERRORS = {
@@ -53,6 +55,8 @@ FIGURE_ERRORS = {
         "P50": "p50",
         "P97.5": "p97_5",
         "P99.865": "p99_865",
+        "Within-lot sd": "within_lot_sd",
+        "Between-lots sd": "between_lots_sd",
     }.items()
 }
 """Heading and Results key of the standard error of a figure, by the figure's own heading."""
@@ -86,6 +90,8 @@ def _entries(variant: Drawn, label: str) -> Iterator[tuple[str, str | float | No
     yield "Limit", row["backlash_limit_arcmin"]
     yield from ((heading, row[key]) for heading, key in _RESULTS.items())
     yield from ((heading, row[key]) for heading, key in FIGURE_ERRORS.values())
+    yield "Lots failing", row["lots_failing"]
+    yield "error of Lots failing", row["lots_failing_standard_error"]
     yield "Rarest share", curve.rarest
     outputs = _rounded(curve.outputs / ARCMIN, _OUTPUT_DIGITS)
     yield from ((score_heading(score), value) for score, value in zip(CURVE_SCORES, outputs, strict=True))

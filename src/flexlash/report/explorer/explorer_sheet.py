@@ -82,6 +82,13 @@ _FIGURES = {
 }
 
 
+_RAREST_LOTS = 1e-7
+"""Per cent of lots below which none is told to fail."""
+
+_LOTS = ("Within-lot sd", "Between-lots sd")
+"""Figures of lots and parts, below the others."""
+
+
 def write_explorer(book: Book, curves: Stored, extent: Extent) -> None:
     """Write the Explorer of the stored variants, the worst one picked."""
     sheet = book.sheet("Explorer", landscape=False, pages_tall=1, tab="entry")
@@ -174,7 +181,10 @@ def _settled(share: Live, low: Live, high: Live) -> Live:
 def _write_figures(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:
     """Write the figures of the picked variant beside the answers."""
     figure, quiet = book.format("figure", "arcmin"), book.format("quiet")
-    for row, (heading, words) in enumerate(_FIGURES.items(), start=_FIRST_FIGURE):
+    capability = _FIRST_FIGURE + len(_FIGURES)
+    rows = dict(enumerate(_FIGURES.items(), start=_FIRST_FIGURE))
+    rows |= dict(enumerate(zip(_LOTS, _LOTS, strict=True), start=capability + 1))
+    for row, (heading, words) in rows.items():
         sheet.write_string(row, 4, words, book.format("label"))
         value, shown = choice.angle(heading), figure
         if heading in FIGURE_ERRORS:
@@ -183,6 +193,7 @@ def _write_figures(book: Book, sheet: Any, choice: Choice, working: Working, lim
         put(sheet, row, 5, choice.figure(value), shown)
         put(sheet, row, 6, choice.unit, quiet)
     _write_capability(book, sheet, choice, working, limit)
+    _write_failing_lots(book, sheet, choice, working)
 
 
 def _write_capability(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:
@@ -199,3 +210,18 @@ def _write_capability(book: Book, sheet: Any, choice: Choice, working: Working, 
     words = FIXED(capability, decimals_to(error, _PPK_DECIMALS, most=_PPK_DECIMALS))
     put(sheet, row, 5, IF(has, words, NONE), book.format("figure"))
     sheet.write_string(row, 6, "ISO 22514-2", quiet)
+
+
+def _write_failing_lots(book: Book, sheet: Any, choice: Choice, working: Working) -> None:
+    """Write how many lots fail at the variant's own limit, the only one of which that is known."""
+    row = _FIRST_FIGURE + len(_FIGURES) + 1 + len(_LOTS)
+    sheet.write_string(row, 4, "Lots failing at its own limit", book.format("label"))
+    share, error = choice.text("Lots failing"), choice.text("error of Lots failing")
+    has = ISNUMBER(share)
+    percent = working.cell("lots failing in %", IF(has, share * 100, 0.0))
+    rest = working.cell("or not failing, what is less", MIN(percent, live(100.0) - percent))
+    decimals = decimals_to(MAX(IF(has, error * 100, 0.0), rest * _FINEST), _USUAL, most=_MOST)
+    counted = CONCATENATE(FIXED(percent, decimals), " %")
+    words = IF(rest < _RAREST_LOTS, IF(percent <= rest, "practically none", "practically all"), counted)
+    put(sheet, row, 5, choice.figure(IF(has, words, NONE)), book.format("figure"))
+    sheet.write_string(row, 6, "of lots", book.format("quiet"))

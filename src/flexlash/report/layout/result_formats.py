@@ -59,7 +59,7 @@ def usual_format(column: Column) -> str:
         return "stiffness"
     if key in ESTIMATED_SHARES:
         return percent_of(SHARE_OF_VARIANCE_ERROR)
-    if "share" in key or "probability" in key:
+    if "share" in key or "probability" in key or key == "lots_failing":
         return "share"
     return _USUAL.get(key) or _UNITS.get(column.unit, "plain")
 
@@ -93,7 +93,9 @@ def number_codes(results: pl.DataFrame, column: Column) -> list[str]:
     )
     if not error:
         return [usual] * results.height
-    return [decimals_of(error, "arcmin" if unit else "plain") for error in results[error].to_list()]
+    errors = results[error].to_list()
+    known = "arcmin" if unit else "plain"
+    return _share_codes(values, errors, 1.0) if usual == "share" else [decimals_of(one, known) for one in errors]
 
 
 def _ppk_error(row: dict[str, Any]) -> float | None:
@@ -149,7 +151,12 @@ def _of_shares(results: pl.DataFrame, key: str, values: list[float | None]) -> l
     stem = key.removesuffix("_low").removesuffix("_high")
     ends = zip(results[f"{stem}_low"].to_list(), results[f"{stem}_high"].to_list(), strict=True)
     errors = [None if low is None else share_error(low, high) for low, high in ends]
-    whole, near_end = (1e6, "#,##0.0##") if key.startswith("ppm") else (1.0, "0.0000%")
+    return _share_codes(values, errors, 1e6 if key.startswith("ppm") else 1.0)
+
+
+def _share_codes(values: list[float | None], errors: list[float | None], whole: float) -> list[str]:
+    """Return a number format for each share of a whole, down to its standard error."""
+    near_end = "0.0000%" if whole == 1.0 else "#,##0.0##"
     formats = []
     for value, error in zip(values, errors, strict=True):
         if value is not None and not _NEAR * whole <= value <= (1 - _NEAR) * whole:

@@ -159,7 +159,9 @@ class _Page:
             self._variant(variant.row, name, targets[variant.computed.variant.row])
         extent = extent_of(self.outcome)
         more = f"The {_LISTED} worst of {grouped(extent.total)} are listed; {extent.elsewhere}. "
-        note = "Worst first: by share over the limit. The verdict judges the backlash alone."
+        note = (
+            "Worst first: by share over the limit. The verdict judges the backlash alone, over the units of all lots."
+        )
         if len(drawn) > _LISTED:
             note = more + note
         self.sheet.write_string(self.row, 0, note, self.book.format("quiet"))

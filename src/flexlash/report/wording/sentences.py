@@ -14,6 +14,7 @@ from flexlash.analysis.run_summary import counted, dimension_words, grouped, lis
 from flexlash.report.layout.links import rule_counts
 from flexlash.report.report_data import ROW
 from flexlash.report.wording.advice import stiffening, tightening
+from flexlash.report.wording.lot_sentences import LOTS, lots_and_parts
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows, rough, summary_facts
 from flexlash.report.wording.verdict_sentences import failing, sureness
 from flexlash.schema.findings import CATALOGUE, spelled_out
@@ -60,6 +61,7 @@ def sentences(outcome: Outcome, recommendations: Sequence[Recommendation]) -> It
         "Computed": _computed(facts),
         "Which fail": failing(facts),
         "How sure": sureness(facts),
+        LOTS: lots_and_parts(facts),
         "Why": _causes(facts),
         "What to tighten": tightening(facts),
         "What to stiffen": stiffening(facts),

@@ -1,0 +1,106 @@
+"""Lots and parts in words: how far either scatter, how many lots fail, and which units a share is a share of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from flexlash.schema.findings import spelled_out
+from flexlash.schema.number_words import ALL_UNITS, INTERVAL, glance, rounded, share_words
+
+__all__ = [
+    "is_settled",
+    "lots_words",
+    "of_all_units",
+    "reach_words",
+    "scatters_between_lots",
+    "scatters_within_lots",
+    "some_lots_fail",
+]
+
+_UNITS = ((1.0, 100.0, " % of lots"), (1e-3, 1e6, " lots in a million"), (1e-6, 1e9, " lots in a billion"))
+"""Shares below the first number are told in the unit, which is the factor times the share."""
+
+_LEAST = 1e-9
+"""Shares of lots below it are told as none."""
+
+_UNKNOWN = 0.05
+"""Standard error of a share of 0 or 1 from which it is not known whether all lots fail, which are alike, or none."""
+
+_REACH_DIGITS = 2
+"""Digits in which it is told how far parts or lots scatter."""
+
+
+def scatters_between_lots(row: Mapping[str, Any]) -> bool:
+    """Return whether lots differ, by a row of Results."""
+    return bool(row.get("between_lots_sd_arcmin"))
+
+
+def scatters_within_lots(row: Mapping[str, Any]) -> bool:
+    """Return whether the parts of a lot differ, by a row of Results."""
+    return bool(row.get("within_lot_sd_arcmin"))
+
+
+def reach_words(sd: float) -> str:
+    """Return within how much of their middle 95 % lie that scatter with an sd [arcmin], as of a normal.
+
+    >>> reach_words(0.0019357)
+    '± 0.0038′'
+    """
+    return f"± {spelled_out(INTERVAL * sd, _REACH_DIGITS)}′"
+
+
+def of_all_units(row: Mapping[str, Any]) -> str:
+    """Return the share over the limit of a row of Results, without its interval, as one of all units.
+
+    >>> of_all_units({"probability_over_limit": 5.062e-5, "probability_over_limit_low": 5.06e-5,
+    ...               "probability_over_limit_high": 5.064e-5})
+    '50.62 ppm of all units'
+    """
+    words = share_words(row).split(" (")[0]
+    return f"{words} units" if words in ALL_UNITS else f"{words} of all units"
+
+
+def lots_words(row: Mapping[str, Any], has: str = "", have: str = "") -> str:
+    """Return how many lots fail by a row of Results, and a verb for one or for many; an empty text without a limit.
+
+    >>> lots_words({"lots_failing": 1.1493e-4, "lots_failing_standard_error": 1.6e-7}, "has", "have")
+    '115 lots in a million have'
+    >>> lots_words({"lots_failing": 0.2576, "lots_failing_standard_error": 0.004})
+    '25.8 % of lots'
+    >>> lots_words({"lots_failing": 0.0, "lots_failing_standard_error": 0.0}, "fails", "fail")
+    'no lot fails'
+    """
+    share, error = row.get("lots_failing"), row.get("lots_failing_standard_error") or 0.0
+    if share is None:
+        return ""
+    for rare, one in ((share, "no lot"), (1 - share, "every lot")):
+        if rare < _LEAST and error < _LEAST:
+            return f"{'practically ' if rare else ''}{one} {has}".strip()
+    words = f"all but {_counted(1 - share, error)}" if 1 - share < _UNITS[1][0] else _counted(share, error)
+    return f"{words} {have}".strip()
+
+
+def some_lots_fail(row: Mapping[str, Any]) -> bool:
+    """Return whether some lots fail and others do not, by a row of Results."""
+    share = row.get("lots_failing")
+    return share is not None and scatters_between_lots(row) and _LEAST <= share <= 1 - _LEAST
+
+
+def is_settled(row: Mapping[str, Any]) -> bool:
+    """Return whether it is known of lots that are all alike whether they fail."""
+    return (row.get("lots_failing_standard_error") or 0.0) < _UNKNOWN
+
+
+def _counted(share: float, error: float) -> str:
+    """Return how many lots a share is, in three digits, or fewer where its standard error is greater."""
+    if share < 2 * error:
+        factor, unit = _unit(share + INTERVAL * error)
+        return f"at most {spelled_out((share + INTERVAL * error) * factor, _REACH_DIGITS)}{unit}"
+    factor, unit = _unit(share)
+    return f"{rounded(share * factor, max(error * factor, 10 * glance(share * factor)))}{unit}"
+
+
+def _unit(share: float) -> tuple[float, str]:
+    """Return factor and name of the unit in which a share of lots is told."""
+    return [(factor, name) for most, factor, name in _UNITS if share < most or most == 1][-1]
