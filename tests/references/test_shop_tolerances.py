@@ -98,7 +98,10 @@ def test_measured_parts_are_the_process_they_show(results, use_as):
 
 
 def test_classes_inherit(results):
-    """A class takes over what it does not hold itself: the wall of its own, the rest of the other class, to the bit."""
+    """A class takes over what it does not hold itself: the wall of its own, the rest of the other class, to the bit.
+
+    The share over 3.8′ is that of 80 · 120 Gauss points over ν and the wall, with the exact tail of E at each.
+    """
     wall = DRAWN | {"lower_deviation": -0.0125, "upper_deviation": 0.0125}
     rows = results(
         {
@@ -109,7 +112,7 @@ def test_classes_inherit(results):
         }
     )
     assert round(rows["shop"]["p99_865_arcmin"], 3) == 3.780
-    assert round(rows["shop"]["ppm_over_limit"]) == 118
+    assert rows["shop"]["ppm_over_limit"] == pytest.approx(118.8602820, rel=1e-6)
     for name in ("shop", "bare"):
         assert spread_of(rows[name]) == spread_of(rows["full"]), name
     assert spread_of(rows["own"]) != spread_of(rows["full"])
