@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Mapping
-from types import MappingProxyType
+from collections.abc import Mapping
 from typing import Any
 
 from flexlash.reading.raw import RawSheet, RawValue
@@ -14,7 +13,8 @@ from flexlash.schema.spellings import plain
 from flexlash.schema.variant import Material, ToleranceRow
 from flexlash.validation.class_bases import ClassBases, class_names
 from flexlash.validation.ledger import Ledger
-from flexlash.validation.named_samples import Measured, NamedSamples
+from flexlash.validation.measured_samples import Samples
+from flexlash.validation.named_samples import NamedSamples
 from flexlash.validation.process_entries import check_process, check_verdict
 from flexlash.validation.tolerance_rows import check_limits, standard_class, tolerance_row, warn_of_shift
 from flexlash.validation.validated import Table
@@ -126,20 +126,14 @@ def report_doubled(table: Table, ledger: Ledger, keys: tuple[str, ...], code: st
     return set(doubled)
 
 
-def tolerance_classes_of(
-    table: Table,
-    ledger: Ledger,
-    measured: Measured = MappingProxyType({}),
-    spoilt: Collection[tuple[str, str]] = (),
-) -> dict[str, list[ToleranceRow]]:
+def tolerance_classes_of(table: Table, ledger: Ledger, samples: Samples | None = None) -> dict[str, list[ToleranceRow]]:
     """Return the tolerance classes of a sheet by plain name, with what they take over from those they are based on.
 
-    `measured` are the samples of Measurements, `spoilt` those that have errors of their own, by plain name and
-    dimension. Faulty classes are named in the ledger, also those based on one.
+    Faulty classes are named in the ledger, also those based on one.
     """
     classes: dict[str, list[ToleranceRow]] = {}
     doubled = report_doubled(table, ledger, ("tolerance_class", "dimension"), "E319")
-    bases, samples = ClassBases(table, ledger), NamedSamples(table, ledger, measured, spoilt)
+    bases, named = ClassBases(table, ledger), NamedSamples(table, ledger, samples or Samples())
     for entered in table.frame.iter_rows(named=True):
         row, name = entered["row"], entered["tolerance_class"]
         if name is None:
@@ -150,7 +144,7 @@ def tolerance_classes_of(
         classes.setdefault(key, [])
         if bases.take(record):
             continue
-        found = _sound_row(table, ledger, record, samples)
+        found = _sound_row(table, ledger, record, named)
         if found is None or row in doubled:
             ledger.spoil("class", key, table.sheet, row)
         else:

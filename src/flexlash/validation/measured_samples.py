@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from flexlash.schema.cell_addresses import cell_ranges
@@ -33,6 +33,7 @@ class Samples:
 
     `names` are the samples as first entered, `rows` their rows in `table`, by plain name. `faults` are rows whose
     errors spoil a dimension of a sample, by both; `unclear` rows whose errors leave open which samples there are.
+    `is_whole` is not so where a header could not be read, so that what is missing may be there.
     """
 
     table: Table | None = None
@@ -41,6 +42,7 @@ class Samples:
     dimensions: Mapping[str, Mapping[str, MeasuredDimension]] = field(default_factory=dict)
     faults: Mapping[tuple[str, str], Sequence[int]] = field(default_factory=dict)
     unclear: Sequence[int] = ()
+    is_whole: bool = True
 
     def faulty_rows(self, name: str, dimension: str) -> list[int]:
         """Return the rows of Measurements whose errors spoil a dimension of a sample."""
@@ -50,7 +52,8 @@ class Samples:
 def measured_samples(table: Table | None, ledger: Ledger) -> Samples:
     """Return the samples of a table; `ledger` holds what was found in it so far, and gets what is wrong with them."""
     wide = {found.row for found in ledger.findings if found.level == "error"} if ledger.everything else set()
-    return Samples(unclear=sorted(wide)) if table is None else _Gathering(table, ledger).samples(wide)
+    samples = Samples(unclear=sorted(wide)) if table is None else _Gathering(table, ledger).samples(wide)
+    return replace(samples, is_whole=not ledger.everything)
 
 
 class _Gathering:

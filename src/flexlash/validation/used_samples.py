@@ -26,6 +26,7 @@ def report_used_samples(
 
     A class is spoilt by what it inherits, too, but a row is told once, where it stands.
     """
+    _spoil_by_faults(samples, tolerances, ledger)
     told: dict[tuple[int, str], bool] = {}
     for key, rows in classes.items():
         for row in rows:
@@ -36,10 +37,20 @@ def report_used_samples(
                 told[place] = _report_scatter(row.sample, row, tolerances, ledger)
             if told[place]:
                 ledger.spoil("class", key, tolerances.sheet, row.row)
-            if samples.table is not None:
+            if samples.table is not None and (plain(row.tolerance_class) != key):
                 for fault in samples.faulty_rows(row.sample.sample, row.dimension):
                     ledger.spoil("class", key, samples.table.sheet, fault)
     _report_unused(samples, tolerances, ledger)
+
+
+def _spoil_by_faults(samples: Samples, tolerances: Table | None, ledger: Ledger) -> None:
+    """Spoil each class by the errors of what its own rows take, of which nothing may be left."""
+    if tolerances is None or samples.table is None:
+        return
+    entered = tolerances.frame.select("tolerance_class", "sample", "dimension")
+    for name, sample, dimension in entered.drop_nulls().unique(maintain_order=True).iter_rows():
+        for fault in samples.faulty_rows(sample, dimension):
+            ledger.spoil("class", plain(name), samples.table.sheet, fault)
 
 
 def _report_scatter(sample: MeasuredDimension, row: ToleranceRow, tolerances: Table, ledger: Ledger) -> bool:

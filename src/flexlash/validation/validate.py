@@ -152,7 +152,7 @@ def _used(
             ledger.add("I505", value="sheet Materials", other="materials")
     classes: dict[str, list[ToleranceRow]] = {}
     if "Tolerances" in tables:
-        classes = tolerance_classes_of(tables["Tolerances"], ledger, samples.dimensions, samples.faults)
+        classes = tolerance_classes_of(tables["Tolerances"], ledger, samples)
     # Where the classes have no column, which of them there are cannot be told.
     are_named = "Tolerances" in tables and "tolerance_class" in tables["Tolerances"].heading.columns
     if "standard" not in classes and (are_named or "Tolerances" not in present):
