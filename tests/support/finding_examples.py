@@ -179,6 +179,28 @@ def _tables(folder: Path) -> Made:
     return _file(folder, _text(variants), **options)
 
 
+def _processes(folder: Path) -> Made:
+    """Write processes and bases with faults, each in a class of its own."""
+    wall = {"dimension": "wall_thickness", "lower_deviation": -0.02, "upper_deviation": 0.02}
+    rows = {
+        "unknown sample": wall | {"sample": "walls"},
+        "unknown base": {"based_on": "standart"},
+        "told twice": wall | {"limits_sigma": 3, "standard_deviation": 0.004},
+        "above Cp": wall | {"cp": 1.1, "cpk": 1.33},
+        "uniform": wall | {"distribution": "uniform", "mean_shift": 0.007},
+        "circle": {"based_on": "circle"},
+        "far off": wall | {"mean_shift": 7, "standard_deviation": 0.004},
+        "outside": wall | {"mean_shift": 0.022, "standard_deviation": 0.004},
+        "disagree": wall | {"mean_shift": 0.007, "cp": 1.5, "cpk": 1.1},
+        "micrometres": wall | {"standard_deviation": 4.1e-6},
+    }
+    return entry_book(
+        folder / "study.xlsx",
+        variants=[CUP | {"variant": f"of {name}", "tolerance_class": name} for name in rows],
+        tolerances=[{"tolerance_class": name} | row for name, row in rows.items()],
+    ), {}
+
+
 def _tied(folder: Path) -> Made:
     """Write correlations with faults, each in a class of its own."""
     wall, disk, radius, young = "wall_thickness", "disk_thickness", "mean_radius", "youngs_modulus"
@@ -326,6 +348,7 @@ FOREIGN = parts_of()[WORKBOOK].replace(MAIN, "http://example.com/main")
 SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "needs fixing": _needs_fixing,
     "tables": _tables,
+    "processes": _processes,
     "correlations": _tied,
     "variants": _variants,
     "settings": _settings,

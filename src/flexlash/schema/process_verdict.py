@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flexlash.schema.arrays import Array
+from flexlash.schema.findings import spelled_out
 
 __all__ = ["ProcessVerdict", "is_usual_process", "process_verdict"]
 
@@ -42,16 +43,15 @@ def process_verdict(low: float, high: float, mean: float, sd: float, *, is_enter
     """
     sigma, beyond = (high - low) / (2 * sd), max(low - mean, mean - high)
     if sigma < _LEAST * (1 - _ROUNDING):
-        words = f"{sigma:.3g} standard deviations from the middle of the limits to either; at least 0.5 is required"
-        return ProcessVerdict("E339", "scatter", f"the process has {words}")
+        words = f"{spelled_out(sigma)} standard deviations off their middle; at least 0.5 is required"
+        return ProcessVerdict("E339", "scatter", f"the limits of the process lie {words}")
     if beyond > _FARTHEST * sd * (1 + _ROUNDING):
-        words = f"{beyond / sd:.3g} standard deviations beyond the limits; at most {_FARTHEST:g} is possible"
+        words = f"{spelled_out(beyond / sd)} standard deviations beyond the limits; at most {_FARTHEST:g} is possible"
         return ProcessVerdict("E339", "mean", f"the mean of the process lies {words}")
     if beyond > _ROUNDING * (high - low):
         return ProcessVerdict("W442", "mean", "the mean of the process lies outside the limits")
     if is_entered and not _FEWEST * (1 - _ROUNDING) <= sigma <= _MOST * (1 + _ROUNDING):
-        words = f"only {sigma:.3g}" if sigma < 1 else f"{sigma:.4g}"
-        return ProcessVerdict("W444", "scatter", f"it puts the limits at ± {words} standard deviations")
+        return ProcessVerdict("W444", "scatter", f"it puts the limits at ± {spelled_out(sigma)} standard deviations")
     return None
 
 

@@ -30,7 +30,7 @@ def check_process(table: Table, ledger: Ledger, record: Mapping[str, Any]) -> No
         ledger.add_in(table, "E337", record["row"], key, value=given[key], detail=words)
     said = {key: value for key, value in given.items() if key not in misplaced}
     for key, other in _said_twice(said):
-        words = f"{_COLUMNS[other].name} = {said[other]}"
+        words = f"{_COLUMNS[other].name} = {table.entered(record['row'], other)}"
         ledger.add_in(table, "E335", record["row"], key, value=said[key], other=words)
     if "cpk" in said and "sample" not in said:
         _check_cpk(table, ledger, record)
