@@ -41,6 +41,7 @@ WORDS = [
     (_change("notes", "old\n", "\x1b[31mnew"), "notes: old· → ·[31mnew"),
     (_change("probability_over_limit", 0.412, 0.38), "probability_over_limit: 41.2 % → 38 %"),
     (_change("probability_over_limit", 2e-6, 1e-6), "probability_over_limit: 2 ppm → 1 ppm"),
+    (_change("lots_failing", 1.15e-4, 2e-4), "lots_failing: 115 ppm → 200 ppm"),
     (_change("main_contributor_share", 0.0, 4e-9), "main_contributor_share: 0 ppb → 4 ppb"),
     (_change("main_contributor", "wall_thickness", "youngs_modulus"),
      "main_contributor: Wall thickness → Young's modulus"),

@@ -23,6 +23,7 @@ from flexlash.tolerance.distribution_curves import CURVE_SCORES
 
 VARIANT, UNIT, LIMIT, WANTED = "B4", "B5", "B6", "B7"
 USED, SHARE, LOW, HIGH, PPM, VERDICT, FOUND, FOUND_ERROR = (f"B{row}" for row in range(9, 17))
+LOTS = "F15", "F16", "F17"
 OUTER = 1e-6
 """The rarest share whose reading is promised to be within 1 %."""
 
@@ -67,6 +68,8 @@ def test_the_worst_variant_is_picked_and_answered(study):
     assert values["F4"] == pytest.approx(row["backlash_arcmin"], rel=1e-14)
     assert values["F9"] == f"{row['p97_5_arcmin']:.4f}"
     assert values["F14"] == f"{row['ppk']:.3f}"
+    within, between = (f"{row[f'{name}_arcmin']:.4f}" for name in ("within_lot_sd", "between_lots_sd"))
+    assert [values[cell] for cell in LOTS] == [within, between, "practically all"]
     assert _number(values[FOUND]) == pytest.approx(row["p99_865_arcmin"], abs=row["p99_865_standard_error_arcmin"])
     assert values[VERDICT] == "red"
     assert not error_cells(values)
@@ -237,6 +240,21 @@ def test_the_unit_is_switched_in_one_cell(study, tmp_path):
 
 @pytest.mark.slow
 @needs_libreoffice
+def test_lots_follow_the_variant_and_its_own_limit(study, tmp_path):
+    """What lots and parts have of the spread follows variant and unit; how many lots fail is of its own limit alone."""
+    entries = {VARIANT: "B3-160 case 1", UNIT: "arcsec", LIMIT: 1.0}
+    book = typed(study[1], tmp_path / "case 1.xlsx", "Explorer", entries)
+    values = values_of(convert_all([book], "xlsx", tmp_path / "again")[0], "Explorer")
+    row = _rows(study[0])["B3-160 case 1"]
+    told = [float(values[cell].removesuffix(" %")) for cell in LOTS]
+    assert told[0] == pytest.approx(60 * row["within_lot_sd_arcmin"], abs=1e-4)
+    assert told[1] == pytest.approx(60 * row["between_lots_sd_arcmin"], abs=1e-4)
+    assert told[2] == pytest.approx(100 * row["lots_failing"], abs=1e-5) == 0.01149
+    assert _number(values[SHARE]) == pytest.approx(1.0)
+
+
+@pytest.mark.slow
+@needs_libreoffice
 @pytest.mark.usefixtures("_curves_without_a_report")
 def test_without_limit_or_scatter_nothing_is_an_error(table, sound, tmp_path):
     """A variant without a limit says so; one that does not scatter is over a limit or not; no cell is an error."""
@@ -260,7 +278,8 @@ def test_without_limit_or_scatter_nothing_is_an_error(table, sound, tmp_path):
     )
     for values in (none, far, near, under, over):
         assert not error_cells(values)
-    assert none[SHARE] == none[PPM] == none["F14"] == "none"
+    assert none[SHARE] == none[PPM] == none["F14"] == none["F17"] == "none"
+    assert [under[cell] for cell in LOTS] == ["0.0000", "0.0000", "none"]
     assert none[VERDICT] == "–"
     assert "type one above" in none["C10"]
     assert _number(far[SHARE]) == pytest.approx(2.9e-7, rel=0.02)

@@ -19,8 +19,8 @@ __all__ = ["FIRST", "ROUNDING", "Change", "Difference", "Differing", "changed_re
 ROUNDING = 1e-12
 """Numbers that differ by no more than this part of themselves are equal."""
 
-FIRST = ("status", "backlash_arcmin", "p97_5_arcmin", "probability_over_limit", "main_contributor")
-"""Results on which a verdict rests, in the order in which a reader wants them."""
+FIRST = ("status", "backlash_arcmin", "p97_5_arcmin", "probability_over_limit", "lots_failing", "main_contributor")
+"""Results on which a verdict rests, and how many lots fail, in the order in which a reader wants them."""
 
 _RESULTS = {column.key: column for column in result_columns(cross_check=True, elasticity=True)}
 

@@ -76,7 +76,8 @@ def lots_words(row: Mapping[str, Any], has: str = "", have: str = "") -> str:
         return ""
     for rare, one in ((share, "no lot"), (1 - share, "every lot")):
         if rare < _LEAST and error < _LEAST:
-            return f"{'practically ' if rare else ''}{one} {has}".strip()
+            # What is told as none of lots that differ is hardly ever so.
+            return f"{'practically ' if scatters_between_lots(row) else ''}{one} {has}".strip()
     words = f"all but {_counted(1 - share, error)}" if 1 - share < _UNITS[1][0] else _counted(share, error)
     return f"{words} {have}".strip()
 

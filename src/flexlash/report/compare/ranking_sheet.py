@@ -74,6 +74,7 @@ def write_ranking(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
         f"Variants by share of units over the limit: {which}. Verdict: {rules}.",
         "Margin: limit less P97.5, negative when over. Differences: variant less base; orange, more backlash or "
         "scatter than the base; blue, less. Pick the base in the yellow cell.",
+        f"A lot fails with more than {outcome.settings.acceptable_ppm:,g} ppm of its units over the limit.",
     )
     for row, note in enumerate(notes, start=1):
         sheet.write_string(row, 0, note, book.format("quiet"))

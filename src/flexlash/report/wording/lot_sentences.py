@@ -25,7 +25,7 @@ _SHARED = 6
 """Most dimensions that are named as one value for a whole lot."""
 
 _ABOUT_LOTS = "Verdicts and shares are about all units of many lots, not about one lot."
-_ABOUT_PARTS = "Nothing scatters between lots, so that verdicts and shares hold for every lot."
+_ABOUT_PARTS = "Verdicts and shares hold for every lot."
 
 
 def lots_and_parts(facts: SummaryFacts) -> Iterator[str]:
