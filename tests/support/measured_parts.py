@@ -17,8 +17,8 @@ LIMITS = ["Tolerance class", "Dimension", "Lower deviation", "Upper deviation", 
 def scattered(count: int, mean: float = 1.607, sd: float = 0.0041, turn: int = 0) -> list[float]:
     """Return values with exactly this mean and standard deviation, in an order that `turn` shuffles."""
     scores = [NormalDist().inv_cdf((place - 0.375) / (count + 0.25)) for place in range(1, count + 1)]
-    scale = math.sqrt(math.fsum(score**2 for score in scores) / (count - 1))
-    step = next(step for step in range(count // 3 + turn + 1, 3 * count + turn) if math.gcd(step, count) == 1)
+    scale = math.sqrt(math.fsum(score**2 for score in scores) / max(count - 1, 1)) or 1.0
+    step = next(step for step in range(count // 3 + turn + 1, 3 * count + turn + 3) if math.gcd(step, count) == 1)
     return [mean + sd * scores[place * step % count] / scale for place in range(count)]
 
 

@@ -8,7 +8,12 @@ from flexlash.reading.raw import RawSheet, Submission
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.columns import columns_of
-from flexlash.validation.entry_sheets import entry_sheets, report_other_names, report_second_tables
+from flexlash.validation.entry_sheets import (
+    entry_sheets,
+    report_other_names,
+    report_second_tables,
+    with_tables,
+)
 from flexlash.validation.ledger import Ledger
 
 
@@ -141,3 +146,82 @@ def test_a_second_table_is_not_read_in_silence(name, headers, told):
     ledger = Ledger("a.xlsx")
     report_second_tables(submission, entry_sheets(submission, ReadingLimits()), ledger)
     assert [(found.code, found.place) for found in ledger.findings] == [(code, f"{name}!A1") for code in told]
+
+
+_MEASURED = [
+    "Sample",
+    "Part",
+    "Wall thickness Δ [mm]",
+    "Disk thickness [mm]",
+    "Mean radius r_m [mm]",
+    "Bore diameter [mm]",
+]
+_CORRELATED = ["Tolerance class", "Dimension 1", "Dimension 2", "Correlation"]
+
+
+@pytest.mark.parametrize(("headers", "schema"), [(_MEASURED, "Measurements"), (_CORRELATED, "Correlations")])
+@pytest.mark.parametrize("name", ["Messwerte", "Sheet2", "Measurements (2)", "wall 2026"])
+def test_optional_sheets_of_other_names(headers, schema, name):
+    """A sheet with a sample and dimensions is measured parts whatever its name, never variants."""
+    submission = _submission(Variants="Variants", **{name: headers})
+    found = entry_sheets(submission, ReadingLimits())
+    assert {key: sheet.name for key, sheet in found.items()} == {"Variants": "Variants", schema: name}
+    ledger = Ledger("a.xlsx")
+    report_other_names(submission, found, ledger)
+    report_second_tables(submission, found, ledger)
+    assert [(one.code, one.place) for one in ledger.findings] == [("I520", name)]
+
+
+@pytest.mark.parametrize("name", ["Messwerte", "Variants of May", "Sheet1"])
+def test_measured_parts_alone_are_no_submission(name):
+    """Dimensions beside a sample do not make a sheet of variants."""
+    assert _refused(_submission(**{name: _MEASURED})).code == "E108"
+
+
+def test_variants_are_never_taken_for_measured_parts():
+    """A copy of Variants, also one with a column of its own called Sample, stays a second table of variants."""
+    for headers in (
+        list(columns_of("Variants")),
+        ["Sample", *columns_of("Variants")],
+        ["Sample", "Material", *_MEASURED[2:]],
+    ):
+        submission = _submission(Variants="Variants", Copy=headers)
+        found = entry_sheets(submission, ReadingLimits())
+        assert set(found) == {"Variants"}
+        ledger = Ledger("a.xlsx")
+        report_other_names(submission, found, ledger)
+        report_second_tables(submission, found, ledger)
+        assert [(one.code, one.place, one.message.count("Variants")) for one in ledger.findings][:1] == [
+            ("W428", "Copy!A1", 2)
+        ]
+
+
+def test_measured_parts_are_no_second_table_of_variants():
+    """Read or not, measured parts are told as such."""
+    submission = _submission(Variants="Variants", Measurements=_MEASURED, May=_MEASURED)
+    found = entry_sheets(submission, ReadingLimits())
+    assert found["Measurements"].name == "Measurements"
+    ledger = Ledger("a.xlsx")
+    report_second_tables(submission, found, ledger)
+    assert [(one.code, one.place) for one in ledger.findings] == [("W428", "May!A1")]
+    assert "Measurements" in ledger.findings[0].message
+
+
+def test_two_sheets_of_measured_parts_stop_no_row():
+    """Two sheets that may be Measurements are an error, but variants without a sample are computed."""
+    submission = _submission(Variants="Variants", May=_MEASURED, June=_MEASURED)
+    found = entry_sheets(submission, ReadingLimits())
+    ledger = Ledger("a.xlsx")
+    assert report_other_names(submission, found, ledger) == {"Measurements"}
+    assert [one.code for one in ledger.findings] == ["E127"]
+    assert not ledger.everything
+
+
+@pytest.mark.parametrize("name", ["Measurements", "Correlations"])
+def test_a_sheet_of_an_optional_name_without_a_table(name):
+    """A sheet that has no more than the name is left out with a warning, an empty one without."""
+    for rows, told in ((["Mean", "Spread"], ["W452"]), ((), [])):
+        submission = _submission(Variants="Variants", **{name: rows})
+        ledger = Ledger("a.xlsx")
+        assert set(with_tables(entry_sheets(submission, ReadingLimits()), ledger)) == {"Variants"}
+        assert [one.code for one in ledger.findings] == told

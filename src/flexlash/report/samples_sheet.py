@@ -20,7 +20,7 @@ _NOTES = (
     "Each sample is the measured parts of one process. From … to … are 95 % intervals: of a hundred samples of this "
     "size about 95 have the true figure of the process between them. More parts make them narrower.",
     "Mean by Student's t, standard deviation s (n − 1) by chi-square, Cp by the interval of s, Cpk by Bissell 1990. "
-    "They are those of a normal process; below p = 0.05 Anderson and Darling's test says that it hardly is one.",
+    "They are those of a normal process; with p below 0.05 Anderson and Darling's test says that it is hardly one.",
     "Cp and Cpk compare the process with the limits of the class that uses the sample. Deviations are what was "
     "measured above the entered value, and so are their limits.",
 )
@@ -28,7 +28,7 @@ _PAIRS_NOTE = (
     "Correlation of dimensions measured on the same parts: Pearson's of the values, or of the normal scores of their "
     "ranks where a class takes one of them as measured; 95 % interval by Fisher's transformation."
 )
-_WIDTH, _FIRST = 11.0, 24.0
+_WIDTH = 8.5
 
 
 class _Column(NamedTuple):
@@ -67,43 +67,47 @@ def _index(row: SampleUse, name: str) -> float | None:
     return getattr(row.capability, name) if row.capability else None
 
 
+def _used_words(row: SampleUse) -> str:
+    """Return which class takes the parts for what, and of how many variants."""
+    if not row.used_by:
+        return "no class"
+    return f"{row.used_by}, as {row.distribution}; {row.variants} variant{'s' * (row.variants > 1)}"
+
+
 _COLUMNS = (
-    _Column("Sample", lambda row: row.sample, width=_FIRST),
-    _Column("Dimension", lambda row: row.column.plain_name, width=_FIRST),
-    _Column("Unit", lambda row: row.column.unit, width=7.0),
-    _Column("Measured as", lambda row: "deviation" if row.are_deviations else "value"),
-    _Column("Parts n", lambda row: row.count, lambda _: "count", 8.0),
+    _Column("Sample", lambda row: row.sample, width=15.0),
+    _Column("Dimension", lambda row: row.column.plain_name, width=18.0),
+    _Column("Unit", lambda row: row.column.unit, width=6.0),
+    _Column("Parts n", lambda row: row.count, lambda _: "count", 7.0),
     _Column("Mean", lambda row: _told(row, "mean"), _mean_code),
     _Column("from", lambda row: _told(row, "mean_low"), _mean_code),
     _Column("to", lambda row: _told(row, "mean_high"), _mean_code),
     _Column("s", lambda row: _told(row, "sd"), _sd_code),
     _Column("from", lambda row: _told(row, "sd_low"), _sd_code),
     _Column("to", lambda row: _told(row, "sd_high"), _sd_code),
-    _Column("Least", lambda row: row.least),
-    _Column("Greatest", lambda row: row.greatest),
+    _Column("Least", lambda row: row.least, _sd_code),
+    _Column("Greatest", lambda row: row.greatest, _sd_code),
     _Column("Lower limit", lambda row: row.low),
     _Column("Upper limit", lambda row: row.high),
-    _Column("Cp", lambda row: _index(row, "cp"), _index_code, 8.0),
-    _Column("from", lambda row: _index(row, "cp_low"), _index_code, 8.0),
-    _Column("to", lambda row: _index(row, "cp_high"), _index_code, 8.0),
-    _Column("Cpk", lambda row: _index(row, "cpk"), _index_code, 8.0),
-    _Column("from", lambda row: _index(row, "cpk_low"), _index_code, 8.0),
-    _Column("to", lambda row: _index(row, "cpk_high"), _index_code, 8.0),
-    _Column("Anderson–Darling p", lambda row: _told(row, "normality"), _p_code),
-    _Column("Taken as", lambda row: row.distribution or None, width=17.0),
-    _Column("Used by", lambda row: row.used_by or "no class", width=34.0),
-    _Column("Variants", lambda row: row.variants, lambda _: "count", 9.0),
+    _Column("Cp", lambda row: _index(row, "cp"), _index_code, 6.5),
+    _Column("Cpk", lambda row: _index(row, "cpk"), _index_code, 6.5),
+    _Column("from", lambda row: _index(row, "cpk_low"), _index_code, 6.5),
+    _Column("to", lambda row: _index(row, "cpk_high"), _index_code, 6.5),
+    _Column("Normal: p", lambda row: _told(row, "normality"), _p_code),
+    _Column("Used by", _used_words, width=38.0),
 )
+_DEVIATIONS = _Column("Measured as", lambda row: "deviation" if row.are_deviations else "value", width=10.0)
+"""Shown where a sample holds deviations."""
+
 _PAIRS = (
     _Column("Sample", lambda row: row.sample),
     _Column("Dimension", lambda row: row.first.plain_name),
     _Column("", lambda _: None),
-    _Column("and", lambda row: row.second.plain_name),
     _Column("Parts n", lambda row: row.correlation.count, lambda _: "count"),
-    _Column("Correlation", lambda row: row.correlation.correlation, _index_code),
+    _Column("r", lambda row: row.correlation.correlation, _index_code),
     _Column("from", lambda row: row.correlation.low, _index_code),
     _Column("to", lambda row: row.correlation.high, _index_code),
-    _Column("of", lambda row: "normal scores" if row.by_scores else "values"),
+    _Column("with", lambda row: f"{row.second.plain_name}, of {'normal scores' if row.by_scores else 'values'}"),
 )
 
 
@@ -122,15 +126,17 @@ def write_samples(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
     notes = [*_NOTES, *filter(None, (extent.note, more))]
     for place, note in enumerate(notes, start=1):
         sheet.write_string(place, 0, note, book.format("quiet"))
-    widths = [column.width for column in _COLUMNS]
+    columns = [*_COLUMNS[:3], _DEVIATIONS, *_COLUMNS[3:]] if any(row.are_deviations for row in rows) else _COLUMNS
+    pair_columns = [*_PAIRS[:3], _PAIRS[2], *_PAIRS[3:]] if len(columns) > len(_COLUMNS) else _PAIRS
+    widths = [column.width for column in columns]
     for place, width in enumerate(widths):
         sheet.set_column(place, place, width)
     header = len(notes) + 2
-    _write_table(book, sheet, header, _COLUMNS, rows)
+    _write_table(book, sheet, header, columns, rows)
     if pairs:
         below = header + len(rows) + 2
         sheet.write_string(below, 0, _PAIRS_NOTE, book.format("quiet"))
-        _write_table(book, sheet, below + 1, _PAIRS, pairs)
+        _write_table(book, sheet, below + 1, pair_columns, pairs)
     print_readably(sheet, widths, least=SMALL)
     sheet.freeze_panes(header + 1, 2)
     sheet.repeat_rows(header)
@@ -147,6 +153,6 @@ def _write_table(
         for place, column in enumerate(columns):
             value = column.value(row)
             if isinstance(value, str):
-                sheet.write_string(number, place, value, book.format("text"))
+                sheet.write_string(number, place, value, book.format("indented" if place > 1 else "text"))
             elif value is not None:
                 sheet.write_number(number, place, value, book.format("text", column.code(row)))

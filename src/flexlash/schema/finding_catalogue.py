@@ -1048,7 +1048,7 @@ CATALOGUE = _rules(
         "{place} {name} = {value}: the other values of sample {other} lie within {detail}.",
         "Compare with the record of the measurement; mend the cell, or leave the value if the part is as it says.",
         "One slip of a point, a unit or two digits makes the standard deviation many times what the process has. A "
-        "value is told when it lies more than eight standard deviations from the median, as the middle half of the "
+        "value is told when it lies more than twelve standard deviations from the median, as the middle half of the "
         "sample shows them. It is used as it stands.",
     ),
     (

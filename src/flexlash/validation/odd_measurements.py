@@ -11,8 +11,12 @@ __all__ = ["Odd", "odd_values"]
 _FEWEST = 5
 """Fewest values of which one can be told to be odd."""
 
-_FAR = 8.0
-"""Standard deviations from the median beyond which a value is odd; 10,000 sound parts reach 4, long tails 7."""
+_FAR = 12.0
+"""Standard deviations from the median beyond which a value is odd. Of samples of a normal process fewer than one in a
+thousand has one; of those with a tail as long as a lognormal one of the shape 0.5 has, one in a hundred."""
+
+_ENOUGH = 20
+"""Values whose middle half tells their scatter; of fewer it is far too small now and then."""
 
 _MANY = 10
 """Of so many values at most one may be odd; where there are more, they are a second group and no slips."""
@@ -39,7 +43,8 @@ class Odd:
 def odd_values(values: Sequence[float], *, are_sizes: bool) -> dict[int, Odd]:
     """Return which of a sample's values are odd, by their index, in time that grows with their number.
 
-    Equation: |x − median| > 8 · 1.4826 · median |x − median|; a size also where it is five times the median or a fifth
+    Equation: |x − median| > 12 max(1, (20/n)^1.5) · 1.4826 · median |x − median|; a size also where it is five times
+        the median or a fifth
     Arguments: values as entered, in one unit; `are_sizes` where all of them lie above 0 if they are sound.
     Valid: at least five values, of which at most one in ten is odd; otherwise none is told.
 
@@ -50,10 +55,11 @@ def odd_values(values: Sequence[float], *, are_sizes: bool) -> dict[int, Odd]:
         return {}
     middle = _median(values)
     scale = _NORMAL * _median([abs(value - middle) for value in values])
+    far = _FAR * max(1.0, (_ENOUGH / len(values)) ** 1.5) * scale
     odd = {
         index
         for index, value in enumerate(values)
-        if (scale > 0 and abs(value - middle) > _FAR * scale) or (are_sizes and _is_other_size(value, middle))
+        if (scale > 0 and abs(value - middle) > far) or (are_sizes and _is_other_size(value, middle))
     }
     if not odd or len(odd) > max(1, len(values) // _MANY):
         return {}
