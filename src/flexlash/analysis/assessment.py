@@ -72,7 +72,7 @@ def assess(validated: Validated, settings: Settings) -> Nominal:
     arrays, rows = variants.arrays(), np.array(variants.rows)
     ledger.rows.update(rows[[owner in ledger.classes for owner in variants.classes]].tolist())
     for variant in variants.some(np.flatnonzero(~_limits_are_fine(validated, arrays)).tolist()):
-        _report_all_limits(ledger, variant, validated.classes)
+        _report_all_limits(ledger, variant, validated)
     _report_exact(validated, arrays, ledger)
     report_samples(validated, ledger)
     sound = np.flatnonzero(~np.isin(rows, list(ledger.rows)))
@@ -150,16 +150,16 @@ _LOOKED_AT = (
 )
 
 
-def _report_all_limits(ledger: Ledger, variant: Variant, classes: Mapping[str, Sequence[ToleranceRow]]) -> None:
+def _report_all_limits(ledger: Ledger, variant: Variant, validated: Validated) -> None:
     """Record all that is to be said of a variant's limits."""
-    rows = classes[plain(variant.tolerance_class)]
+    rows = validated.classes[plain(variant.tolerance_class)]
     found, untabulated = limits_of(variant, rows, BACKLASH_OF[variant.flexspline_type])
     problems = (*untabulated, *shape_problems(variant, found)[1])
     for problem in problems:
         _report_limits(ledger, variant, problem)
     kinds = {problem.dimension: problem.kind for problem in problems if problem.kind != "overlap"}
     _judge_widths(ledger, variant, rows, found, kinds)
-    report_processes(ledger, variant, rows, found)
+    report_processes(ledger, variant, validated, rows, found)
 
 
 def _report_numbers(

@@ -11,10 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from flexlash.schema.columns import DIMENSIONS
-from flexlash.schema.process_verdict import is_usual_process, process_verdict
+from flexlash.schema.findings import shown
+from flexlash.schema.process_verdict import ProcessVerdict, is_usual_process, process_verdict
+from flexlash.schema.spellings import plain
 from flexlash.schema.variant import Limits, ToleranceRow, Variant
 from flexlash.tolerance.dimension_limits import LimitArrays
 from flexlash.validation.ledger import Ledger
+from flexlash.validation.validated import Table, Validated
 
 __all__ = ["processes_are_usual", "report_processes"]
 
@@ -39,18 +42,40 @@ def processes_are_usual(
 
 
 def report_processes(
-    ledger: Ledger, variant: Variant, rows: Sequence[ToleranceRow], limits: Mapping[str, Limits]
+    ledger: Ledger, variant: Variant, validated: Validated, rows: Sequence[ToleranceRow], limits: Mapping[str, Limits]
 ) -> None:
-    """Record at a variant's dimensions which of its processes cannot be meant beside their limits."""
+    """Record which of a variant's processes cannot be meant beside their limits.
+
+    What a row of Tolerances says of a process is told there, once, of the first variant that shows it; values that were
+    measured at the dimension of each variant, whose size may as well be wrong.
+    """
     for row in rows:
         limit = limits.get(row.dimension)
         if limit is None or not limit.low < limit.high or not _hangs_on_size(row):
             continue
-        is_entered = row.sd is not None
-        verdict = process_verdict(limit.low, limit.high, limit.mean, limit.standard_deviation, is_entered=is_entered)
-        if verdict:
-            column = DIMENSIONS[row.dimension]
-            key = column.key if column.sheet == "Variants" else "material"
-            value = f"{variant.dimensions[row.dimension] / column.si_unit.si:.10g}"
-            words = f"in class {variant.tolerance_class} {verdict.words}"
-            ledger.add_at(verdict.code, variant, key, name=column.name, value=value, detail=words)
+        sd = limit.standard_deviation
+        verdict = process_verdict(limit.low, limit.high, limit.mean, sd, is_entered=row.sd is not None)
+        if verdict and (row.sample or validated.tolerances is None):
+            _report_at_variant(ledger, variant, row, verdict)
+        elif verdict and validated.tolerances:
+            _report_at_row(ledger, variant, validated.tolerances, row, verdict)
+
+
+def _report_at_variant(ledger: Ledger, variant: Variant, row: ToleranceRow, verdict: ProcessVerdict) -> None:
+    column = DIMENSIONS[row.dimension]
+    key = column.key if column.sheet == "Variants" else "material"
+    value = f"{variant.dimensions[row.dimension] / column.si_unit.si:.10g}"
+    words = f"in class {variant.tolerance_class} {verdict.words}"
+    ledger.add_at(verdict.code, variant, key, name=column.name, value=value, detail=words)
+
+
+def _report_at_row(ledger: Ledger, variant: Variant, table: Table, row: ToleranceRow, verdict: ProcessVerdict) -> None:
+    """Record a process at the cell of Tolerances that tells it, unless it is told; an error holds the variant."""
+    keys = ("mean_shift", "cpk") if verdict.blamed == "mean" else ("standard_deviation", "cp")
+    key = next((key for key in keys if table.entered(row.row, key) != ""), "dimension")
+    if verdict.code[0] == "E":
+        ledger.hold("class", plain(variant.tolerance_class), table.sheet, row.row, variant.row)
+    place = (verdict.code, table.sheet, str(table.address(row.row, key)))
+    if place not in ledger.told:
+        words = f"for variant {shown(variant.name)} {verdict.words}"
+        ledger.add_in(table, verdict.code, row.row, key, value=table.entered(row.row, key), detail=words)

@@ -60,7 +60,8 @@ def waiting_rows(table: Table, blocked: Blocked) -> list[Waiting]:
         owned: tuple[Owner, ...] = (("material", material or ""), ("class", tolerance_class or "standard"))
         for kind, name in owned:
             owner: Owner = (kind, plain(name))
-            if owner in sources:
+            spoilt = blocked.materials if kind == "material" else blocked.classes
+            if owner in sources and (row in blocked.rows or owner[1] in spoilt):
                 rows[owner].append(row)
                 names.setdefault(owner, name)
     return [

@@ -17,6 +17,10 @@ _UNKNOWN = frozenset({"E209", "E210", "E211", "E223", "E224", "E307", "E309"})
 """Codes of names that are unknown however they are spelt."""
 
 
+_TOLD_BY_FIRST = frozenset({"E324", "E339", "W438", "W442", "W444"})
+"""Codes of findings elsewhere that the first row which shows them gives their words."""
+
+
 def consolidated(validated: Validated, later: Iterable[Finding] = (), blocked: Blocked | None = None) -> list[Finding]:
     """Return the findings of validation and later stages, one a cell and cause, as they were made.
 
@@ -66,12 +70,12 @@ def _with_variants(findings: Sequence[Finding], validated: Validated) -> list[Fi
 def shared_by_excerpts(earlier: Iterable[Finding], later: Iterable[Finding]) -> list[Finding]:
     """Return the findings that are not at rows of excerpts of one table, each once, in the order of the excerpts.
 
-    A backlash that no flexspline has is told, at its material, of the first row that shows it; a class that leaves
-    dimensions exact leaves those that it leaves in any excerpt.
+    A backlash that no flexspline has is told, at its material, of the first row that shows it, and so is, at its row of
+    Tolerances, a process that cannot be meant; a class that leaves dimensions exact leaves those of any excerpt.
     """
     found: dict[object, Finding] = {}
     for one in (*earlier, *later):
-        key = (one.code, one.sheet, one.cell) if one.code in {"E324", "W438"} else one
+        key = (one.code, one.sheet, one.cell) if one.code in _TOLD_BY_FIRST else one
         known = found.setdefault(key, one)
         if one.code == "W438" and known != one:
             found[key] = _both_exact(known, one)

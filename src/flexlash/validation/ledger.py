@@ -16,7 +16,7 @@ __all__ = ["Ledger"]
 
 
 class Ledger:
-    """Findings so far, and what is not to be computed because of them.
+    """Findings so far, and what is not to be computed because of them; `told` are their codes, sheets and cells.
 
     `rows` are rows of Variants; `materials` and `classes` names whose rows are faulty, `sources` the sheets and rows
     in which they are; `everything` is set when a fault leaves no row computable. `unit_mistakes` are the cells whose
@@ -27,6 +27,7 @@ class Ledger:
     def __init__(self, file: str) -> None:
         self.file = file
         self.findings: list[Finding] = []
+        self.told: set[tuple[str, str, str]] = set()
         self.rows: set[int] = set()
         self.materials: set[str] = set()
         self.classes: set[str] = set()
@@ -66,6 +67,7 @@ class Ledger:
             facts = {**facts, "suggestion": facts.get("suggestion") or mistake.suggestion}
         found = finding(code, **{"file": self.file, **facts})
         self.findings.append(found)
+        self.told.add((found.code, found.sheet, found.cell))
         if found.level == "error":
             self.rows.update(rows)
 
@@ -86,6 +88,12 @@ class Ledger:
         """Record a row that makes a material or a class, by its plain name, unusable."""
         (self.materials if kind == "material" else self.classes).add(name)
         self.sources[kind, name].append((sheet, row))
+
+    def hold(self, kind: Literal["material", "class"], name: str, sheet: str, row: int, variant: int) -> None:
+        """Record a row because of which one variant of a material or a class, by its plain name, is not computed."""
+        self.rows.add(variant)
+        if (sheet, row) not in self.sources[kind, name]:
+            self.sources[kind, name].append((sheet, row))
 
     def _unit_mistake_at(self, facts: Mapping[str, Any]) -> UnitMistake | None:
         """Return the mistake of the cell that a finding is about."""
