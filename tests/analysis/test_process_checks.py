@@ -1,4 +1,4 @@
-"""Processes and bases through a whole submission: the same bits by whatever way they are told, each fault at its cell."""
+"""Processes and bases through a whole submission: the same bits however they are told, each fault at its cell."""
 
 from __future__ import annotations
 
