@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from flexlash.schema.columns import DIMENSIONS, columns_of
@@ -34,6 +34,8 @@ def correlation_rows_of(
     known = {key: rows[0].tolerance_class if rows else key for key, rows in classes.items()}
     named = _Names(known, few=table.frame["tolerance_class"].n_unique() <= affordable(known))
     doubled = _report_twice(table, ledger)
+    # Of a class with faulty rows of Tolerances it cannot be told which dimensions it leaves exact.
+    whole = {key: _scattering(rows) for key, rows in classes.items() if key not in ledger.classes}
     found = []
     for record in table.frame.iter_rows(named=True):
         row, name = record["row"], record["tolerance_class"]
@@ -44,7 +46,7 @@ def correlation_rows_of(
         if owner is None:
             continue
         faulty = row in doubled or any((row, key) in table.faulty or record[key] is None for key in _NEEDED)
-        if _reports_pair(table, ledger, record, owner, classes[owner]) or faulty:
+        if _reports_pair(table, ledger, record, whole.get(owner, set(DIMENSIONS))) or faulty:
             ledger.spoil("class", owner, table.sheet, row)
             continue
         first, second = sorted((record[key] for key in _PAIR), key=_ORDER.__getitem__)
@@ -109,24 +111,19 @@ def _report_twice(table: Table, ledger: Ledger) -> set[int]:
     return set(doubled)
 
 
-def _reports_pair(
-    table: Table, ledger: Ledger, record: Mapping[str, Any], owner: str, rows: Sequence[ToleranceRow]
-) -> bool:
-    """Report a dimension that is tied to itself, or that its class leaves exact; return whether there is one.
+def _scattering(rows: Sequence[ToleranceRow]) -> set[str]:
+    return {row.dimension for row in rows if row.grade or row.lower < row.upper}
 
-    Of a class with faulty rows it cannot be told which dimensions it leaves exact.
-    """
-    row, (first, second) = record["row"], (record[key] for key in _PAIR)
-    if first is not None and first == second:
+
+def _reports_pair(table: Table, ledger: Ledger, record: Mapping[str, Any], scattering: Collection[str]) -> bool:
+    """Report a dimension that is tied to itself, or that its class leaves exact; return whether there is one."""
+    row, pair = record["row"], [record[key] for key in _PAIR]
+    if pair[0] == pair[1] and pair[0] in DIMENSIONS:
         _report(table, ledger, "E346", row, _PAIR[1], value=table.entered(row, _PAIR[1]))
         return True
-    if owner in ledger.classes:
-        return False
-    scattering = {one.dimension for one in rows if one.grade or one.lower < one.upper}
-    exact = [key for key in _PAIR if record[key] in DIMENSIONS and record[key] not in scattering]
+    exact = [key for key, name in zip(_PAIR, pair, strict=True) if name in DIMENSIONS and name not in scattering]
     for key in exact:
-        name = record["tolerance_class"]
-        _report(table, ledger, "E347", row, key, value=table.entered(row, key), other=name)
+        _report(table, ledger, "E347", row, key, value=table.entered(row, key), other=record["tolerance_class"])
     return bool(exact)
 
 
