@@ -141,6 +141,31 @@ def test_a_class_that_takes_over_measured_rows_repeats_nothing(settled):
     assert [one.code for one in ledger.findings] == ["I531"]
 
 
+def test_a_class_that_takes_over_a_fault_waits_for_it_without_another_word(settled):
+    """A contradiction of a base is told once, at the base; both classes wait for it."""
+    base = [_row(name, sample=None) for name in (WALL, DISK, RADIUS)]
+    rows = (WALL, DISK, 0.9), (WALL, RADIUS, 0.9), (DISK, RADIUS, 0.5)
+    found, ledger = settled({"shop": base, "other": base}, *rows, bases=[("other", "shop")])
+    assert found == {}
+    assert _told(ledger) == [("E348", "Correlations!D2")]
+    assert ledger.classes == {"shop", "other"}
+
+
+def test_what_a_class_changes_of_its_base_is_told_of_it(settled):
+    """A row of its own makes a class another process: what was measured is told of it, at its own row."""
+    base = [_row(WALL), _row(DISK), _row(RADIUS)]
+    own = [_row(WALL, "own", 9), *base[1:]]
+    _, ledger = settled({"shop": base, "own": own}, (WALL, DISK, -0.9), bases=[("own", "shop")])
+    assert _told(ledger) == [
+        ("I531", "Tolerances!A2"),
+        ("W448", "Correlations!D2"),
+        ("I531", "Tolerances!A9"),
+        ("W448", "Correlations!D2"),
+    ]
+    assert "Mean radius with Disk thickness" in ledger.findings[0].message
+    assert "Mean radius with Disk thickness" not in ledger.findings[2].message
+
+
 def test_contradicting_correlations_name_the_nearest_that_can_be(settled):
     """Of three that no parts can have the one that must change least is an error with its nearest admissible value."""
     rows = (WALL, DISK, 0.9), (WALL, RADIUS, 0.9), (DISK, RADIUS, 0.5)

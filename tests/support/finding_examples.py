@@ -229,6 +229,34 @@ def _tied(folder: Path) -> Made:
     ), {}
 
 
+def _together(folder: Path) -> Made:
+    """Write parts that were measured together, one class that enters another correlation, one that cannot have it."""
+    tenths = (-9, -6, -5, -4, -3, -2, -2, -1, -1, 0, 0, 0, 1, 1, 2, 3, 3, 4, 5, 7, 9, 6, -7, 2)
+    parts = [
+        {"sample": "milled", "part": str(number), "wall_thickness_mm": 1.6 + wall / 1e3, "disk_thickness_mm": disk}
+        for number, wall in enumerate(tenths, start=1)
+        for disk in [1.6 + (0.8 * wall + 0.5 * tenths[number * 7 % len(tenths)]) / 1e3]
+    ]
+    tolerances: list[dict[str, Any]] = [
+        {"tolerance_class": name, "dimension": dimension, "lower_deviation": -0.03, "upper_deviation": 0.03, **rest}
+        for name in ("milled", "entered", "by lots")
+        for dimension, rest in (("wall_thickness", {"scatters_between": "lots"}), ("disk_thickness", {}))
+    ]
+    tolerances = [
+        {**row, "sample": "milled"} | ({} if row["tolerance_class"] == "by lots" else {"scatters_between": "parts"})
+        for row in tolerances
+    ]
+    pair = {"dimension_1": "wall_thickness", "dimension_2": "disk_thickness", "correlation": 0.1}
+    names = dict.fromkeys(row["tolerance_class"] for row in tolerances)
+    return entry_book(
+        folder / "study.xlsx",
+        variants=[{**CUP, "variant": name, "tolerance_class": name, "disk_thickness_mm": 1.6} for name in names],
+        tolerances=tolerances,
+        correlations=[{"tolerance_class": "entered", **pair}],
+        measurements=parts,
+    ), {}
+
+
 def _settings(folder: Path) -> Made:
     """Write settings with faults and a sheet of later versions."""
     settings = [["Setting", "Value"], ["samples", 1.5], ["seed", 1], ["seed", 2]]
@@ -350,6 +378,7 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "tables": _tables,
     "processes": _processes,
     "correlations": _tied,
+    "parts measured together": _together,
     "variants": _variants,
     "settings": _settings,
     "calibrated": _calibrated,

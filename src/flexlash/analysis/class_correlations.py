@@ -98,7 +98,9 @@ def _of_class(known: _Known, key: str, rows: Sequence[ToleranceRow], ledger: Led
     measured = {pair: found for pair, found in pairs.items() if found is not None}
     if not entered and not measured:
         return {}
-    one = _Class(known.validated, key, ordered, ledger)
+    told = {name for pair in (*entered, *measured) for name in pair}
+    names = [row.tolerance_class for row in entered.values()] + [ordered[name].tolerance_class for name in told]
+    one = _Class(known.validated, key, ordered, ledger, takes_over_all=key not in map(plain, names))
     merged = one.usable(measured, entered) | {pair: row.correlation for pair, row in entered.items()}
     one.judge(entered, measured, merged)
     return {pair: merged[pair] for pair in combinations(ordered, 2) if merged.get(pair)}
@@ -106,12 +108,16 @@ def _of_class(known: _Known, key: str, rows: Sequence[ToleranceRow], ledger: Led
 
 @dataclass(frozen=True)
 class _Class:
-    """A class with the rows of its scattering dimensions, of whose correlations something is said."""
+    """A class with the rows of its scattering dimensions, of whose correlations something is said.
+
+    Of one that takes over all that it ties nothing is said, since that is said of the class which it is based on.
+    """
 
     validated: Validated
     key: str
     rows: Mapping[str, ToleranceRow]
     ledger: Ledger
+    takes_over_all: bool
 
     @property
     def name(self) -> str:
@@ -139,20 +145,22 @@ class _Class:
         return {pair: mended[pair] for pair in used}
 
     def _tell(self, code: str, pairs: Sequence[Pair], words: Callable[[Pair], str]) -> None:
-        """Record what becomes of measured pairs, once a sample, at the first row that takes it."""
+        """Record what becomes of measured pairs, once a sample, at the first row of the class that takes it."""
         by_sample: dict[str, list[Pair]] = defaultdict(list)
+        numbers: dict[str, list[int]] = defaultdict(list)
         for pair in pairs:
             rows = [self.rows[name] for name in pair]
-            # What a class takes over as it stands is told of the class that it comes from.
-            if rows[0].sample and any(plain(row.tolerance_class) == self.key for row in rows):
+            own = [row.row for row in rows if plain(row.tolerance_class) == self.key]
+            if own and rows[0].sample:
                 by_sample[rows[0].sample.sample].append(pair)
+                numbers[rows[0].sample.sample] += own
         table = self.validated.tolerances
         for sample, some in by_sample.items():
             more = f"; {len(some) - _LISTED} more pairs" if len(some) > _LISTED else ""
             detail = "; ".join(map(words, some[:_LISTED])) + more
             place: dict[str, Any] = {}
             if table is not None:
-                cell = table.address(self.rows[some[0][0]].row, "sample")
+                cell = table.address(min(numbers[sample]), "sample")
                 place = {"sheet": table.sheet, "cell": cell, "column": "sample"}
             self.ledger.add(code, value=sample, other=self.name, detail=detail, **place)
 
@@ -182,12 +190,13 @@ class _Class:
         self.ledger.spoil("class", self.key, sheet, row.row)
 
     def _add(self, code: str, row: CorrelationRow, key: str, **facts: Any) -> str:
-        """Record a finding in a row of Correlations; return the name of the sheet."""
+        """Record a finding in a row of Correlations, unless another class has it; return the name of the sheet."""
         table = self.validated.correlations
         if table is None:
             raise LookupError("a correlation without its table")
-        cell = table.address(row.row, key)
-        self.ledger.add(code, sheet=table.sheet, cell=cell, column=key, name="Correlation", other=self.name, **facts)
+        if not self.takes_over_all:
+            place: dict[str, Any] = {"sheet": table.sheet, "cell": table.address(row.row, key), "column": key}
+            self.ledger.add(code, name="Correlation", other=self.name, **place, **facts)
         return table.sheet
 
 
