@@ -717,8 +717,7 @@ CATALOGUE = _rules(
     (
         "E349",
         "lot correlated with a part",
-        "{place}: in class {other} {value} is one value for a whole lot, and {detail} differs from part to part: they "
-        "cannot scatter together.",
+        "{place}: in class {other} {value} scatters between lots, {detail} between parts.",
         "Let both scatter between lots or both between parts (Tolerances, Scatters between), or delete the row.",
         "A dimension that all parts of a lot share cannot follow one that each of them has for itself.",
     ),
@@ -1071,7 +1070,7 @@ CATALOGUE = _rules(
     (
         "W449",
         "measured correlation not as measured",
-        "{place}: of the correlations measured in sample {value}, class {other} takes {detail}.",
+        "{place}: class {other} differs from sample {value}: {detail}.",
         "Measure the same parts in all dimensions, let them scatter between lots or between parts alike, or enter the "
         "correlations in Correlations.",
         "Correlations of different parts can contradict one another; the nearest that do not are then used. A "
@@ -1243,7 +1242,7 @@ CATALOGUE = _rules(
         "I531",
         "dimensions measured together",
         "{place}: in class {other} the parts of sample {value} scatter together as measured: {detail}.",
-        "Nothing to do; enter another value in Correlations, 0 for none, if it is known better.",
+        "Nothing to do; a row of Correlations goes before it, if the correlation is known better.",
         "Two dimensions that are measured on the same parts have the correlation of these parts. That of few parts is "
         "uncertain, as its interval says.",
     ),
