@@ -10,7 +10,7 @@ from random import Random
 from edited_workbooks import HEADER, LETTERS, last_row, records
 
 from flexlash.schema.cell_addresses import column_letters
-from flexlash.schema.columns import ENTRY_SHEETS, SETTINGS, Column
+from flexlash.schema.columns import ENTRY_SHEETS, OPTIONAL_SHEETS, SETTINGS, Column
 
 __all__ = ["KINDS", "Corruption", "corruption"]
 
@@ -104,7 +104,7 @@ def _anything(content: Callable[[Random], tuple[str, str]], code: str, wanted: C
     def make(random: Random) -> Corruption:
         sheet, row, column, key = _drawn(random, wanted, lambda _: True)
         # Names of the rows of Settings and Tolerances decide what the cells beside them mean.
-        whole = sheet in {"Settings", "Tolerances"} and key in {"setting", "dimension", "tolerance_class"}
+        whole = sheet in {"Settings", "Tolerances", "Correlations"} and not column.is_number
         return _one(code, (sheet, key, row), content(random), kind=column.key, whole=whole)
 
     return make
@@ -142,7 +142,7 @@ def _required(random: Random) -> Corruption:
     sheet, row, _, key = _drawn(random, lambda one: one.required and one.key != "setting")
     text = random.choice(_BLANKS)
     content = ("text", text) if text else ("blank", "")
-    return _one("E201", (sheet, key, row), content, whole=sheet == "Tolerances")
+    return _one("E201", (sheet, key, row), content, whole=sheet in {"Tolerances", "Correlations"})
 
 
 def _choice(random: Random) -> Corruption:
@@ -151,14 +151,27 @@ def _choice(random: Random) -> Corruption:
     return _one("E209", (sheet, key, row), ("text", text), whole=key != "distribution")
 
 
-def _tolerance_text(key: str, code: str, *texts: str) -> Kind:
-    """Return the kind that puts a text into a column of Tolerances; the rest of its row must be sound."""
+def _wrong_text(sheet: str, key: str, code: str, *texts: str) -> Kind:
+    """Return the kind that puts a text into a column of a sheet; the rest of its row must be sound."""
 
     def make(random: Random) -> Corruption:
-        rows = [row for row, record in records("Tolerances").items() if key in record]
-        return _one(code, ("Tolerances", key, random.choice(rows)), ("text", random.choice(texts)), whole=True)
+        rows = [row for row, record in records(sheet).items() if key in record]
+        return _one(code, (sheet, key, random.choice(rows)), ("text", random.choice(texts)), whole=True)
 
     return make
+
+
+def _exact_dimension(random: Random) -> Corruption:
+    """Tie a dimension that the class leaves exact, which only a sound class tells."""
+    row = random.choice(list(records("Correlations")))
+    place = _cell("Correlations", "dimension_2", row)
+    return Corruption(
+        kind="E347 dimension_2",
+        cells={place: ("text", random.choice(("rim_length", "hub_fillet_radius", "rim_thickness")))},
+        expected=((*place, "E347"),),
+        needs=_row_of("Correlations", row).union(*(_row_of("Tolerances", one) for one in records("Tolerances")), *(
+            _row_of("Measurements", one) for one in records("Measurements"))),
+    )  # fmt: skip
 
 
 def _relation(
@@ -187,7 +200,7 @@ def _twice(sheet: str, code: str, blamed: str, *names: str) -> Kind:
     """Return the kind that repeats a row below the last one; both are marked."""
 
     def make(random: Random) -> Corruption:
-        row, record = random.choice(list(records(sheet).items()))
+        row, record = random.choice([(row, one) for row, one in records(sheet).items() if blamed in one])
         new = last_row(sheet) + 1
         copy = {**record, **{key: _respelt(random, str(record[key])) for key in names}}
         return Corruption(
@@ -288,11 +301,11 @@ def _hidden(random: Random) -> Corruption:
 
 
 def _merged(random: Random) -> Corruption:
-    sheet = random.choice(("Variants", "Materials", "Tolerances"))
+    sheet = random.choice(("Variants", "Materials", "Tolerances", "Measurements", "Correlations"))
     fitting = [
         (row, column.key)
         for row, column in ((row, column) for row in list(records(sheet))[1:] for column in ENTRY_SHEETS[sheet])
-        if column.key in records(sheet)[row - 1] and column.key not in {"notes", "source"}
+        if column.key in records(sheet)[row - 1] and column.key not in {"notes", "source", "part", "reason"}
     ]
     row, key = random.choice(fitting)
     letters = LETTERS[sheet][key]
@@ -311,7 +324,7 @@ def _header(
     """Return the kind that writes something else in the place of a header."""
 
     def make(random: Random) -> Corruption:
-        columns = [one for columns in ENTRY_SHEETS.values() for one in columns if wanted(one)]
+        columns = [one for columns in ENTRY_SHEETS.values() for one in columns if wanted(one) and _is_filled(one)]
         sheet = random.choice(sorted({one.sheet for one in columns}))
         column = random.choice([one for one in columns if one.sheet == sheet])
         place = _cell(sheet, column.key, HEADER)
@@ -330,6 +343,12 @@ def _header(
         )
 
     return make
+
+
+def _is_filled(column: Column) -> bool:
+    """Whether a column has an entry; of an empty one a slip in the header is another finding."""
+    optional = column.sheet in OPTIONAL_SHEETS or column.since > 3
+    return not optional or any(column.key in record for record in records(column.sheet).values())
 
 
 def _mistyped(random: Random, column: Column) -> str:
@@ -365,8 +384,8 @@ def _header_twice(random: Random) -> Corruption:
 def _header_missing(random: Random) -> Corruption:
     sheet = random.choice(("Variants", "Materials", "Tolerances"))
     column = random.choice([one for one in ENTRY_SHEETS[sheet] if one.required])
-    # Told at the first free header cell; that of the row status is the last one on Variants.
-    free = column_letters(len(ENTRY_SHEETS[sheet]) + (2 if sheet == "Variants" else 1))
+    # Told at the first free header cell; that of the row status is the last one on Variants and Tolerances.
+    free = column_letters(len(ENTRY_SHEETS[sheet]) + (1 if sheet == "Materials" else 2))
     needs = _MORE_HEADERS.union(*(_row_of(sheet, row) for row in records(sheet)))
     return Corruption(
         kind="E111 header missing",
@@ -417,12 +436,18 @@ KINDS: tuple[Kind, ...] = (
     _same_name,
     _misspelt_reference("material", "E307"),
     _misspelt_reference("tolerance_class", "E309"),
-    _tolerance_text("grade", "E210", "IT77", "K7", "h 13", "7", "2768-x", "js4"),
-    _tolerance_text("deviation_unit", "E211", "kg", "%%", "millimetre?", "s"),
+    _wrong_text("Tolerances", "grade", "E210", "IT77", "K7", "h 13", "7", "2768-x", "js4"),
+    _wrong_text("Tolerances", "deviation_unit", "E211", "kg", "%%", "millimetre?", "s"),
+    _wrong_text("Tolerances", "sample", "E223", "lathe", "lathe 33", "other", "gauge 2"),
+    _wrong_text("Tolerances", "based_on", "E224", "care", "shopp", "unobtainium"),
+    _wrong_text("Correlations", "tolerance_class", "E309", "shopp", "unobtainium", "gaugedd"),
+    _exact_dimension,
+    _wrong_text("Measurements", "use_as", "E342", "value"),
     _twice("Variants", "E308", "variant", "variant"),
     _twice("Materials", "E321", "material", "material"),
     _twice("Tolerances", "E319", "dimension", "tolerance_class"),
     _twice("Settings", "E323", "setting"),
+    _twice("Correlations", "E345", "dimension_2", "tolerance_class"),
     _relation("E301", "mean_radius_mm", lambda _: True, lambda _: {"mean_radius_mm": None, "bore_diameter_mm": None}),
     _relation("E302", "mean_radius_mm", _CUP, lambda row: {"bore_diameter_mm": 1.98 * row["mean_radius_mm"]}),
     _relation("E303", "disk_inner_radius_mm", _CUP, lambda row: {"disk_inner_radius_mm": 1.1 * row["mean_radius_mm"]}),
@@ -457,6 +482,26 @@ KINDS: tuple[Kind, ...] = (
     _relation("E322", "youngs_modulus_GPa", _has(shear_modulus_GPa=None), lambda _: {"youngs_modulus_GPa": None},
               "Materials"),
     _relation("E322", "poisson_ratio", _has(shear_modulus_GPa=None), lambda _: {"poisson_ratio": None}, "Materials"),
+    _relation("E335", "cp", _has(cp=True), lambda _: {"limits_sigma": 3.0}, "Tolerances"),
+    _relation("E335", "cp", _has(cp=True), lambda _: {"standard_deviation": 0.01}, "Tolerances"),
+    _relation("E335", "sample", _has(sample=True, distribution=None), lambda _: {"cp": 1.1}, "Tolerances"),
+    _relation("E335", "mean_shift", _has(sample=True, distribution=None), lambda _: {"mean_shift": 0.001},
+              "Tolerances"),
+    _relation("E336", "cpk", _has(cp=True), lambda _: {"cp": None}, "Tolerances"),
+    _relation("E336", "cpk", _has(cp=True), lambda row: {"cpk": row["cp"] + 0.1}, "Tolerances"),
+    _relation("E337", "cp", _has(distribution="uniform"), lambda _: {"cp": 1.2}, "Tolerances"),
+    _relation("E337", "standard_deviation", _has(distribution="measured"), lambda _: {"standard_deviation": 0.01},
+              "Tolerances"),
+    _relation("E338", "grade", _has(based_on=True), lambda _: {"grade": "IT7"}, "Tolerances"),
+    _relation("E338", "based_on", _has(dimension="cylinder_length"), lambda _: {"based_on": "coarse"}, "Tolerances"),
+    _relation("E338", "based_on", _has(based_on="careful"), lambda _: {"based_on": "shop"}, "Tolerances"),
+    _relation("E339", "mean_shift", _has(mean_shift=True), lambda _: {"mean_shift": 5000.0}, "Tolerances"),
+    _relation("E346", "dimension_2", _has(dimension_1=True), lambda row: {"dimension_2": row["dimension_1"]},
+              "Correlations"),
+    _relation("E207", "wall_thickness_mm", _has(sample="gauge"), lambda row: {
+        "wall_thickness_mm": -row["wall_thickness_mm"]}, "Measurements"),
+    _relation("W446", "wall_thickness_mm", _has(sample="gauge"), lambda row: {
+        "wall_thickness_mm": 10 * row["wall_thickness_mm"]}, "Measurements"),
     _lone,
     _far,
     _hidden,

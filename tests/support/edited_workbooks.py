@@ -12,6 +12,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 from here import WHERE, answer_here
+from measured_parts import scattered
 from small_workbook import MAIN, archive_of
 
 from flexlash.feedback.template.entry_rules import FIRST_ROW, HEADER_ROW
@@ -38,6 +39,8 @@ _DATE_FORMAT = 14
 _ADDRESS = re.compile(r"([A-Z]+)(\d+)")
 
 _CUP = {"flexspline_type": "cup", "material": "Steel alpha", "tolerance_class": "careful"}
+_SHOP = {**_CUP, "tolerance_class": "shop"}
+_GAUGED = {**_CUP, "tolerance_class": "gauged"}
 _HAT = {"flexspline_type": "hat", "material": "Bronze beta", "tolerance_class": "coarse"}
 _PIPE = {"flexspline_type": "cylinder", "material": "Shear only"}
 
@@ -56,14 +59,14 @@ def _sized(number: int, radius: float, **rest: object) -> dict[str, object]:
 
 
 def twelve() -> Filling:
-    """Return twelve variants of all types with own materials and classes, some of them with refinements."""
+    """Return twelve variants of all types with own materials, classes, measured parts and correlations."""
     rim = {"rim_length_mm": 12.0, "rim_thickness_mm": 3.0}
     fillets = {"hub_fillet_radius_mm": 1.5, "junction_fillet_radius_mm": 2.0}
     variants = [
         _sized(1, 80.0, **_CUP, disk_inner_radius_mm=40.0),
         _sized(2, 60.0, **_CUP, disk_inner_radius_mm=30.0, **rim),
         _sized(3, 60.0, **_CUP, disk_inner_radius_mm=32.0, **fillets, notes="as drawn"),
-        _sized(4, 50.0, **_CUP, disk_inner_radius_mm=25.0, disk_thickness_mm=1.25, disk_hub_thickness_mm=2.5),
+        _sized(4, 50.0, **_SHOP, disk_inner_radius_mm=25.0, disk_thickness_mm=1.25, disk_hub_thickness_mm=2.5),
         _sized(5, 50.0, **_CUP, disk_inner_radius_mm=25.0, disk_thickness_exponent=2.0, disk_hub_thickness_mm=2.5),
         _sized(6, 40.0, **_CUP, disk_inner_radius_mm=20.0, disk_cone_angle_deg=70.0, backlash_limit_arcmin=30.0),
         _sized(7, 70.0, **_HAT, disk_outer_radius_mm=110.0),
@@ -71,7 +74,7 @@ def twelve() -> Filling:
         _sized(9, 80.0, **_PIPE, rated_torque_Nm=700.0),
         _sized(10, 64.0, **_PIPE, **rim, load_inertia_kg_m2=0.2),
         _sized(11, 75.0, material="Steel alpha", disk_inner_radius_mm=36.0, notes="all by default"),
-        _sized(12, 80.0, **_CUP, mean_radius_mm=None, bore_diameter_mm=158.0, disk_inner_radius_mm=40.0),
+        _sized(12, 80.0, **_GAUGED, mean_radius_mm=None, bore_diameter_mm=158.0, disk_inner_radius_mm=40.0),
     ]
     materials = [
         {"material": "Steel alpha", "youngs_modulus_GPa": 206.0, "poisson_ratio": 0.3, "yield_MPa": 1100.0},
@@ -87,8 +90,48 @@ def twelve() -> Filling:
         {"tolerance_class": "coarse", "dimension": "wall_thickness", "lower_deviation": -60.0, "upper_deviation": 50.0,
          "deviation_unit": "µm", "limits_sigma": 2.0},
         {"tolerance_class": "coarse", "dimension": "mean_radius", "grade": "IT8", "distribution": "truncated normal"},
+        {"tolerance_class": "shop", "based_on": "careful"},
+        {"tolerance_class": "shop", "dimension": "wall_thickness", "lower_deviation": -0.02, "upper_deviation": 0.02,
+         "sample": "lathe 3"},
+        {"tolerance_class": "shop", "dimension": "disk_thickness", "lower_deviation": -0.02, "upper_deviation": 0.03,
+         "sample": "lathe 3"},
+        {"tolerance_class": "shop", "dimension": "disk_inner_radius", "lower_deviation": -0.05,
+         "upper_deviation": 0.05, "cp": 1.2, "cpk": 0.9},
+        {"tolerance_class": "shop", "dimension": "mean_radius", "grade": "IT8", "deviation_unit": "µm",
+         "mean_shift": 5.0, "standard_deviation": 4.0, "scatters_between": "parts"},
+        {"tolerance_class": "gauged", "based_on": "shop"},
+        {"tolerance_class": "gauged", "dimension": "wall_thickness", "lower_deviation": -0.03,
+         "upper_deviation": 0.03, "distribution": "measured", "sample": "gauge"},
+        {"tolerance_class": "gauged", "dimension": "bore_diameter", "lower_deviation": 0.0, "upper_deviation": 0.04,
+         "limits_sigma": 3.0},
     ]  # fmt: skip
-    return Filling(variants=variants, materials=materials, tolerances=tolerances)
+    return Filling(
+        variants=variants,
+        materials=materials,
+        tolerances=tolerances,
+        measurements=_measurements(),
+        correlations=[
+            {"tolerance_class": "shop", "dimension_1": "mean_radius", "dimension_2": "disk_inner_radius",
+             "correlation": 0.4, "reason": "one set-up"},
+            {"tolerance_class": "gauged", "dimension_1": "cylinder_length", "dimension_2": "disk_inner_radius",
+             "correlation": -0.3},
+        ],
+    )  # fmt: skip
+
+
+def _measurements() -> list[dict[str, object]]:
+    """Return deviations of wall and disk of one sample, sizes of the wall of another."""
+    deviations = zip(scattered(26, 0.004, 0.004), scattered(26, 0.003, 0.005, turn=7), strict=True)
+    lathe = [
+        {"sample": "lathe 3", "part": f"L{place}", "use_as": "deviation",
+         "wall_thickness_mm": round(wall, 4), "disk_thickness_mm": round(disk, 4)}
+        for place, (wall, disk) in enumerate(deviations, start=1)
+    ]  # fmt: skip
+    gauge = [
+        {"sample": "gauge", "part": f"G{place}", "wall_thickness_mm": round(wall, 4)}
+        for place, wall in enumerate(scattered(24, 1.803, 0.005), start=1)
+    ]
+    return [*lathe, *gauge]
 
 
 @cache

@@ -154,14 +154,16 @@ def _used(
     if "Tolerances" in tables:
         classes = tolerance_classes_of(tables["Tolerances"], ledger, samples)
     # Where the classes have no column, which of them there are cannot be told.
-    are_named = "Tolerances" in tables and "tolerance_class" in tables["Tolerances"].heading.columns
-    if "standard" not in classes and (are_named or "Tolerances" not in present):
+    are_named = "Tolerances" not in present or (
+        "Tolerances" in tables and "tolerance_class" in tables["Tolerances"].heading.columns
+    )
+    if "standard" not in classes and are_named:
         classes["standard"] = standard_class()
         if is_workbook:
             ledger.add("I505", value="rows for tolerance class standard", other="class")
     report_used_samples(samples, classes, tables.get("Tolerances"), ledger)
     settings = settings_of(tables["Settings"], ledger) if "Settings" in tables else Settings()
-    tied = tables.get("Correlations")
+    tied = tables.get("Correlations") if are_named else None
     correlations = () if tied is None else correlation_rows_of(tied, classes, ledger)
     names = class_names(tables["Tolerances"]) if "Tolerances" in tables else {}
     return _Used(materials=materials, classes=classes, class_names=names, settings=settings, correlations=correlations)
