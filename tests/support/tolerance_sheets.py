@@ -9,6 +9,7 @@ from flexlash.schema.columns import columns_of
 from flexlash.schema.variant import MeasuredDimension
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.materials_and_classes import tolerance_classes_of
+from flexlash.validation.measured_samples import Samples
 from flexlash.validation.row_checks import check_cells
 from flexlash.validation.typed_columns import tabulate
 
@@ -39,7 +40,7 @@ MEASURED = {"wall": {"wall_thickness": sample()}}
 
 
 def judged(*rows, measured=None, spoilt=()):
-    """Return the classes of rows given by key, and code, column and cell of what is told."""
+    """Return the classes of rows given by key, and the ledger; `spoilt` are samples and dimensions with faults."""
     cells = [KEYS, *([row.get(key) for key in KEYS] for row in rows)]
     raw = {
         number: {place: value for place, value in enumerate(row, start=1) if value is not None}
@@ -48,8 +49,10 @@ def judged(*rows, measured=None, spoilt=()):
     ledger = Ledger("a.xlsx")
     table = tabulate(RawSheet(name="Tolerances", rows=raw), "Tolerances", ledger)
     check_cells(table, ledger)
-    classes = tolerance_classes_of(table, ledger, MEASURED if measured is None else measured, spoilt)
-    return classes, ledger
+    found = MEASURED if measured is None else measured
+    names = {key: one.sample for key, of in found.items() for one in of.values()}
+    samples = Samples(dimensions=found, names=names, faults=dict.fromkeys(spoilt, (2,)))
+    return tolerance_classes_of(table, ledger, samples), ledger
 
 
 def told(ledger):

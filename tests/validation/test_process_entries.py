@@ -28,7 +28,7 @@ CONTRADICTIONS = [
     ({"distribution": "measured", "sample": "Wall", "cp": 1}, [("E337", "cp")]),
     ({"distribution": "measured", "sample": "Wall", "mean_shift": 0.001}, [("E337", "mean_shift")]),
     ({"distribution": "measured", "standard_deviation": 0.001}, [("E337", "standard_deviation")]),
-    ({"lower_deviation": 0.02, "cp": 1.1}, [("E337", "cp")]),
+    ({"lower_deviation": 0.02, "cp": 1.1}, [("E337", "upper_deviation")]),
     ({"lower_deviation": 0, "upper_deviation": 0, "mean_shift": 0.001}, [("E337", "mean_shift")]),
     ({"sample": "walls"}, [("E223", "sample")]),
     ({"sample": "n/a"}, [("E221", "sample")]),

@@ -152,15 +152,24 @@ def tolerance_classes_of(table: Table, ledger: Ledger, samples: Samples | None =
     return bases.resolved(classes, class_names(table), standard_class())
 
 
+_LIMITS = ("lower_deviation", "upper_deviation", "deviation_unit", "grade")
+
+
+def _lacks_dimension(table: Table, record: Mapping[str, Any]) -> bool:
+    """Whether a row has no dimension, where that is not said of the header already."""
+    columns, doubtful = table.heading.columns, table.heading.doubtful.values()
+    is_read = "dimension" in columns or ("based_on" in columns and "dimension" not in doubtful)
+    return is_read and record["dimension"] is None and (record["row"], "dimension") not in table.faulty
+
+
 def _sound_row(table: Table, ledger: Ledger, record: Mapping[str, Any], samples: NamedSamples) -> ToleranceRow | None:
     """Return a row of Tolerances for a dimension, or None where something is wrong with it, which is told."""
     row, before = record["row"], len(ledger.findings)
-    columns = table.heading.columns
-    is_read = "dimension" in columns or ("based_on" in columns and "dimension" not in table.heading.doubtful.values())
-    if is_read and record["dimension"] is None and (row, "dimension") not in table.faulty:
+    if _lacks_dimension(table, record):
         requirement = f"{_TOLERANCE['dimension'].requirement}, or the name of a class to base this one on,"
         ledger.add_in(table, "E201", row, "dimension", requirement=requirement)
-    check_limits(table, ledger, record)
+    if record["dimension"] is not None or any(record[key] is not None for key in _LIMITS):
+        check_limits(table, ledger, record)
     check_process(table, ledger, record)
     sample = samples.of(record)
     is_sound = not any(found.level == "error" for found in ledger.findings[before:])

@@ -27,7 +27,7 @@ def check_process(table: Table, ledger: Ledger, record: Mapping[str, Any]) -> No
     given = {key: record[key] for key in (*_SCATTERS, "mean_shift", "cpk") if record[key] is not None}
     misplaced = _misplaced(table, record, given)
     for key, words in misplaced.items():
-        ledger.add_in(table, "E337", record["row"], key, value=given[key], detail=words)
+        ledger.add_in(table, "E337", record["row"], key, value=table.entered(record["row"], key), detail=words)
     said = {key: value for key, value in given.items() if key not in misplaced}
     for key, other in _said_twice(said):
         words = f"{_COLUMNS[other].name} = {table.entered(record['row'], other)}"
@@ -50,7 +50,8 @@ def _misplaced(table: Table, record: Mapping[str, Any], given: Mapping[str, Any]
     lower, upper = record["lower_deviation"], record["upper_deviation"]
     has_grade = record["grade"] is not None or (record["row"], "grade") in table.faulty
     if lower is not None and lower == upper and not has_grade:
-        return dict.fromkeys(keys, "both deviations are alike, so that the dimension does not scatter")
+        words = "both deviations are alike, so that the dimension does not scatter"
+        return dict.fromkeys(["upper_deviation"] if lower and keys else keys, words)
     if distribution == "measured":
         words = "a measured distribution has mean and standard deviation of its sample"
         return dict.fromkeys((key for key in keys if key != "sample"), words)
