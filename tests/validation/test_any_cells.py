@@ -61,11 +61,13 @@ _TEXTS = st.one_of(
     st.text(st.characters(categories=("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Mn")), max_size=8),
     st.text("0123456789.,eE+- mµ'°%/±", max_size=12),
 )
-_LISTED = (*ENTRY_SHEETS["Tolerances"], *ENTRY_SHEETS["Variants"], *SETTINGS)
+_LISTED = (*ENTRY_SHEETS["Tolerances"], *ENTRY_SHEETS["Variants"], *ENTRY_SHEETS["Measurements"][:3], *SETTINGS)
 _WORDS = st.sampled_from(
     [
         "Steel",
         "careful",
+        "shop",
+        "lathe",
         "IT7",
         "h13",
         "%",
@@ -88,13 +90,28 @@ _SOUND = {
     "Variants": [
         {"variant": f"V{number}", "material": "Steel", "torque_Nm": 800.0, "cylinder_length_mm": 160.0,
          "mean_radius_mm": 80.0,
-         "wall_thickness_mm": 1.6, "disk_inner_radius_mm": 40.0, "tolerance_class": "careful"}
+         "wall_thickness_mm": 1.6, "disk_inner_radius_mm": 40.0, "tolerance_class": ("careful", "shop")[number % 2]}
         for number in range(6)
     ],
     "Materials": [{"material": "Steel", "youngs_modulus_GPa": 206.0, "poisson_ratio": 0.3}],
-    "Tolerances": [{"tolerance_class": "careful", "dimension": "wall_thickness", "lower_deviation": -0.02,
-    "upper_deviation": 0.02}],
+    "Tolerances": [
+        {"tolerance_class": "careful", "dimension": "wall_thickness", "lower_deviation": -0.02, "upper_deviation": 0.02,
+         "cp": 1.2, "cpk": 0.9},
+        {"tolerance_class": "careful", "dimension": "cylinder_length", "grade": "IT11", "mean_shift": 0.01,
+         "standard_deviation": 0.05},
+        {"tolerance_class": "shop", "based_on": "careful"},
+        {"tolerance_class": "shop", "dimension": "wall_thickness", "lower_deviation": -0.02, "upper_deviation": 0.02,
+         "sample": "lathe"},
+        {"tolerance_class": "shop", "dimension": "youngs_modulus", "lower_deviation": -2.0, "upper_deviation": 2.0,
+         "deviation_unit": "%", "scatters_between": "lots"},
+    ],
     "Settings": [{"setting": "seed", "value": 3.0}, {"setting": "coverage_percent", "value": 90.0}],
+    "Measurements": [
+        {"sample": "lathe", "part": f"L{number}", "use_as": "deviation", "wall_thickness_mm": deviation}
+        for number, deviation in enumerate((0.001, -0.004, 0.003, 0.006, -0.002, 0.002, 0.005))
+    ],
+    "Correlations": [{"tolerance_class": "shop", "dimension_1": "wall_thickness", "dimension_2": "cylinder_length",
+                      "correlation": 0.4}],
 }  # fmt: skip
 
 
