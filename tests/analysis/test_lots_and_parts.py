@@ -146,7 +146,7 @@ def test_recommendations_ask_nothing_of_lots():
 
 
 def _random_row(draw):
-    """Return a row of the cup with random limits and distributions, some of them of lots."""
+    """Return a row of the cup with random limits and distributions, some of lots; some of a kind are correlated."""
     limits = {}
     for name, share in (("wall_thickness", 0.02), ("disk_inner_radius", 0.004), ("youngs_modulus", 0.03),
                         ("poisson_ratio", 0.03), ("cylinder_length", 0.003)):  # fmt: skip
@@ -156,7 +156,14 @@ def _random_row(draw):
             limits[name] = Limits(low=NOMINAL[name] - half, high=NOMINAL[name] + half, distribution=shape)
     names = frozenset(name for name in limits if draw.random() < 0.5)
     nominal = float(CUP(NOMINAL))
-    return replace(row(CUP, NOMINAL, limits, nominal * draw.uniform(0.99, 1.04)), between=names)
+    kinds = ([name for name in limits if (name in names) == lots] for lots in (True, False))
+    pairs = tuple((first, second, draw.uniform(-0.9, 0.9)) for first, second, *_ in filter(_several, kinds))
+    given = row(CUP, NOMINAL, limits, nominal * draw.uniform(0.99, 1.04))
+    return replace(given, between=names, correlation=pairs if draw.random() < 0.3 else ())
+
+
+def _several(names):
+    return len(names) > 1
 
 
 @pytest.mark.slow

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -106,7 +106,8 @@ class PointLots(Lots):
 
         Equation: within² : between² = Var h : Var g for a sum g + h; for a product v_h (1 + v_g) : v_g, v = Var/E²
         """
-        between, within = (self._variances(group) for group in (self._split.lots, self._split.parts))
+        parts = self._alone(self._split.parts, _each(self._samples))
+        between, within = (self._variances(alone) for alone in (self._lots_alone, parts))
         if self._relation == PRODUCT:
             within = within * (1 + between.mean())
         return division_of(
@@ -116,12 +117,16 @@ class PointLots(Lots):
             )
         )
 
-    def _variances(self, inputs: Inputs) -> Array:
-        """Return the variance over one kind of inputs by each replicate, of a product over the squared mean."""
-        alone = self._alone(inputs, _each(self._samples))
+    def _variances(self, alone: Array) -> Array:
+        """Return the variance of one kind of inputs by each replicate, of a product over the squared mean."""
         middle = alone.mean()
         size = middle if self._relation == PRODUCT else 1.0
         return np.asarray((((alone - middle) / size) ** 2).mean(axis=1))
+
+    @cached_property
+    def _lots_alone(self) -> Array:
+        """The outputs (replicates, count) of lots, parts at their medians."""
+        return self._alone(self._split.lots, _each(self._samples))
 
     def _alone(self, inputs: Inputs, count: int) -> Array:
         """Return the outputs (replicates, count) of one kind of inputs, the others at their medians."""
@@ -133,11 +138,8 @@ class PointLots(Lots):
 
     def _points(self, inputs: Inputs, stream: int, count: int) -> dict[str, Array]:
         """Return inputs at points by name, (1, replicates, count) each; each stream has its own."""
-        generator = np.random.default_rng([self._seed, count, stream])
-        shape = len(inputs.names), REPLICATES, count
-        points = scrambled_net(*shape, generator) if self._method == "sobol" else generator.random(shape)
-        scores = np.asarray(ndtri(np.clip(points, 2.0**-53, 1 - 2.0**-53)))
-        return values_at(inputs, scores.reshape(len(scores), -1, 1), (1, REPLICATES, count))
+        scores = _normal_scores(self._method, len(inputs.names), count, (self._seed, stream))
+        return values_at(inputs, scores, (1, REPLICATES, count))
 
     @np.errstate(all="ignore")
     def failing(self, limit: float, acceptable: float, over: OverLimit) -> tuple[float, float]:  # noqa: ARG002
@@ -165,7 +167,7 @@ class PointLots(Lots):
             quantile, error, (sound,) = self._by_lines(self._split.parts_alone, 1, acceptable)
             if not sound:
                 return None
-        lots = self._alone(self._split.lots, _each(self._samples))
+        lots = self._lots_alone
         if self._relation != PRODUCT:
             return _scores(lots + (quantile - centre) - limit, error)
         if min((lots / centre).min(), quantile[0] / centre) <= 0:
@@ -213,6 +215,18 @@ class PointLots(Lots):
             output = _finite(of_rows(model, some)(parts, np.arange(len(some))))
             over[some] = (output > limit).sum(axis=0)
         return np.asarray((over / total - acceptable) / _counted(over, total))
+
+
+@lru_cache(maxsize=4)
+def _normal_scores(method: PointMethod, width: int, count: int, stream: tuple[int, int]) -> Array:
+    """Return scores (width, replicates × count, 1) of points, which rows share; a stream is a seed and a number."""
+    seed, number = stream
+    generator = np.random.default_rng([seed, count, number])
+    shape = width, REPLICATES, count
+    points = scrambled_net(*shape, generator) if method == "sobol" else generator.random(shape)
+    scores = np.asarray(ndtri(np.clip(points, 2.0**-53, 1 - 2.0**-53))).reshape(width, -1, 1)
+    scores.flags.writeable = False
+    return scores
 
 
 def _scores(apart: Array, error: Array) -> Array:
