@@ -1,4 +1,4 @@
-"""Sixty parts that nobody has measured: made-up walls and disks with mean, standard deviation and correlation as wanted.
+"""Sixty parts that nobody has measured: made-up walls and disks of a wanted mean, standard deviation and correlation.
 
 They are whole numbers of a hundredth of a micrometre, chosen so that mean and standard deviation are met exactly.
 """
@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import random
 import statistics
+from dataclasses import replace
 from itertools import permutations
 
 from flexlash.feedback.template.filling import Filling
 
-__all__ = ["DISK", "PARTS", "SAMPLE", "WALL", "measured_parts"]
+__all__ = ["DISK", "FAULTS", "LIMIT", "PARTS", "SAMPLE", "WALL", "faulty_parts", "measured_parts"]
 
 PARTS = 60
 SAMPLE = "made-up pilot lot"
@@ -19,6 +20,9 @@ SAMPLE = "made-up pilot lot"
 WALL = (1.607, 0.0041)
 DISK = (1.604, 0.0038)
 """Mean and standard deviation of the sample [mm]."""
+
+LIMIT = 3.767
+"""Backlash limit [arcmin] that the sample meets, though sixty parts leave in doubt whether the process does."""
 
 _STEPS = 100_000
 """Steps of the gauge in a millimetre."""
@@ -67,7 +71,7 @@ def measured_parts() -> Filling:
         "wall_thickness_mm": 1.6,
         "disk_thickness_mm": 1.6,
         "disk_inner_radius_mm": 40.0,
-        "backlash_limit_arcmin": 3.75,
+        "backlash_limit_arcmin": LIMIT,
     }
     limits = {"lower_deviation": -0.02, "upper_deviation": 0.02, "deviation_unit": "mm"}
     both = ("wall_thickness", "disk_thickness")
@@ -98,3 +102,35 @@ def measured_parts() -> Filling:
             }
         ],
     )
+
+
+FAULTS = {
+    ("Measurements", "A16"): "E201",
+    ("Measurements", "H8"): "E202",
+    ("Measurements", "C14"): "E209",
+    ("Tolerances", "K20"): "E202",
+    ("Tolerances", "N21"): "E209",
+    ("Tolerances", "M24"): "E223",
+    ("Tolerances", "O19"): "E224",
+    ("Correlations", "D5"): "E202",
+    ("Correlations", "A6"): "E309",
+}
+"""The errors of `faulty_parts` by sheet and cell."""
+
+
+def faulty_parts() -> Filling:
+    """Return the same with a fault of each kind on the sheets of tolerances, measurements and correlations."""
+    filling = measured_parts()
+    tolerances, measurements = ([dict(row) for row in rows] for rows in (filling.tolerances, filling.measurements))
+    measurements[3]["wall_thickness_mm"] = "1,60712"
+    measurements[9]["use_as"] = "valeu"
+    measurements[11]["sample"] = None
+    tolerances[0]["based_on"] = "standart"
+    tolerances[1]["cp"] = "1,33"
+    tolerances[2]["scatters_between"] = "part"
+    tolerances[4]["sample"] = SAMPLE.upper()
+    tolerances[5]["sample"] = "pilot lot"
+    (pair,) = filling.correlations
+    correlations = [{**pair, "dimension_2": "Disk thickness", "correlation": "0,5"}]
+    correlations += [{**pair, "tolerance_class": "measurd"}]
+    return replace(filling, tolerances=tolerances, measurements=measurements, correlations=correlations)

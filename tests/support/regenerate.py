@@ -16,6 +16,7 @@ from functools import cache
 from pathlib import Path
 
 from finding_examples import examples
+from made_up_parts import measured_parts
 
 from flexlash.feedback.template.template_workbook import Filling, study, template_bytes
 from flexlash.pipeline import run
@@ -268,6 +269,7 @@ def generated() -> dict[str, bytes]:
         "data/needs-fixing.xlsx": template_bytes(needs_fixing()),
         "data/b3-160-proof.xlsx": template_bytes(proof()),
         "data/b3-160-calibrated.xlsx": template_bytes(calibrated()),
+        "data/measured-parts.xlsx": template_bytes(measured_parts()),
         "README.md": document(
             "README.md", columns=column_table(), settings=settings_table(), limits=limits_table(), proof=proof_table()
         ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 import regenerate
+from made_up_parts import faulty_parts, measured_parts
 from marking_samples import fault, own_workbook, rich_workbook
 from old_templates import old_workbook
 from open_xml import faults_of, needs_validator
@@ -11,6 +12,7 @@ from own_workbooks import READABLE, RICH
 
 from flexlash.cli import cli
 from flexlash.feedback.annotation import marked_copy
+from flexlash.feedback.template.template_workbook import template_bytes
 
 pytestmark = [needs_validator, pytest.mark.slow]
 
@@ -25,7 +27,8 @@ no torque,cup,20Cr2Ni4,,100,60,1.3,30,,,
 COMMANDS = {
     "template.xlsx": "template -o template.xlsx",
     "example.xlsx": "template --example -o example.xlsx",
-    "upgraded.xlsx": "template --upgrade old.xlsx -o upgraded.xlsx",
+    "all-sheets.xlsx": "template --with all -o all-sheets.xlsx",
+    "upgraded.xlsx": "template --upgrade old.xlsx --with measurements,correlations -o upgraded.xlsx",
     "upgraded-table.xlsx": "template --upgrade table.csv -o upgraded-table.xlsx",
     "example-report.xlsx": "run example.xlsx --samples 256 --method random",
     "table-report.xlsx": "run table.csv --elasticity --cross-check --samples 256",
@@ -34,6 +37,10 @@ COMMANDS = {
     "needs-fixing-report.xlsx": "run needs-fixing.xlsx --samples 256 --method random",
     "needs-fixing-checked.xlsx": "check needs-fixing.xlsx --annotate",
     "needs-fixing-mended.xlsx": "check needs-fixing.xlsx --apply-fixes -o needs-fixing-mended.xlsx",
+    "measured-parts-report.xlsx": "run measured-parts.xlsx",
+    "measured-again.xlsx": "run --from-report measured-parts-report.xlsx -o measured-again.xlsx",
+    "measured-faulty-checked.xlsx": "check measured-faulty.xlsx --annotate",
+    "measured-faulty-mended.xlsx": "check measured-faulty.xlsx --apply-fixes -o measured-faulty-mended.xlsx",
     "table-checked.xlsx": "check table.csv --annotate",
     "damaged-checked.xlsx": "check damaged.xlsx --annotate",
     "reports/flexlash-summary.xlsx": "run table.csv one.csv damaged.xlsx none.csv --samples 64 -o reports",
@@ -61,6 +68,8 @@ def folder(tmp_path_factory):
     old_workbook([["A", "cup", "20Cr2Ni4", 800.0, 160.0, 80.0]]).save(path / "old.xlsx")
     faulty = (regenerate.ROOT / "data" / "needs-fixing.xlsx").read_bytes()
     (path / "needs-fixing.xlsx").write_bytes(faulty)
+    (path / "measured-parts.xlsx").write_bytes(template_bytes(measured_parts()))
+    (path / "measured-faulty.xlsx").write_bytes(template_bytes(faulty_parts()))
     (path / "damaged.xlsx").write_bytes(faulty[: len(faulty) // 2])
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(path)
