@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from flexlash.analysis.backlash_models import BACKLASH_OF
 from flexlash.schema.variant import Limits, MeasuredDimension, ToleranceRow, Variant
 from flexlash.tolerance import Normal, TruncatedNormal
-from flexlash.tolerance.dimension_limits import beyond_doubt, distribution_of, limits_alike, limits_of, shape_problems
+from flexlash.tolerance.dimension_limits import distribution_of, limits_of, shape_problems
+from flexlash.tolerance.limit_arrays import beyond_doubt, limits_alike
 from flexlash.tolerance.measured import Measured
 
 thorough = settings(deadline=None, max_examples=60, derandomize=True)

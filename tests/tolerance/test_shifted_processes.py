@@ -19,13 +19,12 @@ from flexlash.schema.units import ARCMIN
 from flexlash.schema.variant import Limits, ToleranceRow, Variant
 from flexlash.tolerance import Normal, TruncatedNormal
 from flexlash.tolerance.dimension_limits import (
-    beyond_doubt,
     distribution_of,
     distributions,
-    limits_alike,
     limits_of,
     shape_problems,
 )
+from flexlash.tolerance.limit_arrays import beyond_doubt, limits_alike
 
 thorough = settings(deadline=None, max_examples=100, derandomize=True)
 

@@ -26,15 +26,8 @@ from flexlash.schema.spellings import plain
 from flexlash.schema.units import ARCMIN, RPM
 from flexlash.schema.variant import Limits, Settings, ToleranceRow, Variant
 from flexlash.schema.variant_arrays import VariantArrays
-from flexlash.tolerance.dimension_limits import (
-    LimitArrays,
-    LimitsProblem,
-    beyond_doubt,
-    limits_alike,
-    limits_of,
-    shape_problems,
-    varying,
-)
+from flexlash.tolerance.dimension_limits import LimitsProblem, limits_of, shape_problems
+from flexlash.tolerance.limit_arrays import LimitArrays, beyond_doubt, limits_alike, varying
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import UnitMistake, Validated
 

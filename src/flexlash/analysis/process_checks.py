@@ -15,7 +15,7 @@ from flexlash.schema.findings import shown
 from flexlash.schema.process_verdict import ProcessVerdict, is_usual_process, process_verdict
 from flexlash.schema.spellings import plain
 from flexlash.schema.variant import Limits, ToleranceRow, Variant
-from flexlash.tolerance.dimension_limits import LimitArrays
+from flexlash.tolerance.limit_arrays import LimitArrays
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import Table, Validated
 

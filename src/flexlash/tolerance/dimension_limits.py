@@ -5,39 +5,31 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from flexlash.schema.arrays import Array
 from flexlash.schema.columns import DIMENSIONS
-from flexlash.schema.tolerance_grades import deviations, deviations_of
-from flexlash.schema.variant import FAR, Limits, ToleranceRow, Variant
+from flexlash.schema.tolerance_grades import deviations
+from flexlash.schema.variant import Limits, ToleranceRow, Variant
 from flexlash.tolerance.distributions import Distribution, Normal, Triangular, Uniform
 from flexlash.tolerance.gaps import Gap, gaps
 from flexlash.tolerance.placed import Placed
-from flexlash.tolerance.processes import Output, harmful_sides, measured_ends, measured_shape, process_of
+from flexlash.tolerance.processes import Output, measured_ends, measured_shape, process_of, sides_of
 from flexlash.tolerance.truncated_normal import TruncatedNormal
 
 __all__ = [
-    "LimitArrays",
+    "ROUNDING",
     "Limits",
     "LimitsProblem",
-    "beyond_doubt",
+    "bounds_of",
     "distribution_of",
     "distributions",
-    "limits_alike",
     "limits_of",
     "shape_problems",
-    "varying",
 ]
 
-_ROUNDING = 1e-12
+ROUNDING = 1e-12
 """Decimals become binary with a relative error below this; limits that close count as reached."""
-
-_DOUBT = 1e3 * _ROUNDING
-"""Part of the numbers of a comparison within which its outcome is in doubt."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,16 +89,7 @@ def limits_of(
 def _harmful_side(variant: Variant, row: ToleranceRow, low: float, high: float, output: Output | None) -> float:
     """Return the side of the limits of a row that raises the output, as it is found for many variants at once."""
     sizes = {name: np.array([size]) for name, size in variant.dimensions.items()} if row.harmful_shift else {}
-    return float(_sides(row, sizes, np.array([low]), np.array([high]), output)[0])
-
-
-def _sides(row: ToleranceRow, sizes: Mapping[str, Array], low: Array, high: Array, output: Output | None) -> Array:
-    """Return the side of the limits of a row that raises the output; 1 where the row does not ask for it."""
-    if not row.harmful_shift:
-        return np.ones(len(low))
-    if output is None:
-        raise LookupError(f"which limit of {row.dimension} is harmful takes a model of the output")
-    return harmful_sides(row.dimension, sizes, low, high, output)
+    return float(sides_of(row, sizes, np.array([low]), np.array([high]), output)[0])
 
 
 _TURNS = {name: turn for turn, name in enumerate(DIMENSIONS)}
@@ -114,90 +97,6 @@ _TURNS = {name: turn for turn, name in enumerate(DIMENSIONS)}
 
 def _turn(row: ToleranceRow) -> int:
     return _TURNS[row.dimension]
-
-
-class LimitArrays(NamedTuple):
-    """The limits of a dimension of many variants [SI], each of shape (variants,).
-
-    `mean` and `sd` are those of a normal or measured process, before any cut; `least` and `most` the ends of what the
-    limits and the parts reach. What a grade does not tabulate is NaN.
-    """
-
-    low: Array
-    high: Array
-    mean: Array
-    sd: Array
-    least: Array
-    most: Array
-
-
-def limits_alike(
-    sizes: Mapping[str, Array], rows: Iterable[ToleranceRow], output: Output | None = None
-) -> dict[str, LimitArrays]:
-    """Return the limits of variants that have the same dimensions, given by name, in one class; else as `limits_of`."""
-    limits = {}
-    for row in rows:
-        if (nominal := sizes.get(row.dimension)) is None:
-            continue
-        lower, upper = _deviations_alike(row, nominal)
-        low, high = nominal + lower, nominal + upper
-        shift, own_sd = process_of(row, nominal, low, high, _sides(row, sizes, low, high, output))
-        mean = (low + high) / 2 + shift
-        sd = np.broadcast_to((high - low) / (2 * row.limits_sigma) if own_sd is None else own_sd, low.shape)
-        least, most = _reached(row, low, high, mean, sd)
-        limits[row.dimension] = LimitArrays(low, high, mean, sd, least, most)
-    return limits
-
-
-def _deviations_alike(row: ToleranceRow, nominal: Array) -> tuple[Array, Array]:
-    """Lower and upper deviations [SI] from many entered values, as `_deviations`; NaN where a grade has no entry."""
-    if row.grade:
-        parts = 2 if DIMENSIONS[row.dimension].grade_at == "diameter" else 1
-        lower, upper = (found / parts for found in deviations_of(row.grade, parts * nominal))
-        return lower, upper
-    lower, upper = (side * nominal if row.relative else np.full(len(nominal), side) for side in (row.lower, row.upper))
-    return lower, upper
-
-
-def varying(sizes: Mapping[str, Array], rows: Iterable[ToleranceRow]) -> set[str]:
-    """Return the dimensions that a class gives limits in one of some variants alike, whatever their process is."""
-    found = set()
-    for row in rows:
-        if row.dimension in sizes:
-            lower, upper = _deviations_alike(row, sizes[row.dimension])
-            if ((lower < upper) | (abs(lower) > 0)).any():
-                found.add(row.dimension)
-    return found
-
-
-def _reached(row: ToleranceRow, low: Array, high: Array, mean: Array, sd: Array) -> tuple[Array, Array]:
-    """Return the least and greatest of the limits and of what a normal or measured process produces."""
-    if row.distribution == "measured" and row.sample is not None:
-        first, last = measured_ends(row.sample)
-    elif row.distribution == "normal":
-        first, last = -FAR, FAR
-    else:
-        return low, high
-    return np.minimum(low, mean + first * sd), np.maximum(high, mean + last * sd)
-
-
-def beyond_doubt(
-    flexspline_type: str, sizes: Mapping[str, Array], limits: Mapping[str, LimitArrays]
-) -> npt.NDArray[np.bool_]:
-    """Return which of some variants alike `shape_problems` surely leaves alone; of the others it may have to say.
-
-    What comes near to a bound within a thousand times the rounding of numbers is in doubt.
-    """
-    reach = {name: (one.least, one.most) for name, one in limits.items()}
-    sure = np.ones(len(sizes["torque"]), dtype=bool)
-    for name, (low, high) in reach.items():
-        least, most = _bounds(name)
-        slack = _DOUBT * (abs(low) + abs(high))
-        sure &= (low > least + slack) & (high < most - slack)
-    for gap in gaps(flexspline_type, sizes):
-        ends = [factor * reach.get(name, (sizes[name],) * 2)[factor < 0] for name, factor in gap.factors.items()]
-        sure &= sum(ends) > _DOUBT * sum(map(abs, ends))
-    return sure
 
 
 def shape_problems(
@@ -213,7 +112,7 @@ def shape_problems(
         return dict(limits), tuple(problems)
     kept = {}
     for name, limit in limits.items():
-        low, high = _bounds(name)
+        low, high = bounds_of(name)
         reach = limit.reach
         if reach[0] <= low or reach[1] > high:
             kept[name] = replace(limit, cut=(low, high))
@@ -229,7 +128,7 @@ def shape_problems(
     return kept, tuple(once.values())
 
 
-def _bounds(name: str) -> tuple[float, float]:
+def bounds_of(name: str) -> tuple[float, float]:
     """Open lower and closed upper bound [SI] that a shape must respect."""
     if name == "poisson_ratio":
         return -1.0, 0.5
@@ -243,8 +142,8 @@ def _bounds(name: str) -> tuple[float, float]:
 def _beyond_bounds(limits: Mapping[str, Limits]) -> Iterator[LimitsProblem]:
     """Yield the dimensions whose own limits, or measured values, leave the valid region."""
     for name, limit in limits.items():
-        (low, high), (least, most) = _bounds(name), _ends_of(limit)
-        slack = _ROUNDING * (abs(least) + abs(most))
+        (low, high), (least, most) = bounds_of(name), _ends_of(limit)
+        slack = ROUNDING * (abs(least) + abs(most))
         if least > low + slack and most <= high + slack:
             continue
         detail = "0" if least <= low + slack else "180°" if name == "disk_cone_angle" else "0.5"
@@ -275,7 +174,7 @@ def _ends(variant: Variant, limits: Mapping[str, Limits], name: str) -> tuple[fl
 def _closes(variant: Variant, limits: Mapping[str, Limits], gap: Gap) -> tuple[bool, float]:
     """Return whether the limits close a gap, and the room between those that face each other."""
     ends = [factor * _ends(variant, limits, name)[factor < 0] for name, factor in gap.factors.items()]
-    room, slack = sum(ends), _ROUNDING * sum(map(abs, ends))
+    room, slack = sum(ends), ROUNDING * sum(map(abs, ends))
     return room < -slack or (room <= slack and not gap.may_close), room
 
 
@@ -300,7 +199,7 @@ def _keep_open(variant: Variant, limits: dict[str, Limits], gap: Gap) -> Iterato
         return
     for name, (tail, factor) in tails.items():
         limit = limits[name]
-        low, high = limit.cut or _bounds(name)
+        low, high = limit.cut or bounds_of(name)
         kept = tail * max(room, 0.0) / total
         cut = (low, min(high, limit.high + kept)) if factor < 0 else (max(low, limit.low - kept), high)
         limits[name] = replace(limit, cut=cut)

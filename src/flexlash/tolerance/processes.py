@@ -17,7 +17,7 @@ from flexlash.schema.arrays import Array
 from flexlash.schema.variant import FAR, MeasuredDimension, ToleranceRow
 from flexlash.tolerance.measured import Measured
 
-__all__ = ["Output", "harmful_sides", "measured_ends", "measured_shape", "process_of"]
+__all__ = ["Output", "harmful_sides", "measured_ends", "measured_shape", "process_of", "sides_of"]
 
 Output: TypeAlias = Callable[[Mapping[str, Array]], Array]
 """The output of a part, which the harmful side of its limits raises, as a function of its dimensions."""
@@ -64,6 +64,15 @@ def harmful_sides(dimension: str, sizes: Mapping[str, Array], low: Array, high: 
     with np.errstate(all="ignore"):
         at_low, at_high = (output({**sizes, dimension: end}) for end in (low, high))
     return np.where(at_high >= at_low, 1.0, -1.0)
+
+
+def sides_of(row: ToleranceRow, sizes: Mapping[str, Array], low: Array, high: Array, output: Output | None) -> Array:
+    """Return the side of the limits of a row that raises the output; 1 where the row does not ask for it."""
+    if not row.harmful_shift:
+        return np.ones(len(low))
+    if output is None:
+        raise LookupError(f"which limit of {row.dimension} is harmful takes a model of the output")
+    return harmful_sides(row.dimension, sizes, low, high, output)
 
 
 @lru_cache(maxsize=256)
