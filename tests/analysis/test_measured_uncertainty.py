@@ -99,6 +99,17 @@ def test_the_bits_do_not_depend_on_other_rows():
         assert interval(told(one)[0]) == interval(first) == interval(second)
 
 
+def test_a_shape_that_was_measured_leaves_more_open_than_a_normal_one():
+    """Where the values' own shape is taken, its tails are uncertain, too, and no bit depends on neighbours."""
+    wall = cup().limits["wall_thickness"]
+    one = cup(wall_thickness=replace(wall, distribution="measured"))
+    shaped, normal = told(one, cup())
+    low, high, least, most = interval(shaped)
+    assert 1.2 * (interval(normal)[3] - interval(normal)[2]) < most - least
+    assert low < interval(normal)[0] < interval(normal)[1] < high
+    assert interval(told(one)[0]) == interval(shaped)
+
+
 def test_more_parts_leave_less():
     """The interval shrinks as the root of the number of parts does."""
     widths = [np.log(high / low) for low, high, *_ in map(interval, told(cup(25), cup(100), cup(400)))]

@@ -1,6 +1,6 @@
 """A row with measured dimensions → the parameters that its sample leaves uncertain, and the row at their ends.
 
-parameter       mean or standard deviation of a measured dimension, or the correlation of two
+parameter       mean, standard deviation or shape of a measured dimension, or the correlation of two
 errors          what chance made of the estimates; those of dimensions measured on the same parts are correlated
 """
 
@@ -21,8 +21,15 @@ from flexlash.tolerance.nearest_correlation import admissible_interval
 from flexlash.tolerance.row_batches import TolerancedRow
 from flexlash.tolerance.sample_statistics import MeasuredCorrelation, measured_correlation
 from flexlash.tolerance.sample_uncertainty import SampleUncertainty
+from flexlash.tolerance.shape_uncertainty import BENDS, bent_values
 
 __all__ = ["EndRows", "ends_of", "moves_of", "products_of"]
+
+_AS_MEASURED = "measured"
+"""Distribution of a dimension that is taken as its values are, not as normal with their mean and sd."""
+
+_UPPER = 1.959963984540054
+"""Normal score of the upper end of a 95 % interval."""
 
 _SAME = 1e-9
 """Part within which a correlation of the row is that of the sample, and not one that was entered in its place."""
@@ -35,7 +42,8 @@ _LEAST_MOVE = 1e-6
 class EndRows:
     """A parameter at the lower and the upper end of its interval: how far these are, and the row there.
 
-    A mean is told in standard deviations of the sample, a standard deviation by the growth of its square.
+    A mean is told in standard deviations of the sample, a standard deviation by the growth of its square, a shape by
+    the normal score of its bend.
     """
 
     low: float
@@ -48,29 +56,33 @@ class EndRows:
 def ends_of(row: TolerancedRow) -> list[EndRows]:
     """Return the parameters of a row that its samples leave uncertain; none where nothing that scatters was measured.
 
-    Mean and standard deviation of each measured dimension come first, then the correlations of measured pairs.
+    Mean and standard deviation of each measured dimension come first, then the correlations of measured pairs, last the
+    shapes of dimensions that are taken as they were measured.
     """
     alone = replace(row, between=None)
     found = [end for name, limit in _measured(row).items() for end in _of_dimension(alone, name, limit)]
-    return [*found, *(_of_pair(alone, tie, pair) for tie, pair in _measured_ties(row))]
+    found += [_of_pair(alone, tie, pair) for tie, pair in _measured_ties(row)]
+    found += [end for name, limit in _measured(row).items() for end in _of_shape(alone, name, limit)]
+    return found
 
 
 def moves_of(row: TolerancedRow) -> list[Array]:
     """Return the moves of the same parameters in sets that chance makes, as many of each."""
-    uncertainties = [_uncertainty(limit) for limit in _measured(row).values()]
-    pairs = [pair for _, pair in _measured_ties(row)]
+    measured = _measured(row)
     matrix = _error_correlations(row)
-    independent = list(standard_scores(len(matrix)))
+    bends = BENDS * sum(limit.distribution == _AS_MEASURED for limit in measured.values())
+    independent = list(standard_scores(len(matrix) + bends))
     factor = score_factor(matrix, range(len(matrix)))
-    scores = independent if factor is None else correlated_scores(factor, independent)
+    scores = independent if factor is None else correlated_scores(factor, independent[: len(matrix)])
     moves = []
-    for place, uncertainty in enumerate(uncertainties):
+    for place, limit in enumerate(measured.values()):
+        uncertainty = _uncertainty(limit)
         ratios = uncertainty.sd_ratios(scores[2 * place + 1])
         moves += [ratios * scores[2 * place] / math.sqrt(uncertainty.size), ratios**2 - 1]
-    for pair, score in zip(pairs, scores[2 * len(uncertainties) :], strict=True):
+    for (_, pair), score in zip(_measured_ties(row), scores[2 * len(measured) : len(matrix)], strict=True):
         centre, error = math.atanh(pair.correlation), 1 / math.sqrt(pair.count - 3)
         moves.append(np.tanh(centre + error * score) - pair.correlation)
-    return moves
+    return [*moves, *independent[len(matrix) :]]
 
 
 def products_of(row: TolerancedRow) -> list[tuple[int, int, int, float]]:
@@ -93,7 +105,7 @@ def _measured(row: TolerancedRow) -> dict[str, Limits]:
 def _uncertainty(limit: Limits) -> SampleUncertainty:
     """Return what the sample of a dimension leaves open; its shape matters where it is taken as it was measured."""
     values = limit.sample.values if limit.sample else ()
-    return _of_values(values) if limit.distribution == "measured" else SampleUncertainty(size=len(values))
+    return _of_values(values) if limit.distribution == _AS_MEASURED else SampleUncertainty(size=len(values))
 
 
 # What many rows share is worked out once: a sample may have thousands of values.
@@ -113,6 +125,21 @@ def _of_dimension(row: TolerancedRow, name: str, limit: Limits) -> Iterator[EndR
     yield EndRows(low=-off, high=off, at_low=moved(-off, 1.0), at_high=moved(off, 1.0), scatters=False)
     rows = moved(0.0, low), moved(0.0, high)
     yield EndRows(low=low**2 - 1, high=high**2 - 1, at_low=rows[0], at_high=rows[1], scatters=True)
+
+
+def _of_shape(row: TolerancedRow, name: str, limit: Limits) -> Iterator[EndRows]:
+    """Yield the skewness and the length of tails of a dimension that is taken as it was measured."""
+    sample = limit.sample
+    if sample is None or limit.distribution != _AS_MEASURED:
+        return
+
+    def bent(values: tuple[float, ...]) -> TolerancedRow:
+        shape = replace(sample, values=values, parts=tuple(range(len(values))))
+        process = replace(limit, sample=shape, sd=limit.standard_deviation)
+        return replace(row, limits={**row.limits, name: process})
+
+    for less, more in bent_values(sample.values):
+        yield EndRows(low=-_UPPER, high=_UPPER, at_low=bent(less), at_high=bent(more), scatters=False)
 
 
 def _of_pair(row: TolerancedRow, tie: Entry, pair: MeasuredCorrelation) -> EndRows:
@@ -143,7 +170,7 @@ def _measured_ties(row: TolerancedRow) -> list[tuple[Entry, MeasuredCorrelation]
         first, second = (row.limits[name] for name in tie[:2])
         if first.sample is None or second.sample is None:
             continue
-        by_scores = "measured" in {first.distribution, second.distribution}
+        by_scores = _AS_MEASURED in {first.distribution, second.distribution}
         pair = _pair_of(first.sample, second.sample, by_scores=by_scores)
         if pair is not None and abs(pair.correlation - tie[2]) <= _SAME and pair.low < pair.high:
             found.append((tie, pair))

@@ -15,6 +15,7 @@ __all__ = [
     "glance",
     "grouped",
     "places",
+    "range_words",
     "rounded",
     "share_error",
     "share_words",
@@ -73,6 +74,32 @@ def share_words(row: Mapping[str, Any]) -> str:
     return _interval(value, low, high)
 
 
+def range_words(low: float, high: float) -> str:
+    """Return the interval of a share that is not known well, in two digits; an end that cannot be told is left out.
+
+    >>> range_words(1.2e-5, 8.04e-4), range_words(0.0, 8.04e-4), range_words(0.4121, 0.99934)
+    ('12 to 800 ppm', 'at most 800 ppm', '41 to 99.934 %')
+    """
+    if high < _LEAST:
+        return _NONE
+    if low > 1 - _LEAST:
+        return _ALL
+    factor, unit = _unit(high)
+    most = f"{_two_digits(high, factor)}{unit}"
+    if low < _LEAST:
+        return f"at most {most}" if high <= 1 - _LEAST else "anything from none to all"
+    own, its = _unit(low) if low < _FAR_APART * high else (factor, unit)
+    least = f"{_two_digits(low, own)}{its if its != unit else ''}"
+    return f"{least} to {most}" if high <= 1 - _LEAST else f"at least {least}{unit if its == unit else ''}"
+
+
+def _two_digits(share: float, factor: float) -> str:
+    """Return a share times a factor in two digits of it or of what it leaves to 1."""
+    if share <= 1 / 2:
+        return spelled_out(share * factor, 2)
+    return rounded(share * factor, factor * 10.0 ** (math.floor(math.log10(1 - share)) - 1))
+
+
 _UNITS = ((1.0, 100.0, " %"), (1e-3, 1e6, " ppm"), (1e-6, 1e9, " ppb"))
 """Shares below the first number are told in the unit, which is the factor times the share."""
 
@@ -85,6 +112,9 @@ _BRIEF = 1e-6
 
 _LEAST = 1e-9
 """Shares below it are told as none: tolerances do not bear more."""
+
+_FAR_APART = 0.01
+"""An end of an interval that is less than so much of the other is told in a unit of its own."""
 
 _NONE, _ALL = "practically none", "practically all"
 

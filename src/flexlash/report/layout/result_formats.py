@@ -45,6 +45,12 @@ _NEAR = 1e-6
 _ERRORS = {"elasticity_difference_percent": ("elasticity_error_percent",)}
 """Columns with the error of another one, where it does not follow from the key."""
 
+_NEAR_END = "0.0000%"
+"""Number format of a share that is nearly none or all."""
+
+_TWO_DIGITS = 0.1
+"""Part of a number to which two digits tell it."""
+
 _PPK = "0.000"
 """Number format of a Ppk, where it is known so well."""
 
@@ -76,7 +82,8 @@ def number_codes(results: pl.DataFrame, column: Column) -> list[str]:
     if "standard_error" in column.key:
         return [_of_error(value) for value in values]
     if column.key.startswith(("probability", "ppm")):
-        return _of_shares(results, column.key, values)
+        rough = "_sample_" in column.key
+        return [_of_guess(value) for value in values] if rough else _of_shares(results, column.key, values)
     if column.key in _WORKED_OUT:
         work_out, needed = _WORKED_OUT[column.key]
         errors = [work_out(row) for row in results.select(column.key, *needed).iter_rows(named=True)]
@@ -146,6 +153,16 @@ def _of_error(error: float | None) -> str:
     return f"0.{'0' * digits}" if digits else "0"
 
 
+def _of_guess(share: float | None) -> str:
+    """Return the number format that shows two digits of a share that is not known well.
+
+    >>> _of_guess(0.0123), _of_guess(1.2e-5), _of_guess(0.0), _of_guess(0.9994)
+    ('0.0%', '0.0000%', '0.0000%', '0.000%')
+    """
+    known = share or 0.0
+    return percent_of(max(min(known, 1 - known) * _TWO_DIGITS, _NEAR))
+
+
 def _of_shares(results: pl.DataFrame, key: str, values: list[float | None]) -> list[str]:
     """Return a number format for each share over the limit, or its bounds, down to the share's standard error."""
     stem = key.removesuffix("_low").removesuffix("_high")
@@ -156,7 +173,7 @@ def _of_shares(results: pl.DataFrame, key: str, values: list[float | None]) -> l
 
 def _share_codes(values: list[float | None], errors: list[float | None], whole: float) -> list[str]:
     """Return a number format for each share of a whole, down to its standard error."""
-    near_end = "0.0000%" if whole == 1.0 else "#,##0.0##"
+    near_end = _NEAR_END if whole == 1.0 else "#,##0.0##"
     formats = []
     for value, error in zip(values, errors, strict=True):
         if value is not None and not _NEAR * whole <= value <= (1 - _NEAR) * whole:

@@ -25,6 +25,7 @@ from flexlash.report.page.variants import verdict_of
 from flexlash.report.report_data import ROW, Drawn
 from flexlash.report.wording.advice import stiffening, tightening_of
 from flexlash.report.wording.lot_sentences import LOTS, lots_of
+from flexlash.report.wording.measured_parts import PARTS, left_open_by
 from flexlash.report.wording.sentences import cause_of
 from flexlash.report.wording.summary_facts import SummaryFacts, rough
 from flexlash.report.wording.verdict import light, straddled
@@ -52,7 +53,9 @@ _NUMBERS = (
     "coverage_low_arcmin", "coverage_high_arcmin", "worst_case_low_arcmin", "worst_case_high_arcmin",
     "first_order_sd_arcmin", "first_order_valid", "skewness", "kurtosis", "backlash_limit_arcmin",
     "probability_over_limit", "probability_over_limit_low", "probability_over_limit_high",
-    "ppm_over_limit", "within_lot_sd_arcmin", "between_lots_sd_arcmin", "lots_failing",
+    "ppm_over_limit", "probability_over_limit_sample_low", "probability_over_limit_sample_high",
+    "p99_865_sample_low_arcmin", "p99_865_sample_high_arcmin",
+    "within_lot_sd_arcmin", "between_lots_sd_arcmin", "lots_failing",
     "ppk", "ppk_normal", "interaction_share", "disk_share", "cylinder_only_backlash_arcmin",
     "two_term_backlash_arcmin", "lost_motion_arcmin", "drive_lost_motion_arcmin", "stiffness_Nm_per_rad",
     "stiffness_Nm_per_arcmin", "catalogue_stiffness_Nm_per_rad", "wall_shear_MPa", "rim_shear_MPa", "hub_shear_MPa",
@@ -96,6 +99,8 @@ def _sentences(facts: SummaryFacts, variant: Drawn) -> Iterator[Sentence]:
     """Yield what is said of a variant, as the Summary says it of the worst."""
     row = variant.row
     yield Sentence(topic="Verdict", text=" ".join([*judged(row), *extremes(facts, row)]), kind="verdict")
+    if left_open := " ".join(left_open_by(facts, row)):
+        yield Sentence(topic=PARTS, text=left_open, kind="verdict")
     if lots := " ".join(lots_of(facts, row)):
         yield Sentence(topic=LOTS, text=lots, kind="verdict")
     yield Sentence(topic="Why", text=" ".join(cause_of(facts, row)), kind="cause")

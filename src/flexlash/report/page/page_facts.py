@@ -21,6 +21,7 @@ from flexlash.report.page.tiles import TARGET, finding_tiles, verdict_tiles
 from flexlash.report.page.variants import chart_of, lost_variants, shown_names, table_rows
 from flexlash.report.report_data import ReportData
 from flexlash.report.wording.lot_sentences import LOTS
+from flexlash.report.wording.measured_parts import PARTS
 from flexlash.report.wording.sentences import sentences
 from flexlash.report.wording.summary_facts import summary_facts
 from flexlash.schema.findings import CATALOGUE, Finding, shown
@@ -37,6 +38,7 @@ _KINDS: Mapping[str, str] = {
     "Computed": "computed",
     "Which fail": "verdict",
     "How sure": "verdict",
+    PARTS: "verdict",
     LOTS: "verdict",
     "Why": "cause",
     "What to tighten": "advice",

@@ -15,6 +15,7 @@ from flexlash.report.layout.links import rule_counts
 from flexlash.report.report_data import ROW
 from flexlash.report.wording.advice import stiffening, tightening
 from flexlash.report.wording.lot_sentences import LOTS, lots_and_parts
+from flexlash.report.wording.measured_parts import PARTS, measured_parts
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows, rough, summary_facts
 from flexlash.report.wording.verdict_sentences import failing, sureness
 from flexlash.schema.findings import CATALOGUE, spelled_out
@@ -38,6 +39,7 @@ _CAUSES = 3
 _WHOLE = 100
 
 _OF_THOSE_DRAWN = (
+    PARTS,
     "Why",
     "What to tighten",
     "What to stiffen",
@@ -61,6 +63,7 @@ def sentences(outcome: Outcome, recommendations: Sequence[Recommendation]) -> It
         "Computed": _computed(facts),
         "Which fail": failing(facts),
         "How sure": sureness(facts),
+        PARTS: measured_parts(facts),
         LOTS: lots_and_parts(facts),
         "Why": _causes(facts),
         "What to tighten": tightening(facts),

@@ -1,0 +1,128 @@
+"""Results rows of measured dimensions → sentences: what so few parts leave open, and how many would settle it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import polars as pl
+from scipy.special import ndtri
+
+from flexlash.analysis.run_summary import are, counted, dimension_words, grouped, listed
+from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows
+from flexlash.report.wording.verdict import BOUNDS, LIGHTS, firm, light
+from flexlash.schema.limit_verdict import limit_verdict
+from flexlash.schema.number_words import angle_words, range_words, share_words
+
+__all__ = ["PARTS", "left_open_by", "measured_parts"]
+
+PARTS = "Measured parts"
+"""The topic of these sentences."""
+
+_ENDS = ("probability_over_limit_sample_low", "probability_over_limit_sample_high")
+_MANY = 100
+"""Times as many parts as were measured that nobody measures."""
+
+_LEAST = 1e-12
+"""Shares nearer to none or all have no score that one could reckon with."""
+
+
+def measured_parts(facts: SummaryFacts) -> Iterator[str]:
+    """Yield what measured parts leave open of some variants, those first whose verdict they may change."""
+    if _ENDS[0] not in facts.ranked.columns:
+        return
+    rows = facts.ranked.filter(pl.col("p99_865_sample_low_arcmin").is_not_null())
+    if rows.is_empty():
+        return
+    low, high = (pl.col(end) for end in _ENDS)
+    may_change = pl.any_horizontal((low <= share) & (share < high) for share in BOUNDS.values()).fill_null(value=False)
+    doubtful = rows.filter(may_change)
+    shown = [*first_rows(doubtful), *first_rows(rows.filter(~may_change))][: NAMED if len(doubtful) else 1]
+    for row in shown:
+        yield f"{facts.named(row['variant'])}: {_interval(facts, row)}."
+        yield from _verdict(row)
+    if more := doubtful.height - len(shown):
+        may = counted(doubtful.height, "verdict")
+        yield f"In all {may} of {grouped(rows.height)} may change, {grouped(more)} of which {are(more)} not told here."
+    yield "More lines or points do not narrow this, more measured parts do."
+
+
+def left_open_by(facts: SummaryFacts, row: Row) -> Iterator[str]:
+    """Yield the same of one variant; nothing where nothing of it was measured."""
+    if row.get("p99_865_sample_low_arcmin") is not None:
+        told = _interval(facts, row)
+        yield f"{told[0].upper()}{told[1:]}."
+        yield from _verdict(row)
+
+
+def _interval(facts: SummaryFacts, row: Row) -> str:
+    """Return what is computed of a row and what its measured parts leave open of that."""
+    parts = _parts(facts, row)
+    if row["backlash_limit_arcmin"] is None:
+        tail = angle_words(row["p99_865_arcmin"], row["p99_865_standard_error_arcmin"])
+        low, high = (angle_words(row[f"p99_865_sample_{end}_arcmin"]) for end in ("low", "high"))
+        return f"99.865 % of units stay below {tail} by calculation; {parts} leave open {low} to {high} (95 %)"
+    told, open_ = share_words(row).split(" (")[0], range_words(*(row[end] for end in _ENDS))
+    return f"units over the limit are {told} by calculation; {parts} leave open {open_} (95 %)"
+
+
+def _parts(facts: SummaryFacts, row: Row) -> str:
+    """Return how many parts were measured of which dimensions: `60 measured parts (wall thickness)`."""
+    limits = facts.computed(row).limits
+    counts: dict[int, list[str]] = {}
+    for name, limit in limits.items():
+        if limit.sample is not None and limit.low < limit.high:
+            counts.setdefault(len(limit.sample.values), []).append(dimension_words(name))
+    told = [f"{grouped(count)} measured parts ({listed(names, NAMED)})" for count, names in counts.items()]
+    return listed(told, NAMED)
+
+
+def _verdict(row: Row) -> Iterator[str]:
+    """Yield whether the parts leave the verdict on a row open, and how many parts would settle it."""
+    low, high = (row[end] for end in _ENDS)
+    if low is None or high is None:
+        return
+    told = firm(light(row))
+    colours = {LIGHTS[limit_verdict(share)] for share in (low, high)} | {told}
+    if len(colours) == 1:
+        yield f"At either end the verdict is {told}."
+        return
+    others = [colour for colour in ("green", "amber", "red") if colour in _between(low, high) and colour != told]
+    yield f"So the verdict, {told}, may as well be {' or '.join(others)}."
+    times = _times_to_settle(row)
+    if times > _MANY:
+        yield "It lies so near to where the verdict changes that no number of parts would settle it."
+    else:
+        yield f"About {_rounded_up(times)} times as many parts would settle it, if they come out alike."
+
+
+def _between(low: float, high: float) -> set[str | None]:
+    """Return the verdicts that shares between two have."""
+    shares = [low, high, *(share for share in BOUNDS.values() if low <= share <= high)]
+    return {LIGHTS[limit_verdict(share)] for share in shares}
+
+
+def _times_to_settle(row: Row) -> float:
+    """Return how many times as many parts would draw the interval in to one verdict; scores shrink as their root."""
+    now, *ends = (_score(row[key]) for key in ("probability_over_limit", *_ENDS))
+    times = 1.0
+    for share in BOUNDS.values():
+        if row[_ENDS[0]] <= share < row[_ENDS[1]]:
+            bound = _score(share)
+            reach = max(ends) - now if bound > now else now - min(ends)
+            times = max(times, (reach / (bound - now)) ** 2 if bound != now else math.inf)
+    return times
+
+
+def _score(share: float) -> float:
+    return -float(ndtri(min(max(share, _LEAST), 1 - _LEAST)))
+
+
+def _rounded_up(times: float) -> str:
+    """Return a number of times with a digit that is not less.
+
+    >>> _rounded_up(1.04), _rounded_up(3.2), _rounded_up(41.0)
+    ('1.1', '3.2', '41')
+    """
+    exact = round(times, 6)
+    return f"{math.ceil(exact * 10) / 10:g}" if exact < 10 else str(math.ceil(exact))  # noqa: PLR2004
