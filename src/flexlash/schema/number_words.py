@@ -12,6 +12,7 @@ __all__ = [
     "ALL_UNITS",
     "INTERVAL",
     "angle_words",
+    "brief_share",
     "glance",
     "grouped",
     "places",
@@ -74,6 +75,19 @@ def share_words(row: Mapping[str, Any]) -> str:
     return _interval(value, low, high)
 
 
+def brief_share(row: Mapping[str, Any]) -> str:
+    """Return the probability over limit of a Results row in three digits at most, without its interval.
+
+    >>> brief_share({"probability_over_limit": 5.29654e-6, "probability_over_limit_low": 5.29651e-6,
+    ...              "probability_over_limit_high": 5.29657e-6})
+    '5.3 ppm'
+    """
+    value, low, high = (row[f"probability_over_limit{end}"] for end in ("", "_low", "_high"))
+    if not _BRIEF <= value <= 1 - _RARE or high - low > value * _ROUGH:
+        return share_words(row).split(" (")[0]
+    return _share(value, 3)
+
+
 def range_words(low: float, high: float) -> str:
     """Return the interval of a share that is not known well, in two digits; an end that cannot be told is left out.
 
@@ -112,6 +126,9 @@ _BRIEF = 1e-6
 
 _LEAST = 1e-9
 """Shares below it are told as none: tolerances do not bear more."""
+
+_ROUGH = 0.01
+"""Width of an interval over its share beyond which three digits are not known."""
 
 _FAR_APART = 0.01
 """An end of an interval that is less than so much of the other is told in a unit of its own."""

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 import polars as pl
 from scipy.special import ndtri
 
-from flexlash.analysis.run_summary import are, counted, dimension_words, grouped, listed
+from flexlash.analysis.run_summary import counted, dimension_words, grouped, listed
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows
 from flexlash.report.wording.verdict import BOUNDS, LIGHTS, firm, light
 from flexlash.schema.limit_verdict import limit_verdict
-from flexlash.schema.number_words import angle_words, range_words, share_words
+from flexlash.schema.number_words import angle_words, brief_share, range_words
 
 __all__ = ["PARTS", "left_open_by", "measured_parts"]
 
@@ -37,14 +37,19 @@ def measured_parts(facts: SummaryFacts) -> Iterator[str]:
     low, high = (pl.col(end) for end in _ENDS)
     may_change = pl.any_horizontal((low <= share) & (share < high) for share in BOUNDS.values()).fill_null(value=False)
     doubtful = rows.filter(may_change)
-    shown = [*first_rows(doubtful), *first_rows(rows.filter(~may_change))][: NAMED if len(doubtful) else 1]
-    for row in shown:
+    for row in first_rows(doubtful) or first_rows(rows, 1):
         yield f"{facts.named(row['variant'])}: {_interval(facts, row)}."
         yield from _verdict(row)
-    if more := doubtful.height - len(shown):
-        may = counted(doubtful.height, "verdict")
-        yield f"In all {may} of {grouped(rows.height)} may change, {grouped(more)} of which {are(more)} not told here."
+    yield from _others(rows.filter(low.is_not_null()).height, doubtful.height)
     yield "More lines or points do not narrow this, more measured parts do."
+
+
+def _others(judged: int, doubtful: int) -> Iterator[str]:
+    """Yield how many verdicts measured parts leave open, where not all of them were told."""
+    if doubtful > NAMED:
+        yield f"In all the verdicts of {grouped(doubtful)} of {counted(judged, 'variant')} are left open."
+    elif not doubtful and judged > 1:
+        yield f"The same holds for all {counted(judged, 'variant')}: no verdict is left open."
 
 
 def left_open_by(facts: SummaryFacts, row: Row) -> Iterator[str]:
@@ -62,7 +67,7 @@ def _interval(facts: SummaryFacts, row: Row) -> str:
         tail = angle_words(row["p99_865_arcmin"], row["p99_865_standard_error_arcmin"])
         low, high = (angle_words(row[f"p99_865_sample_{end}_arcmin"]) for end in ("low", "high"))
         return f"99.865 % of units stay below {tail} by calculation; {parts} leave open {low} to {high} (95 %)"
-    told, open_ = share_words(row).split(" (")[0], range_words(*(row[end] for end in _ENDS))
+    told, open_ = brief_share(row), range_words(*(row[end] for end in _ENDS))
     return f"units over the limit are {told} by calculation; {parts} leave open {open_} (95 %)"
 
 
