@@ -225,7 +225,7 @@ def _normal_scores(method: PointMethod, width: int, count: int, stream: tuple[in
     shape = width, REPLICATES, count
     points = scrambled_net(*shape, generator) if method == "sobol" else generator.random(shape)
     scores = np.asarray(ndtri(np.clip(points, 2.0**-53, 1 - 2.0**-53))).reshape(width, -1, 1)
-    scores.flags.writeable = False
+    scores.setflags(write=False)
     return scores
 
 
