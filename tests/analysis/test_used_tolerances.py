@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 
 import pytest
+from entry_books import CUP, UNIFORM_CUP, correlations, entry_book
 from filled import SOUND
 
 from flexlash.analysis.used_tolerances import used_tolerances
-from flexlash.pipeline import run
+from flexlash.pipeline import check, run
 from flexlash.schema.used_columns import TOLERANCES_USED
 
 HEADS = "tolerance_class,dimension,lower_deviation,upper_deviation,grade,distribution,limits_sigma\n"
@@ -78,3 +79,19 @@ def test_the_source_is_the_row(used_of):
     assert used["wall_thickness"]["source"] == "class shop, row 2"
     used, _ = used_of()
     assert {one["source"] for one in used.values()} == {"class standard, built in"}
+
+
+def test_what_scatters_together_is_told_of_both(tmp_path):
+    """Each dimension of a pair names the other with its correlation; a variant without the pair has a blank."""
+    rows = correlations(("disk_thickness", "wall_thickness", 0.5), ("mean_radius", "wall_thickness", -0.125))
+    variants = [CUP, {**CUP, "variant": "one thickness", "disk_thickness_mm": None}]
+    path = entry_book(tmp_path / "s.xlsx", variants=variants, tolerances=UNIFORM_CUP, correlations=rows)
+    frame = used_tolerances(check(path).computed.values())
+    told = {row["variant"] + " " + row["dimension"]: row["scatters_with"] for row in frame.to_dicts()}
+    assert {name: text for name, text in told.items() if text} == {
+        "B3-160 wall_thickness": "Mean radius -0.125; Disk thickness 0.5",
+        "B3-160 disk_thickness": "Wall thickness 0.5",
+        "B3-160 mean_radius": "Wall thickness -0.125",
+        "one thickness wall_thickness": "Mean radius -0.125",
+        "one thickness mean_radius": "Wall thickness -0.125",
+    }

@@ -13,6 +13,7 @@ from flexlash.schema.spellings import plain
 from flexlash.schema.units import as_entered
 from flexlash.schema.used_columns import TOLERANCES_USED
 from flexlash.schema.variant import Limits, ToleranceRow
+from flexlash.tolerance.correlation import Entry
 from flexlash.tolerance.dimension_limits import distribution_of
 
 __all__ = ["source_words", "used_tolerances"]
@@ -42,9 +43,23 @@ def _rows_of(one: Computed) -> Iterator[dict[str, Any]]:
             **{key: as_entered(number, column.si_unit.si) for key, number in numbers.items()},
             "distribution": limits.distribution if limits.low < limits.high else None,
             "scatters_between": limits.scatters_between if limits.low < limits.high else None,
+            "scatters_with": _partners(one.correlation, name) or None,
             "share": shares.get(name),
             "source": source_words(rows[name], variant.tolerance_class),
         }
+
+
+def _partners(correlation: Iterable[Entry], name: str) -> str:
+    """Return what a dimension scatters together with.
+
+    >>> ties = ("mean_radius", "wall_thickness", -0.25), ("wall_thickness", "disk_thickness", 0.5)
+    >>> _partners(ties, "wall_thickness")
+    'Mean radius -0.25; Disk thickness 0.5'
+    """
+    partners = [
+        (second if name == first else first, value) for first, second, value in correlation if name in (first, second)
+    ]
+    return "; ".join(f"{DIMENSIONS[other].plain_name} {value:.4g}" for other, value in partners)
 
 
 def _numbers(limits: Limits) -> dict[str, float]:

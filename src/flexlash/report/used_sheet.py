@@ -28,9 +28,9 @@ _NOTES = (
     "the same with every digit, under tolerances.",
 )
 _HEADER = len(_NOTES) + 2
-_WIDTHS = {"variant": 26.0, "dimension": 24.0, "unit": 7.0, "distribution": 17.0, "source": 52.0}
+_WIDTHS = {"variant": 26.0, "dimension": 24.0, "unit": 7.0, "distribution": 17.0, "scatters_with": 30.0, "source": 52.0}
 _WIDTH = 12.0
-_INDENTED = frozenset({"distribution", "scatters_between", "source"})
+_INDENTED = frozenset({"distribution", "scatters_between", "scatters_with", "source"})
 _MORE_DIGITS = {"mean": 10, "standard_deviation": 100}
 """A mean is shown with one digit more than the first of the standard deviation, this with two."""
 

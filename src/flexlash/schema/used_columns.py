@@ -44,6 +44,12 @@ TOLERANCES_USED = (
         choices=("parts", "lots"),
     ),
     _used(
+        "scatters_with",
+        "Scatters with",
+        "Dimensions that it scatters together with, and the correlations of their normal scores. Blank: independent.",
+        type="text",
+    ),
+    _used(
         "share", "Share of variance", "Its own share of the variance of the backlash, a fraction.", minimum=0, maximum=1
     ),
     _used(
