@@ -15,12 +15,12 @@ from flexlash.analysis.spread_rows import SpreadRows
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.variant import Limits, Settings
 from flexlash.tolerance.distribution_curves import Curve, curves_of
-from flexlash.tolerance.row_batches import TolerancedRow, batch_statistics, batches_alike
+from flexlash.tolerance.row_batches import FirstOrder, RowBatch, TolerancedRow, batch_statistics, batches_alike
 from flexlash.tolerance.sampling import SamplingPlan
 from flexlash.tolerance.spread_statistics import SpreadStatistics
 from flexlash.workers import mapped
 
-__all__ = ["drawn_curves", "row_curves", "row_statistics", "spread_again", "spread_of"]
+__all__ = ["drawn_curves", "first_orders", "row_curves", "row_statistics", "spread_again", "spread_of"]
 
 Found: TypeAlias = tuple[int, SpreadStatistics]
 """A row's index, or its number, with its statistics."""
@@ -95,6 +95,15 @@ def spread_again(
     plan = _plan(replace(settings, method="line", samples=None), Options())
     row = replace(_toleranced(variant), between=None)
     return [batch_statistics([replace(row, limits=other)], plan)[0] for other in limits]
+
+
+def first_orders(variants: Sequence[Computed]) -> list[FirstOrder]:
+    """Return what the first-order standard deviation of each variant is made of."""
+    rows = [_toleranced(variant) for variant in variants]
+    found: dict[int, FirstOrder] = {}
+    for batch in batches_alike(rows):
+        found |= zip(batch, RowBatch([rows[index] for index in batch]).first_order(), strict=True)
+    return [found[index] for index in range(len(rows))]
 
 
 def drawn_curves(drawn: Sequence[Computed], settings: Settings, options: Options) -> list[Curve]:

@@ -30,10 +30,10 @@ from flexlash.tolerance.propagate import NOT_LINES
 from flexlash.tolerance.row_lots import with_lots
 from flexlash.tolerance.sampled_spread import SampledSpread
 from flexlash.tolerance.sampling import SamplingPlan, UnitPoints
-from flexlash.tolerance.sensitivity import first_order_sd, first_order_valid, worst_case
+from flexlash.tolerance.sensitivity import first_order_sd, first_order_slopes, first_order_valid, worst_case
 from flexlash.tolerance.spread_statistics import SpreadStatistics, exact_statistics, statistics_of
 
-__all__ = ["RowBatch", "TolerancedRow", "batch_statistics", "batches_alike"]
+__all__ = ["FirstOrder", "RowBatch", "TolerancedRow", "batch_statistics", "batches_alike"]
 
 _ROWS_PER_BATCH = 200
 """Rows that a worker process takes at a time."""
@@ -120,6 +120,14 @@ def batch_statistics(rows: Sequence[TolerancedRow], plan: SamplingPlan) -> list[
     return batch.with_first_order(told, plan.coverage)
 
 
+@dataclass(frozen=True, kw_only=True)
+class FirstOrder:
+    """What the first-order sd of a row is made of [SI]: slopes at mid-limits, correlations of the values of pairs."""
+
+    slopes: Mapping[str, float]
+    ties: tuple[Entry, ...] = ()
+
+
 class RowBatch:
     """Rows alike as arrays by dimension: `centre` (rows,) at mid-limits, `limits` of the dimensions that scatter.
 
@@ -179,19 +187,34 @@ class RowBatch:
         }
         return self.centre | means
 
+    def _about_middle(self, **varied: Array) -> Array:
+        """Return the output at mid-limits with these dimensions varied."""
+        return self.output({**self.centre, **varied})
+
+    @property
+    def _middle(self) -> dict[str, Array]:
+        return {name: self.centre[name] for name in self.limits}
+
+    @property
+    def _sds(self) -> dict[str, Array]:
+        return {name: np.array([inputs[name].standard_deviation for inputs in self.inputs]) for name in self.limits}
+
+    def first_order(self) -> list[FirstOrder]:
+        """Return what the first-order sd of each row is made of."""
+        slopes = first_order_slopes(self._about_middle, self._middle, self._sds) if self.limits else {}
+        return [
+            FirstOrder(slopes={name: float(values[index]) for name, values in slopes.items()}, ties=self._ties)
+            for index in range(len(self.inputs))
+        ]
+
     def with_first_order(self, statistics: Sequence[SpreadStatistics], coverage: float) -> list[SpreadStatistics]:
         """Return the rows' statistics with what limits and first derivatives say beside them."""
-
-        def model(**varied: Array) -> Array:
-            return self.output({**self.centre, **varied})
-
         ends = {
             name: (np.array([limit.low for limit in column]), np.array([limit.high for limit in column]))
             for name, column in self.limits.items()
         }
-        worst = worst_case(model, ends)
-        sds = {name: np.array([inputs[name].standard_deviation for inputs in self.inputs]) for name in self.limits}
-        first_order = first_order_sd(model, {name: self.centre[name] for name in self.limits}, sds, self._ties)
+        worst = worst_case(self._about_middle, ends)
+        first_order = first_order_sd(self._about_middle, self._middle, self._sds, self._ties)
         low, high = (
             np.array([row.numbers[f"coverage_{end}"] for row in statistics], dtype=float) for end in ("low", "high")
         )
