@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 from report_entries import opened
 
+from flexlash.analysis.run_summary import dimension_title
 from flexlash.analysis.used_tolerances import used_tolerances
 from flexlash.report import extent, report_data
 from flexlash.report.used_sheet import USED
 from flexlash.report.workbook import report_bytes
-from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.used_columns import TOLERANCES_USED
 
 _HEADER = 5
@@ -32,7 +32,7 @@ def test_the_sheet_has_every_number(study):
     for row, expected in zip(rows, frame.to_dicts(), strict=True):
         assert set(row) == set(expected) - empty
         for key in row:
-            value = DIMENSIONS[expected[key]].plain_name if key == "dimension" else expected[key]
+            value = dimension_title(expected[key]) if key == "dimension" else expected[key]
             assert row[key] == (pytest.approx(value, rel=1e-15) if isinstance(value, float) else value), (key, row)
 
 

@@ -32,6 +32,7 @@ __all__ = [
     "closing_lines",
     "counted",
     "detail_lines",
+    "dimension_title",
     "dimension_words",
     "finding_lines",
     "group_lines",
@@ -96,6 +97,16 @@ class FindingGroup:
         """The cells, with runs in a column drawn together, as many as a line may hold."""
         ranges = cell_ranges(self.addresses)
         return f"{ranges.partition(' and ')[0]} and more" if len(self.addresses) < self.cells else ranges
+
+
+def dimension_title(name: str) -> str:
+    """Return a dimension's name as it begins a line of a table.
+
+    >>> dimension_title("wall_thickness"), dimension_title("disk_calibration")
+    ('Wall thickness', 'Disk calibration')
+    """
+    words = dimension_words(name)
+    return words[0].upper() + words[1:]
 
 
 def by_rule(findings: Iterable[Finding]) -> list[FindingGroup]:

@@ -33,6 +33,7 @@ SHEETS = {
     "Ranking": "Variants worst first, each beside a base variant that you pick.",
     "Contributions": "Which dimension causes how much of whose spread, and how much of the backlash the disk adds.",
     "Trace": "One variant worked through in formulas, from its inputs to backlash and stress; inputs can be changed.",
+    "Trace spread": "The tolerances of that variant added up to the first-order standard deviation, in formulas.",
     "Trace steps": "The sums over points and the search behind single lines of Trace.",
     "Sensitivity": "Which dimension causes the spread: tornado of the worst variant, shares of all.",
     "Tolerances used": "Limits, mean and scatter of every dimension of every variant, and where these are from.",
@@ -50,6 +51,9 @@ SHEETS = {
     "Curves": "Stored percentiles behind Summary and Explorer.",
     "Compared": "Stored figures behind Compare, Ranking and Contributions.",
     "Inputs": "What was entered and what the program found, behind Trace.",
+    "Scatter": "How each dimension scatters, behind Trace spread.",
+    "Tied": "Which dimensions scatter together, behind Trace spread.",
+    "Trace slope": "The formulas of Trace in the middle of the tolerances, with one dimension moved.",
 }
 """What each sheet is for, in one line."""
 

@@ -8,6 +8,7 @@ from typing import Any
 import polars as pl
 
 from flexlash.analysis.outcome import Outcome
+from flexlash.analysis.run_summary import dimension_title
 from flexlash.analysis.used_tolerances import used_tolerances
 from flexlash.report.extent import extent_of
 from flexlash.report.layout.paper import SMALL, print_readably
@@ -15,7 +16,6 @@ from flexlash.report.layout.result_formats import SHARE_OF_VARIANCE_ERROR
 from flexlash.report.layout.styles import Book, decimals_of, percent_of
 from flexlash.report.report_data import Drawn
 from flexlash.schema.column import Column
-from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.used_columns import TOLERANCES_USED
 
 __all__ = ["USED", "write_used"]
@@ -67,7 +67,7 @@ def _write_column(book: Book, sheet: Any, place: int, column: Column, frame: pl.
     style = book.format("indented" if column.key in _INDENTED else "text")
     for row, (value, sd) in enumerate(zip(values, sds, strict=True), start=_HEADER + 1):
         if isinstance(value, str):
-            shown = DIMENSIONS[value].plain_name if column.key == "dimension" else value
+            shown = dimension_title(value) if column.key == "dimension" else value
             sheet.write_string(row, place, shown, style)
         elif value is not None:
             sheet.write_number(row, place, value, book.format("text", _code(column.key, sd)))

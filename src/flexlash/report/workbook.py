@@ -29,7 +29,10 @@ from flexlash.report.strength_sheet import write_strength
 from flexlash.report.submission_sheets import write_submission
 from flexlash.report.summary.summary_sheet import write_summary
 from flexlash.report.trace.inputs import INPUTS_NOTE, stored_inputs
+from flexlash.report.trace.scatter import SCATTER_NOTE, TIED_NOTE, stored_scatter
 from flexlash.report.trace.trace_sheet import trace_sheet, write_trace
+from flexlash.report.trace.trace_slope import SLOPE
+from flexlash.report.trace.trace_spread import trace_spread_sheet, write_trace_spread
 from flexlash.report.trace.trace_steps import STEPS
 from flexlash.report.used_sheet import write_used
 
@@ -57,7 +60,7 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     write_compare(book, outcome, drawn, compared)
     write_ranking(book, outcome, drawn, compared)
     write_contributions(book, outcome, drawn, compared)
-    trace = trace_sheet(book)
+    trace, trace_spread = trace_sheet(book), trace_spread_sheet(book)
     write_sensitivity(book, outcome, drawn)
     write_used(book, outcome, drawn)
     write_samples(book, outcome, drawn)
@@ -68,13 +71,18 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
         write_stress(book, data)
     write_findings(book, outcome, drawn)
     write_submission(book, outcome, drawn)
-    inputs = stored_inputs([variant.computed for variant in drawn], outcome.settings.lost_motion_percent)
-    steps = (STEPS,) if inputs.rows else ()
-    write_about(book, outcome, later=(curves.name, compared.name, inputs.name, *steps))
+    computed = [variant.computed for variant in drawn]
+    inputs = stored_inputs(computed, outcome.settings.lost_motion_percent)
+    scatter, tied = stored_scatter(computed)
+    behind = [(scatter, SCATTER_NOTE), *([(tied, TIED_NOTE)] if tied.rows else [])]
+    noted = [(curves, CURVES_NOTE), (compared, COMPARED_NOTE), (inputs, INPUTS_NOTE), *behind]
+    steps = [STEPS] * bool(inputs.rows) + [SLOPE] * bool(scatter.rows)
+    write_about(book, outcome, later=(*(stored.name for stored, _ in noted), *steps))
     part = f"{extent.note} " if extent.large and extent.note else ""
-    for stored, note in ((curves, CURVES_NOTE), (compared, COMPARED_NOTE), (inputs, INPUTS_NOTE)):
+    for stored, note in noted:
         stored.write(book, f"{part}{note}")
-    write_trace(book, trace, inputs, extent.total)
+    lines = write_trace(book, trace, inputs, extent.total)
+    write_trace_spread(book, trace_spread, inputs, (scatter, tied), lines.get("number"))
     write_carried(book, outcome)
     workbook.close()
     return buffer.getvalue()

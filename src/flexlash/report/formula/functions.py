@@ -16,7 +16,7 @@ from typing import Any
 from scipy.special import ndtr, ndtri
 from xlsxwriter.utility import quote_sheetname
 
-from flexlash.report.formula.live import PI, Live, Operand, Range, call, is_error, live
+from flexlash.report.formula.live import PI, Live, Operand, Range, Value, call, is_error, live
 
 __all__ = [
     "ABS",
@@ -128,16 +128,19 @@ def _of_number(name: str, argument: Operand, work: Callable[[float], float]) -> 
 
 
 def _of_numbers(name: str, operands: Any, work: Callable[[list[float]], float]) -> Live:
-    """Return a function of numbers, each given by itself or within a range."""
+    """Return a function of numbers, each given by itself or within a range, where texts do not count."""
     arguments = [operand if isinstance(operand, Range) else live(operand) for operand in operands]
-    values = [
-        value
-        for argument in arguments
-        for value in (argument.values if isinstance(argument, Range) else [argument.value])
-    ]
+    values: list[Value] = []
+    for argument in arguments:
+        if isinstance(argument, Range):
+            values += (value for value in argument.values if not isinstance(value, str) or is_error(value))
+        else:
+            values.append(argument.value)
     texts = [value for value in values if isinstance(value, str)]
     text = f"{name}({','.join(argument.text for argument in arguments)})"
-    return Live(text, next(filter(is_error, texts), "#VALUE!") if texts else float(work(list(map(float, values)))))
+    if texts:
+        return Live(text, next(filter(is_error, texts), "#VALUE!"))
+    return Live(text, float(work(list(map(float, values or [0.0])))))
 
 
 def IF(condition: Live, then: Operand, otherwise: Operand) -> Live:

@@ -9,7 +9,7 @@ from xlsxwriter.utility import xl_range_abs
 from flexlash.report.formula.functions import on_sheet
 from flexlash.report.formula.live import Live, Range, Value, fill, put
 from flexlash.report.layout.styles import Book
-from flexlash.report.trace.trace_page import SHEET, Page
+from flexlash.report.trace.trace_page import Lines
 
 __all__ = ["Block"]
 
@@ -20,7 +20,7 @@ _ENTRY = 2
 class Block:
     """A piece of the sheet: named cells and tables one below the other."""
 
-    def __init__(self, page: Page, sheet: Any, *, left: int, row: int, heads: tuple[str, str]) -> None:
+    def __init__(self, page: Lines, sheet: Any, *, left: int, row: int, heads: tuple[str, str]) -> None:
         self.page, self.sheet, self.left, self.row = page, sheet, left, row + 1
         self._table: dict[int, list[Value]] = {}
         self.book: Book = page.book
@@ -28,8 +28,8 @@ class Block:
         sheet.write_string(row + 1, left, heads[1], self.book.format("quiet"))
 
     def links(self, **keys: str) -> list[Live]:
-        """Write inputs, each linked to its line of Trace."""
-        return [self.entry(name, on_sheet(SHEET, self.page[key])) for name, key in keys.items()]
+        """Write inputs, each linked to its line."""
+        return [self.entry(name, on_sheet(self.page.title, self.page[key])) for name, key in keys.items()]
 
     def entry(self, name: str, value: Live) -> Live:
         """Write a named number and return the reference to it."""
@@ -60,4 +60,4 @@ class Block:
 
     def _put(self, column: int, value: Live) -> Live:
         style = self.book.format("text", "general")
-        return put(self.sheet, self.row, self.left + column, self.page.of_part(value, sheet=SHEET), style)
+        return put(self.sheet, self.row, self.left + column, self.page.of_part(value, sheet=self.page.title), style)

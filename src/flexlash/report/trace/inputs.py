@@ -10,7 +10,7 @@ from flexlash.schema.columns import DIMENSIONS, MATERIALS, SETTINGS, VARIANTS, C
 from flexlash.schema.units import ARCMIN, as_entered
 from flexlash.schema.variant import Variant
 
-__all__ = ["ENTERED", "INPUTS_NOTE", "PROGRAM", "stored_inputs"]
+__all__ = ["ENTERED", "INPUTS_NOTE", "PROGRAM", "SPREAD", "stored_inputs"]
 
 INPUTS_NOTE = "What was entered, and the program's numbers for it; the sheet Trace looks both up."
 
@@ -65,6 +65,14 @@ PROGRAM: dict[str, tuple[str, float]] = {
 }
 """Nominal number → its heading on Inputs and the size of its printed unit."""
 
+SPREAD = {
+    "first_order_sd": "First-order sd, program [arcmin]",
+    "sd": "Standard deviation, program [arcmin]",
+    "within_lot_sd": "Within-lot sd, program [arcmin]",
+    "between_lots_sd": "Between-lots sd, program [arcmin]",
+}
+"""Number of the spread → its heading on Inputs."""
+
 
 def stored_inputs(computed: Sequence[Computed], lost_motion_percent: float) -> Stored:
     """Return the Inputs of variants in their order."""
@@ -83,6 +91,9 @@ def _row(computed: Computed, lost_motion_percent: float) -> dict[str, str | floa
     for key, (heading, size) in PROGRAM.items():
         number = getattr(computed.nominal, key) or None
         row[heading] = number / size if isinstance(number, float) else number
+    for key, heading in SPREAD.items():
+        angle = computed.spread.numbers.get(key) if computed.spread else None
+        row[heading] = None if angle is None else angle / ARCMIN
     return row
 
 

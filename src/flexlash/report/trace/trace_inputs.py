@@ -9,13 +9,13 @@ from flexlash.report.formula.closed_forms import worked
 from flexlash.report.formula.functions import AND, IF, ISNUMBER, OR
 from flexlash.report.formula.live import Live, Operand, Range, fill, put
 from flexlash.report.trace.inputs import ENTERED
-from flexlash.report.trace.trace_page import CHANGE, LEFT_OUT, SUBMITTED, Page
+from flexlash.report.trace.trace_page import CHANGE, LEFT_OUT, SUBMITTED, Lines, Page
 from flexlash.report.trace.trace_rules import ALWAYS, TYPES
 from flexlash.schema.columns import Column
 
-__all__ = ["write_inputs"]
+__all__ = ["INPUT_LINES", "what_blank_is", "write_inputs"]
 
-_LINES = (
+INPUT_LINES = (
     ("torque", "T", ""),
     ("cylinder_length", "l", "inside depth, tooth rim included"),
     ("wall_thickness", "Δ", ""),
@@ -56,7 +56,7 @@ def write_inputs(page: Page) -> Range:
     first = page.row + 1
     _write_words(page)
     bore: Live | None = None
-    for name, symbol, equation in _LINES:
+    for name, symbol, equation in INPUT_LINES:
         column = ENTERED[name]
         submitted, change = _cells(page, name, column.label, "general")
         _restrict(page, column, name)
@@ -65,7 +65,7 @@ def write_inputs(page: Page) -> Range:
             bore = change
         elif name == "mean_radius" and bore is not None:
             # A bore that the reader types takes the place of a submitted mean radius.
-            from_bore = _otherwise(page, name)
+            from_bore = what_blank_is(page, name)
             given = IF(OR(submitted.equals(""), ISNUMBER(bore)), from_bore, submitted)
             value = IF(change.equals(""), given, IF(change.equals(LEFT_OUT), from_bore, change))
         unit = column.unit if column.unit != "-" else ""
@@ -123,7 +123,7 @@ def _used(page: Page, name: str, submitted: Live, change: Live) -> Live:
     """Return the input that counts: the change, else what was submitted, else what a blank stands for."""
     if name in ALWAYS:
         return _counting(submitted, change)
-    other = _otherwise(page, name)
+    other = what_blank_is(page, name)
     entered = IF(submitted.equals(""), other, submitted)
     return IF(change.equals(""), entered, IF(change.equals(LEFT_OUT), other, change))
 
@@ -133,7 +133,7 @@ def _counting(submitted: Live, change: Live) -> Live:
     return IF(change.equals(""), IF(submitted.equals(""), LEFT_OUT, submitted), change)
 
 
-def _otherwise(page: Page, name: str) -> Operand:
+def what_blank_is(page: Lines, name: str) -> Operand:
     """Return what a blank input stands for."""
     if name == "mean_radius":
         bore, wall = page["bore_diameter"], page["wall_thickness"]

@@ -7,8 +7,8 @@ from flexlash.mechanics.stiffness import lost_motion, torsional_stiffness
 from flexlash.report.formula.closed_forms import worked
 from flexlash.report.formula.functions import AND, IF, ISNUMBER, PI
 from flexlash.report.formula.live import Live
-from flexlash.report.trace.trace_page import Page
-from flexlash.report.trace.trace_steps import Steps, thickness_at
+from flexlash.report.trace.trace_page import Lines
+from flexlash.report.trace.trace_steps import Sums, thickness_at
 
 __all__ = ["in_disk", "only", "write_integrals", "write_shape", "write_sums", "write_windups"]
 
@@ -20,12 +20,12 @@ def only(condition: Live, value: Live) -> Live:
     return IF(condition, value, 0.0)
 
 
-def in_disk(page: Page, value: Live) -> Live:
+def in_disk(page: Lines, value: Live) -> Live:
     """Return a number of the disk, else 0 where there is none."""
     return IF(page["profile"].equals("none"), 0.0, value)
 
 
-def write_shape(page: Page) -> None:
+def write_shape(page: Lines) -> None:
     """Write what follows from the inputs alone."""
     page.section("2  Material and shape")
     inner, outer, hub = page["disk_inner_radius"], page["disk_outer_radius"], page["disk_hub_thickness"]
@@ -61,7 +61,7 @@ def write_shape(page: Page) -> None:
     page.line("rim_radius", only(page["rim_length"] > 0, rim), words)
 
 
-def write_integrals(page: Page, steps: Steps) -> None:
+def write_integrals(page: Lines, steps: Sums) -> None:
     """Write the integral of each segment."""
     page.section("3  Wind-up of each segment: U = c T/(2πG) · I,  I = ∫ ds/(r³ t) along the meridian")
     rim = worked(windup.wall_integral, page["rim_length"], page["rim_radius"], page["rim_thickness"])
@@ -90,7 +90,7 @@ def write_integrals(page: Page, steps: Steps) -> None:
     _integral(page, "hub_fillet", hub, ("Hub fillet: integral", "I_h", points))
 
 
-def _integral(page: Page, segment: str, value: Live, words: tuple[str, str, str]) -> None:
+def _integral(page: Lines, segment: str, value: Live, words: tuple[str, str, str]) -> None:
     name, symbol, equation = words
     page.line(f"{segment}_integral", value, (name, symbol, "1/mm³", equation), "integral")
 
@@ -104,7 +104,7 @@ _SEGMENTS = (
 )
 
 
-def write_windups(page: Page) -> None:
+def write_windups(page: Lines) -> None:
     """Write the wind-up of each segment, in rad and arcmin."""
     for segment, name, index, calibration, factor in _SEGMENTS:
         angle = page[calibration] * page["torque_over_modulus"] * page[f"{segment}_integral"]
@@ -112,7 +112,7 @@ def write_windups(page: Page) -> None:
         page.line(f"{segment}_windup", angle, words, "angle")
 
 
-def write_sums(page: Page) -> None:
+def write_sums(page: Lines) -> None:
     """Write wind-up, backlash, stiffness and the formulas that leave something out."""
     page.section("4  Sum")
     cylinder = page["rim_windup"] + page["wall_windup"] + page["junction_fillet_windup"]

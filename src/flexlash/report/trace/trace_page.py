@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Any
 
 from xlsxwriter.utility import xl_rowcol_to_cell
@@ -12,7 +13,7 @@ from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
 from flexlash.report.trace.inputs import PROGRAM
 
-__all__ = ["CHANGE", "HEADER", "LEFT_OUT", "SHEET", "SUBMITTED", "VALUE", "Page", "Words"]
+__all__ = ["CHANGE", "HEADER", "LEFT_OUT", "SHEET", "SUBMITTED", "VALUE", "Lines", "Page", "Words"]
 
 SHEET = "Trace"
 LEFT_OUT = "none"
@@ -50,16 +51,41 @@ Words = tuple[str, str, str, str]
 """Quantity, symbol, unit and equation of a line."""
 
 
-class Page:
-    """The lines of Trace; the value of a line is found by its key."""
+class Lines(ABC):
+    """Lines of one quantity each on a sheet of this title, for the variant of a number; each is found by its key."""
 
-    def __init__(self, book: Book, sheet: Any, number: Live, stored: Stored) -> None:
+    def __init__(self, book: Book, sheet: Any, title: str, number: Live) -> None:
         self.book = book
         self.sheet = sheet
+        self.title = title
         self.number = number
+        self.row = 0
+        self.lines: dict[str, Live] = {}
+
+    def __getitem__(self, key: str) -> Live:
+        """Return the reference to a line's value."""
+        return self.lines[key]
+
+    @abstractmethod
+    def of_part(self, value: Live, instead: str = LEFT_OUT, sheet: str = "") -> Live:
+        """Return a number, or another text where the inputs make no part; as this or another sheet writes it."""
+
+    @abstractmethod
+    def section(self, title: str) -> None:
+        """Begin a section."""
+
+    @abstractmethod
+    def line(self, key: str, value: Live, words: Words, look: str = "figure") -> Live:
+        """Write the next line and return the reference to its value."""
+
+
+class Page(Lines):
+    """The lines of Trace."""
+
+    def __init__(self, book: Book, sheet: Any, number: Live, stored: Stored) -> None:
+        super().__init__(book, sheet, SHEET, number)
         self.stored = stored
         self.row = HEADER
-        self.lines: dict[str, Live] = {}
         self.rows: dict[str, int] = {}
         self.entries: dict[str, tuple[Live, Live]] = {}
         self._is_part: Live | None = None
@@ -69,10 +95,6 @@ class Page:
             sheet.set_column(column, column, width)
             sheet.write_string(HEADER, column, heading, book.format("header"))
         sheet.set_row(HEADER, 48)
-
-    def __getitem__(self, key: str) -> Live:
-        """Return the reference to a line's value."""
-        return self.lines[key]
 
     def judge(self, fault: Live) -> None:
         """Let all that follows say none where a variant is missing or the inputs have this fault; "" is none."""

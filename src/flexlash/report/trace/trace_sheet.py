@@ -59,6 +59,7 @@ def write_trace(book: Book, sheet: Any, inputs: Stored, total: int, picked: int 
         return {}
     sheet.write_string(1, 0, note, book.format("quiet"))
     page = Page(book, sheet, _pick(book, sheet, inputs, picked), inputs)
+    page.lines["number"] = page.number
     changes = write_inputs(page)
     steps = Steps(page)
     fault = steps.fault()

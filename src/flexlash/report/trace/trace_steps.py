@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from flexlash.mechanics import tapered_disk
 from flexlash.mechanics.fillets import ARC_RULE, GRADED_RULE, JUNCTION_RULE, UNLIKE, WIDE, added_thickness, arc_radius
@@ -30,10 +31,10 @@ from flexlash.report.formula.functions import (
 )
 from flexlash.report.formula.live import Live, Operand, live
 from flexlash.report.trace.blocks import Block
-from flexlash.report.trace.trace_page import Page
+from flexlash.report.trace.trace_page import Lines, Page
 from flexlash.report.trace.trace_rules import RULES_WIDTH, write_rules
 
-__all__ = ["STEPS", "Steps", "shear", "thickness_at"]
+__all__ = ["STEPS", "Steps", "Sums", "set_widths", "shear", "thickness_at"]
 
 STEPS = "Trace steps"
 _TITLE_ROW = 3
@@ -42,33 +43,24 @@ _JUNCTION, _HUB, _DISK, _SEARCH, _END = RULES_WIDTH + 1, RULES_WIDTH + 7, RULES_
 _PROFILE_WORDS = "(t_1 + k (r − r_ci)) (r_ci/r)^n"
 
 
-class Steps:
-    """The sheet Trace steps, written as Trace asks for its results."""
+def set_widths(sheet: Any) -> None:
+    """Set the widths of the columns of sums and search."""
+    sheet.set_column(_JUNCTION, _END - 1, _WIDTH)
+    for gap in (_JUNCTION, _HUB, _DISK, _SEARCH):
+        sheet.set_column(gap - 1, gap - 1, 3)
 
-    def __init__(self, page: Page) -> None:
+
+class Sums:
+    """The sums over points behind some lines, on a sheet of this title, side by side below a row."""
+
+    def __init__(self, page: Lines, sheet: Any, title: str, top: int) -> None:
         self.page = page
-        self.sheet = page.book.sheet(STEPS, landscape=False, tab="stored")
-        self.sheet.write_string(0, 0, "Steps behind Trace", page.book.format("title"))
-        self.sheet.set_row(0, 28)
-        note = (
-            "Nothing to enter here: the inputs come from Trace, the results go back there. Lengths in mm, stresses in "
-            "MPa. Points and weights are those of the program. Sums and search stand to the right; they do not print."
-        )
-        self.sheet.merge_range(1, 0, 1, RULES_WIDTH - 1, note, page.book.format("wrap"))
-        self.sheet.set_row(1, 47)
-        self.sheet.set_column(_JUNCTION, _END - 1, _WIDTH)
-        for gap in (_JUNCTION, _HUB, _DISK, _SEARCH):
-            self.sheet.set_column(gap - 1, gap - 1, 3)
-        self.sheet.freeze_panes(_TITLE_ROW, 0)
-
-    def fault(self) -> Live:
-        """Write what the inputs must be to make a part; return the first that they are not, else an empty text."""
-        said, last = write_rules(self.page, self.sheet, _TITLE_ROW)
-        self.sheet.print_area(0, 0, last, RULES_WIDTH - 1)
-        return on_sheet(STEPS, said)
+        self.sheet = sheet
+        self.title = title
+        self.top = top
 
     def _block(self, left: int, title: str, formula: str) -> Block:
-        return Block(self.page, self.sheet, left=left, row=_TITLE_ROW, heads=(title, formula))
+        return Block(self.page, self.sheet, left=left, row=self.top, heads=(title, formula))
 
     def junction_fillet(self) -> Live:
         """Return the integral of the junction fillet [1/mm³]."""
@@ -94,7 +86,7 @@ class Steps:
         thin = block.entry("Thin end: width of m", SQRT(wall / (wall + 2 * fillet)))
         ends = graded(block, (thin, live(1.0)), ("a",), height_at)
         taken = IF(fillet > WIDE * wall, fillet * (ends[0] + ends[1]), usual)
-        return on_sheet(STEPS, block.entry(f"Taken (graded if R > {WIDE:g} Δ)", taken))
+        return on_sheet(self.title, block.entry(f"Taken (graded if R > {WIDE:g} Δ)", taken))
 
     def hub_fillet(self) -> Live:
         """Return the integral of the hub fillet [1/mm³]."""
@@ -125,7 +117,7 @@ class Steps:
         unlike = OR(fillet > UNLIKE * inner, MAX(first, last) > UNLIKE * MIN(first, last))
         steep = OR(fillet > WIDE * MIN(first, last), unlike)
         words = f"Taken (graded if R > {WIDE:g} t or {UNLIKE:g} r_ci, or t_1, t_e unlike)"
-        return on_sheet(STEPS, block.entry(words, IF(steep, fillet * (ends[0] + ends[1]), usual)))
+        return on_sheet(self.title, block.entry(words, IF(steep, fillet * (ends[0] + ends[1]), usual)))
 
     def taper(self) -> Live:
         """Return the integral of a disk that thins in a straight line [1/mm³]."""
@@ -150,7 +142,32 @@ class Steps:
             block.cell(3, worked(tapered_disk.summand, weight, curvature, first + growth * node))
         points = block.entry("By points", reach * SUM(block.column(3)))
         is_nearly = worked(tapered_disk.is_nearly_proportional, first, last)
-        return on_sheet(STEPS, block.entry("Taken (points: t ~ r)", IF(is_nearly, points, closed)))
+        return on_sheet(self.title, block.entry("Taken (points: t ~ r)", IF(is_nearly, points, closed)))
+
+
+class Steps(Sums):
+    """The sheet Trace steps, written as Trace asks for its results."""
+
+    page: Page
+
+    def __init__(self, page: Page) -> None:
+        super().__init__(page, page.book.sheet(STEPS, landscape=False, tab="stored"), STEPS, _TITLE_ROW)
+        self.sheet.write_string(0, 0, "Steps behind Trace", page.book.format("title"))
+        self.sheet.set_row(0, 28)
+        note = (
+            "Nothing to enter here: the inputs come from Trace, the results go back there. Lengths in mm, stresses in "
+            "MPa. Points and weights are those of the program. Sums and search stand to the right; they do not print."
+        )
+        self.sheet.merge_range(1, 0, 1, RULES_WIDTH - 1, note, page.book.format("wrap"))
+        self.sheet.set_row(1, 47)
+        set_widths(self.sheet)
+        self.sheet.freeze_panes(_TITLE_ROW, 0)
+
+    def fault(self) -> Live:
+        """Write what the inputs must be to make a part; return the first that they are not, else an empty text."""
+        said, last = write_rules(self.page, self.sheet, _TITLE_ROW)
+        self.sheet.print_area(0, 0, last, RULES_WIDTH - 1)
+        return on_sheet(STEPS, said)
 
     def hub_fillet_shear(self) -> tuple[Live, Live]:
         """Return the greatest shear stress in the hub fillet [MPa] and the radius where it acts [mm]."""
