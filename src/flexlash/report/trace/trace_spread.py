@@ -61,9 +61,12 @@ def trace_spread_sheet(book: Book) -> Any:
 
 
 def write_trace_spread(
-    book: Book, sheet: Any, inputs: Stored, scattering: tuple[Stored, Stored], picked: Live | None
+    book: Book, sheet: Any, inputs: Stored, scattering: tuple[Stored, Stored], picked: Live | None, audited: str = ""
 ) -> dict[str, Live]:
-    """Write Trace spread for the variant picked on Trace by its number, and a slope; return its results by key."""
+    """Write Trace spread for the variant picked on Trace by its number; return its results by key.
+
+    The slope that is `audited` at first is that of the dimension that adds most, unless it is named.
+    """
     scatter, tied = scattering
     title = "Trace spread: from tolerances to the standard deviation of the backlash"
     sheet.write_string(0, 0, title, book.format("title"))
@@ -81,7 +84,7 @@ def write_trace_spread(
     sums = _Sums(book, sheet, table)
     ties = sums.write_ties(tied, number) if tied.rows else (live(0.0), live(0.0))
     found = sums.write_sums(inputs, number, ties)
-    found |= sums.write_slope_check(inputs, number, found["first_order_sd"])
+    found |= sums.write_slope_check(inputs, number, found["first_order_sd"], audited)
     sheet.freeze_panes(HEADER + 1, 1)
     sheet.repeat_rows(HEADER)
     sheet.print_area(0, 0, sums.row, PRINTED)
@@ -176,7 +179,7 @@ class _Sums:
             engine = IF(number > 0, inputs.pick(MAX(number, 1.0), SPREAD[heading]), "")
             engine = self._put(3, engine, _FIGURE)
             ratio = IF(AND(ISNUMBER(engine), found[key] > 0), engine / found[key] - 1, "")
-            self._put(4, ratio, "+0.0%;-0.0%;0.0%")
+            self._put(4, ratio, "+0.00%;-0.00%;0.00%")
         offs = self.table.column("off")
         off = MAX(MAX(offs), 0.0 - MIN(offs), IF(ISNUMBER(found["difference"]), ABS(found["difference"]), 0.0))
         own = COUNTA(self.table.column("own"))
@@ -186,7 +189,7 @@ class _Sums:
         )
         return found
 
-    def write_slope_check(self, inputs: Stored, number: Live, first_order: Live) -> dict[str, Live]:
+    def write_slope_check(self, inputs: Stored, number: Live, first_order: Live, audited: str) -> dict[str, Live]:
         """Write one slope as the formulas of Trace give it; the dimension is the reader's choice."""
         self._begin("One slope from the formulas of Trace")
         names = self.table.column("dimension")
@@ -194,7 +197,7 @@ class _Sums:
         self.row += 1
         self.sheet.write_string(self.row, _LABEL, "Dimension", self.book.format("text"))
         greatest = names.values[squares.index(max(squares, key=float))]
-        picked = fill(self.sheet, self.row, _FIRST - 1, str(greatest), self.book.format("input"))
+        picked = fill(self.sheet, self.row, _FIRST - 1, audited or str(greatest), self.book.format("input"))
         self.sheet.data_validation(self.row, _FIRST - 1, self.row, _FIRST - 1, {
             "validate": "list", "source": f"={names.text}", "error_title": "Dimension",
             "error_message": "Pick a dimension of the variant.",
