@@ -54,7 +54,6 @@ def _rows_of(one: Computed, first_order: FirstOrder) -> Iterator[dict[str, str |
             "Distribution": used["distribution"],
             "Scatters between": used["scatters_between"],
             **_process(limits, used, column),
-            "Mean, program": used["mean"],
             "Standard deviation, program": used["standard_deviation"],
             "Slope, program [arcmin per unit]": None if slope is None else slope * unit / ARCMIN,
         }

@@ -34,9 +34,6 @@ HEADER = 5
 DIFFERENCE = "0.0E+00;-0.0E+00;0"
 BLANK_ZERO = '0.000000;-0.000000;""'
 SMALL_FIGURE = '0.000E+00;-0.000E+00;""'
-_NARROW = 0.5
-"""Widths of a cut normal, in standard deviations, below which its closed form loses digits: the program's is taken."""
-
 _FAR = 40.0
 """Where a normal that is not cut at a side is cut, in standard deviations."""
 
@@ -191,9 +188,7 @@ class SpreadTable:
         mass = self._put("mass", IF(a > 0, above, below))
         moved = self._put("moved", (first - last) / mass)
         variance = 1 + (a * first - b * last) / mass - moved * moved
-        wide = b - a > _NARROW
-        cut_mean = IF(wide, mean + sd * moved, self.scatter.pick(place, "Mean, program"))
-        cut_sd = IF(wide, sd * SQRT(MAX(variance, 0.0)), self.scatter.pick(place, "Standard deviation, program"))
+        cut_mean, cut_sd = mean + sd * moved, sd * SQRT(MAX(variance, 0.0))
         mean = self._put("mean", IF(here, IF(is_cut, cut_mean, mean), ""))
         return mean, self._put("sd", IF(here, IF(is_cut, cut_sd, sd), 0.0)), is_cut
 

@@ -69,7 +69,8 @@ class _Chain(Lines):
         """Write the next line and return the reference to its value."""
         self.row += 1
         self.sheet.write_string(self.row, _NAME, words[0], self.book.format("text"))
-        self.sheet.write_string(self.row, _SYMBOL, words[1], self.book.format("text"))
+        if words[1]:
+            self.sheet.write_string(self.row, _SYMBOL, words[1], self.book.format("text"))
         style = self.book.format("figure", "general")
         self.lines[key] = put(self.sheet, self.row, _VALUE, self.of_part(value), style)
         return self.lines[key]

@@ -60,7 +60,7 @@ def trace_spread_sheet(book: Book) -> Any:
     return book.sheet(TRACE_SPREAD, tab="entry")
 
 
-def write_trace_spread(
+def write_trace_spread(  # noqa: PLR0917
     book: Book, sheet: Any, inputs: Stored, scattering: tuple[Stored, Stored], picked: Live | None, audited: str = ""
 ) -> dict[str, Live]:
     """Write Trace spread for the variant picked on Trace by its number; return its results by key.
@@ -119,7 +119,8 @@ class _Sums:
     def _line(self, label: str, value: Operand, number: str = _FIGURE) -> Live:
         """Write a line with one figure."""
         self.row += 1
-        self.sheet.write_string(self.row, _LABEL, label, self.book.format("text"))
+        if label:
+            self.sheet.write_string(self.row, _LABEL, label, self.book.format("text"))
         return self._put(0, value, number)
 
     def _of(self, key: str, name: Operand, otherwise: Operand) -> Live:
