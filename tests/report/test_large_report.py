@@ -40,6 +40,7 @@ SAID = {
     "Curves": "A1",
     "Compared": "A1",
     "Inputs": "A1",
+    "Scatter": "A1",
 }
 """Where each sheet says which variants it shows."""
 
