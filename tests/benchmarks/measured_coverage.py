@@ -40,6 +40,7 @@ PROCESSES = {
 }
 """Processes with the mean 0 and the standard deviation 1; the third is taken the other way round."""
 PLAN = SamplingPlan(method="line", inputs=tuple(DIMENSIONS))
+SIDES = ("low", "high")
 NODES = 80
 
 
@@ -147,21 +148,17 @@ def told(case, limits, sd, repeats, jobs):
     row = MODELS[model](measured)
     generator = np.random.default_rng(parts)
     known = [sampled(row, case, generator) for _ in range(repeats)]
+    rows = [replace(one, upper_limit=limit) for one in known for limit in limits.values()]
+    found = dict(row_statistics(rows, PLAN, jobs))
     lines = []
-    for share, limit in limits.items():
-        rows = [replace(one, upper_limit=limit) for one in known]
-        found = dict(row_statistics(rows, PLAN, jobs))
-        ends = np.array(
-            [[one.numbers[f"probability_over_limit_sample_{end}"] for end in ("low", "high")] for one in found.values()]
-        )
-        scores = ndtri(np.clip(ends, 1e-14, 1 - 1e-14))
-        lines.append((f"P = {share:g}", ends[:, 1] < share, ends[:, 0] > share, np.median(scores[:, 1] - scores[:, 0])))
+    for place, (share, limit) in enumerate(limits.items()):
+        numbers = [found[index].numbers for index in range(place, len(rows), len(limits))]
+        low, high = (np.array([one[f"probability_over_limit_sample_{end}"] for one in numbers]) for end in SIDES)
+        width = np.median(np.diff(ndtri(np.clip([low, high], 1e-14, 1 - 1e-14)), axis=0))
+        lines.append((f"P = {share:g}", high < share, low > share, width))
         if share == SHARES[1]:
-            ends = np.array(
-                [[one.numbers[f"p99_865_sample_{end}"] for end in ("low", "high")] for one in found.values()]
-            )
-            width = np.median(ends[:, 1] - ends[:, 0]) / sd
-            lines.append(("P99.865", ends[:, 1] < limit, ends[:, 0] > limit, width))
+            low, high = (np.array([one[f"p99_865_sample_{end}"] for one in numbers]) for end in SIDES)
+            lines.append(("P99.865", high < limit, low > limit, np.median(high - low) / sd))
     for what, worse, better, width in lines:
         held = 100 * (1 - worse.mean() - better.mean())
         print(
@@ -178,18 +175,20 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes")
     parser.add_argument("--parts", type=int, nargs="+", default=PARTS, help="parts measured")
     parser.add_argument("--processes", nargs="+", default=list(PROCESSES), help="of these processes")
+    parser.add_argument("--taken", nargs="+", default=["normal", "measured"], help="samples taken as")
+    parser.add_argument("--dimensions", type=int, nargs="+", default=[1, 2], help="measured dimensions")
     parser.add_argument("--models", nargs="+", default=list(MODELS), help="of these models")
     options = parser.parse_args()
     print("model dims process   taken as  parts             held %  worse  better   width")
     for model in options.models:
-        for measured in MEASURED:
+        for measured in (MEASURED[number - 1] for number in options.dimensions):
             for process in options.processes:
                 row = MODELS[model](measured)
                 plain = batch_statistics([row], PLAN)[0].numbers
                 truth = Truth(row, measured, process)
                 mean, sd = plain["mean"], plain["sd"]
                 limits = {share: truth.limit(share, mean + sd / 2, mean + 7 * sd) for share in SHARES}
-                for taken in ("normal",) if process == "normal" else ("normal", "measured"):
+                for taken in options.taken:
                     for parts in options.parts:
                         told((model, measured, process, taken, parts), limits, sd, options.repeats, options.jobs)
 

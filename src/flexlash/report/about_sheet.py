@@ -13,6 +13,7 @@ from flexlash.report.layout.links import write_link
 from flexlash.report.layout.styles import Book
 from flexlash.report.results_sheet import AS_SUBMITTED, ERROR_DIGITS, SHARE_DECIMALS
 from flexlash.report.wording.correlation_words import correlation_sentences, first_order_sentence, share_sentence
+from flexlash.report.wording.measured_parts import how_left_open
 from flexlash.report.wording.verdict import NO_VERDICT, RULES
 from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, SETTINGS
@@ -145,6 +146,7 @@ def _statistics(outcome: Outcome) -> Iterator[str]:
     yield from _SAMPLING[outcome.settings.method]
     yield "P99.865 of a normal is mean + 3 sd. A number ± 1.96 of its standard errors is its 95 % interval."
     yield from _lots(outcome.settings.acceptable_ppm)
+    yield from how_left_open(outcome.results)
     if "cross_check" in outcome.results.columns:
         yield (
             "Cross-check: plain Monte Carlo beside the spread. They agree when mean, sd, all percentiles and the "

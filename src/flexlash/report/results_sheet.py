@@ -75,7 +75,11 @@ _NEW_PAGE = (
 """Columns with which a printed page begins: what belongs together is on one."""
 
 _KEY_HEIGHT = 36
-_REMARKS = {"main_contributor": "Named by its key in the template's sheet Tolerances; About lists the keys in words."}
+_REMARKS = {
+    "main_contributor": "Named by its key in the template's sheet Tolerances; About lists the keys in words.",
+    "probability_over_limit_sample_low": "Blank where nothing was measured; About says how it is found.",
+    "p99_865_sample_low_arcmin": "Blank where nothing was measured; About says how it is found.",
+}
 """What the comments of some columns say besides."""
 
 

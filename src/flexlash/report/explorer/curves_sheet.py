@@ -8,6 +8,7 @@ from flexlash.analysis.run_summary import dimension_words, share_words
 from flexlash.report.formula.stored import Stored
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
+from flexlash.report.wording.measured_parts import left_open_words
 from flexlash.schema.arrays import Array
 from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS
@@ -92,6 +93,7 @@ def _entries(variant: Drawn, label: str) -> Iterator[tuple[str, str | float | No
     yield from ((heading, row[key]) for heading, key in FIGURE_ERRORS.values())
     yield "Lots failing", row["lots_failing"]
     yield "error of Lots failing", row["lots_failing_standard_error"]
+    yield "Left open", left_open_words(row) or None
     yield "Rarest share", curve.rarest
     outputs = _rounded(curve.outputs / ARCMIN, _OUTPUT_DIGITS)
     yield from ((score_heading(score), value) for score, value in zip(CURVE_SCORES, outputs, strict=True))

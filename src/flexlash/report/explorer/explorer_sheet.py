@@ -66,6 +66,7 @@ _ANSWERS = (
     "Verdict",
     "Limit for the wanted share",
     "    ± (95 %)",
+    "Left open by measured parts",
 )
 _FIRST_ANSWER, _FIRST_FIGURE = 8, 3
 _FIGURES = {
@@ -131,6 +132,9 @@ def _write_answers(book: Book, sheet: Any, choice: Choice, working: Working) -> 
     put(sheet, 15, 1, IF(choice.wants, FIXED(error * INTERVAL, decimals), NONE), book.format("figure"))
     for row in (8, 14, 15):
         put(sheet, row, 2, choice.unit, book.format("quiet"))
+    left_open = choice.text("Left open")
+    put(sheet, 16, 1, choice.figure(IF(left_open.equals(""), "–", left_open)), book.format("figure"))
+    sheet.write_string(16, 2, "over its own limit (95 %)", book.format("quiet"))
     return limit
 
 

@@ -14,7 +14,7 @@ from flexlash.report.wording.verdict import BOUNDS, LIGHTS, firm, light
 from flexlash.schema.limit_verdict import limit_verdict
 from flexlash.schema.number_words import angle_words, brief_share, range_words
 
-__all__ = ["PARTS", "left_open_by", "measured_parts"]
+__all__ = ["PARTS", "how_left_open", "left_open_by", "left_open_words", "measured_parts"]
 
 PARTS = "Measured parts"
 """The topic of these sentences."""
@@ -60,6 +60,33 @@ def left_open_by(facts: SummaryFacts, row: Row) -> Iterator[str]:
         yield from _verdict(row)
 
 
+def left_open_words(row: Row) -> str:
+    """Return the share over the limit that measured parts leave open; an empty text where there is none."""
+    low, high = (row.get(end) for end in _ENDS)
+    return "" if low is None or high is None else range_words(low, high)
+
+
+def how_left_open(results: pl.DataFrame) -> Iterator[str]:
+    """Yield what the interval is that measured parts leave open, and how it is found; nothing where none is told."""
+    if "p99_865_sample_low_arcmin" not in results.columns or not results["p99_865_sample_low_arcmin"].count():
+        return
+    yield (
+        "By measured parts: where mean and standard deviation of a dimension come from measured parts, so few leave "
+        "both uncertain. The intervals of the probability over the limit and of P99.865 by measured parts hold the "
+        "true ones of the process in 95 of 100 samples; the interval beside the probability is the calculation's alone."
+    )
+    yield (
+        "Mean by Student's t, standard deviation by chi-square; of a distribution taken as measured by Bonett's "
+        "interval, its skewness and tails by 1.5 of their standard errors; a measured correlation by Fisher's z. The "
+        "backlash is spread anew with each of them at either end; together they act as the fiducial distribution says, "
+        "which for one normal dimension is exact (noncentral t)."
+    )
+    yield (
+        "It presumes independent parts of one process that stays as it was, and of a dimension taken as normal that "
+        "it is: where the sheet Samples doubts that, take it as measured."
+    )
+
+
 def _interval(facts: SummaryFacts, row: Row) -> str:
     """Return what is computed of a row and what its measured parts leave open of that."""
     parts = _parts(facts, row)
@@ -67,8 +94,8 @@ def _interval(facts: SummaryFacts, row: Row) -> str:
         tail = angle_words(row["p99_865_arcmin"], row["p99_865_standard_error_arcmin"])
         low, high = (angle_words(row[f"p99_865_sample_{end}_arcmin"]) for end in ("low", "high"))
         return f"99.865 % of units stay below {tail} by calculation; {parts} leave open {low} to {high} (95 %)"
-    told, open_ = brief_share(row), range_words(*(row[end] for end in _ENDS))
-    return f"units over the limit are {told} by calculation; {parts} leave open {open_} (95 %)"
+    told, wide = brief_share(row), left_open_words(row)
+    return f"units over the limit are {told} by calculation; {parts} leave open {wide} (95 %)"
 
 
 def _parts(facts: SummaryFacts, row: Row) -> str:
