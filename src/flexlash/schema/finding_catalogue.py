@@ -1233,7 +1233,7 @@ CATALOGUE = _rules(
     (
         "I530",
         "part measured more than once",
-        "{place}: part {value}{found} stands more than once in sample {other} ({detail}); each row counts as a part.",
+        "{place}: {found} more than once in sample {other}, such as {value} ({detail}); each row counts as a part.",
         "Nothing to do if these are different parts; else keep one row of each part.",
         "Measuring one part again tells of the gauge, not of the process: the sample looks larger than it is, and its "
         "interval narrower.",

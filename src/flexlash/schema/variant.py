@@ -62,8 +62,9 @@ class Variant:
 
 @dataclass(frozen=True, kw_only=True)
 class MeasuredDimension:
-    """What was measured of one dimension in a sample [SI]: values in the order of the sheet, of at least five parts.
+    """What was measured of one dimension in a sample [SI]: values in the order of the sheet.
 
+    A tolerance row that is used has those of at least five parts, which are not all equal.
     `are_deviations` says that they are what was measured above the entered value. `parts` are the rows of Measurements
     that the values come from, so that values of one part can be told in two dimensions.
     """

@@ -179,8 +179,8 @@ class _Gathering:
             doubled = [part for part, count in times.items() if count > 1]
             if doubled:
                 places = [self.table.address(row, "part") for row in rows if parts.get(row) == doubled[0]]
-                more = f" and {len(doubled) - 1} more" if len(doubled) > 1 else ""
-                facts = {"other": self.names[name], "detail": cell_ranges(places), "found": more}
+                found = f"{len(doubled)} parts stand" if len(doubled) > 1 else "1 part stands"
+                facts = {"other": self.names[name], "detail": cell_ranges(places), "found": found}
                 self._report("I530", places[1].row, "part", **facts)
 
     def _report(self, code: str, row: int, key: str, **facts: Any) -> None:

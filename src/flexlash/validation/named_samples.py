@@ -49,7 +49,7 @@ class NamedSamples:
             meant = self.names[key]
             self._report("I504", record["row"], value=name, suggestion=meant, certain_value=meant)
         is_missing = dimension is not None and dimension not in found and (key, dimension) not in self.samples.faults
-        if is_missing and self.samples.is_whole:
+        if is_missing:
             words = f"has no measured {inner_name(DIMENSIONS[dimension])}"
             self._report("E223", record["row"], value=name, detail=words)
         return found.get(dimension)
