@@ -119,7 +119,7 @@ def test_the_marked_copy_marks_the_new_sheets(tmp_path):
     for sheet, cell in FAULTS:
         assert marked[sheet][cell].fill.fgColor.rgb == COLOURS["error"], (sheet, cell)
         assert FAULTS[sheet, cell] in marked[sheet][cell].comment.text
-    assert marked.sheetnames == ["Findings", *ENTRY_SHEETS, "Dictionary", "Lists"]
+    assert marked.sheetnames == ["Findings", *ENTRY_SHEETS, "Dictionary", "Lists", "flexlash marks"]
 
 
 def test_certain_fixes_mend_the_new_sheets(tmp_path):
