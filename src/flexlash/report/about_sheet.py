@@ -48,6 +48,8 @@ SHEETS = {
     "Materials": "The materials used, as read or built in.",
     "Tolerances": "The tolerance classes used, as read or built in.",
     "Settings": "The settings as read.",
+    "Measurements": "The measured parts as read, one row a part.",
+    "Correlations": "The correlations as read, one row a pair of dimensions.",
     "About": "This page: where the numbers come from and what they mean.",
     "Curves": "Stored percentiles behind Summary and Explorer.",
     "Compared": "Stored figures behind Compare, Ranking and Contributions.",
