@@ -12,7 +12,7 @@ from scipy import stats
 from toleranced import SUM, every_number, plan, row, statistics_of_row
 
 from flexlash.analysis.recommendations import _half
-from flexlash.comparison.sides import _tolerance
+from flexlash.comparison.used_values import tolerance_value
 from flexlash.report.page.one_variant import _used
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.units import ARCMIN
@@ -255,7 +255,7 @@ def test_comparison_sees_shift_and_sd():
     """Two rows of Tolerances that differ in shift or sd differ, and say by what."""
     plain = tolerance("wall_thickness", -2e-5, 2e-5)
     rows = [replace(plain, mean_shift=-7e-6), replace(plain, sd=4.1e-6), replace(plain, mean_shift=7e-6, sd=4.1e-6)]
-    values = [_tolerance(one) for one in (plain, *rows)]
+    values = [tolerance_value(one) for one in (plain, *rows)]
     assert len({one.value for one in values}) == 4
     assert [one.shown for one in values] == [
         "± 0.02 mm",
@@ -263,5 +263,6 @@ def test_comparison_sees_shift_and_sd():
         "± 0.02 mm, sd 0.0041 mm",
         "± 0.02 mm, sd 0.0041 mm, mean shifted by +0.007 mm",
     ]
-    share = _tolerance(tolerance("youngs_modulus", -0.02, 0.02, relative=True, mean_shift=0.005))
+    elastic = {"relative": True, "mean_shift": 0.005, "scatters_between": "lots"}
+    share = tolerance_value(tolerance("youngs_modulus", -0.02, 0.02, **elastic))
     assert share.shown == "± 2 %, mean shifted by +0.5 %"

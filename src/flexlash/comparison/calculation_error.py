@@ -26,6 +26,7 @@ _FOLLOWING = frozenset({
     "cross_check_deviation", "spread_method", "spread_points", "spread_note", "random_points",
     *(key for key in _KEYS if "standard_error" in key),
     *(f"{key}_{end}" for key in _SHARES for end in ("low", "high")),
+    *(key for key in _KEYS if "_sample_" in key),
 })  # fmt: skip
 """Results without an error of their own, which follow from those that have one, or say how they were found."""
 

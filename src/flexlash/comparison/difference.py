@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from flexlash.comparison.calculation_error import POINTS, is_within_error
-from flexlash.comparison.sides import Name, Side, Used
+from flexlash.comparison.sides import Name, Side
+from flexlash.comparison.used_values import Used
 from flexlash.schema.column import Column
 from flexlash.schema.columns import SETTINGS, VARIANTS
 from flexlash.schema.result_columns import result_columns
@@ -182,20 +183,24 @@ def _change(column: Column, old: Any, new: Any) -> Change:
 
 
 def _used(old: Side, new: Side, name: Name) -> Iterator[Change]:
-    """Yield what differs of the material, the tolerances and the settings that a variant uses on both sides."""
+    """Yield what differs of material, tolerances, correlations and settings that a variant uses on both sides."""
     yield from _values("Materials", old.material(name), new.material(name))
     its_own = old.dimensions(name) | new.dimensions(name)
     for change in _values("Tolerances", old.tolerances(name), new.tolerances(name)):
         if change.key in its_own:
             yield change
+    yield from _values("Correlations", old.correlations(name), new.correlations(name), 0.0)
     before, after = old.settings, new.settings
     for column in SETTINGS:
         if not equal(before[column.key], after[column.key]):
             yield _change(column, before[column.key], after[column.key])
 
 
-def _values(sheet: str, old: Used | None, new: Used | None) -> Iterator[Change]:
-    """Yield what differs between two rows of a table; other rows were chosen on purpose and are told as that."""
+def _values(sheet: str, old: Used | None, new: Used | None, absent: float | None = None) -> Iterator[Change]:
+    """Yield what differs between two rows of a table; other rows were chosen on purpose and are told as that.
+
+    `absent` is what a value counts as that is not there.
+    """
     if old is None or new is None or old.owner != new.owner:
         return
     for key in dict.fromkeys([*old.values, *new.values]):
@@ -208,8 +213,8 @@ def _values(sheet: str, old: Used | None, new: Used | None) -> Iterator[Change]:
                 key=key,
                 label=value.label,
                 unit=value.unit,
-                old=before.shown if before else None,
-                new=after.shown if after else None,
+                old=before.shown if before else absent,
+                new=after.shown if after else absent,
             )
 
 

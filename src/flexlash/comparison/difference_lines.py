@@ -15,6 +15,9 @@ __all__ = ["comparison_line", "difference_lines"]
 
 _NAME = 30
 _NAMED = 3
+_WORDS = 200
+"""Most letters of a text that differs: a tolerance with its sample takes more than a cell's usual entry."""
+
 _LISTED = 20
 """Most variants that are told one by one."""
 
@@ -119,7 +122,7 @@ def _owner(change: Change) -> str:
     """Return where a shared change stands."""
     if change.sheet == "Settings":
         return "Settings"
-    return f"{'Material' if change.sheet == 'Materials' else 'Tolerances'} {shown(change.owner, _NAME)}"
+    return f"{'Material' if change.sheet == 'Materials' else change.sheet} {shown(change.owner, _NAME)}"
 
 
 def _words(change: Change) -> str:
@@ -127,7 +130,8 @@ def _words(change: Change) -> str:
     old, new = _pair(change)
     share = any(word in change.key for word in _SHARE)
     unit = "" if share or change.unit in {"", "-"} else f" {change.unit}"
-    part = "" if change.part is None or share or change.sheet == "Settings" else f" ({_percent(change.part)})"
+    alone = share or change.sheet in {"Settings", "Correlations"}
+    part = "" if change.part is None or alone else f" ({_percent(change.part)})"
     return f"{change.label}: {old} → {new}{unit}{part}"
 
 
@@ -157,7 +161,7 @@ def _value(value: str | float | None, digits: int, factor: float, unit: str) -> 
     if value is None:
         return _BLANK
     if isinstance(value, str):
-        return DIMENSIONS[value].plain_name if value in DIMENSIONS else shown(value)
+        return DIMENSIONS[value].plain_name if value in DIMENSIONS else shown(value, _WORDS)
     return f"{factor * value:.{digits}g}{unit}"
 
 

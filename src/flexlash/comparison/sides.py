@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 from flexlash.analysis.assessment import assess
 from flexlash.analysis.computed import Nominal
+from flexlash.comparison.used_values import Used, Value, correlation_value, tolerance_value
 from flexlash.reading.limited_process import ask
 from flexlash.reading.raw import RawSheet, Submission
 from flexlash.reading.read import Source, limits_of_reports, report_of, submission_of
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.cell_addresses import CellAddress
-from flexlash.schema.columns import DIMENSIONS, MATERIALS, columns_of
+from flexlash.schema.columns import MATERIALS, columns_of
 from flexlash.schema.findings import Finding, shown
 from flexlash.schema.result_columns import result_columns
 from flexlash.schema.spellings import plain
-from flexlash.schema.variant import ToleranceRow
 from flexlash.validation.blocking_errors import stopped_by
 from flexlash.validation.consolidation import consolidated
 from flexlash.validation.validate import validate
@@ -31,7 +31,7 @@ from flexlash.validation.validated import Table, Validated
 if TYPE_CHECKING:
     import polars as pl
 
-__all__ = ["Name", "Side", "Used", "Value", "by_variant", "frame_rows", "result_rows", "side_of", "side_of_source"]
+__all__ = ["Name", "Side", "by_variant", "frame_rows", "result_rows", "side_of", "side_of_source"]
 
 _TOP = 15
 _NAMED = 3
@@ -47,25 +47,6 @@ class Name:
 
     text: str
     occurrence: int = 1
-
-
-@dataclass(frozen=True, kw_only=True)
-class Value:
-    """A value of a table: what is compared, how it is shown, what it is called."""
-
-    value: Any
-    shown: str | float | None
-    label: str
-    unit: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Used:
-    """What a variant uses of a table: the rows' owner, in plain letters and as written, and their values by key."""
-
-    owner: str
-    name: str
-    values: Mapping[str, Value]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -176,7 +157,22 @@ class Side:
         rows = self.validated.classes.get(plain(class_name))
         if rows is None:
             return None
-        return Used(owner=plain(class_name), name=class_name, values={row.dimension: _tolerance(row) for row in rows})
+        return Used(
+            owner=plain(class_name), name=class_name, values={row.dimension: tolerance_value(row) for row in rows}
+        )
+
+    def correlations(self, name: Name) -> Used | None:
+        """Return how the dimensions of a variant's class scatter together, by pair; None for a class that is unknown.
+
+        Pairs of which it has but one, or none, do not matter; nor do those that are independent.
+        """
+        used = self.tolerances(name)
+        if used is None:
+            return None
+        own = self.dimensions(name)
+        pairs = self._nominal.computed.correlations.get(used.owner, {})
+        values = {" ".join(pair): correlation_value(pair, value) for pair, value in pairs.items() if own >= {*pair}}
+        return Used(owner=used.owner, name=used.name, values=values)
 
     def dimensions(self, name: Name) -> frozenset[str]:
         """Return the dimensions that a variant has itself; none for one with errors."""
@@ -268,32 +264,6 @@ def _entered(
             value = column.default
         entered[key] = None if value == 0 and column.zero_is_blank else value
     return entered
-
-
-def _tolerance(row: ToleranceRow) -> Value:
-    """Return a row of Tolerances as it is compared and shown."""
-    column = DIMENSIONS[row.dimension]
-    scatter = row.limits_sigma if "normal" in row.distribution and row.sd is None else None
-    limits = () if row.grade else (row.lower, row.upper)
-    size, unit = (0.01, "%") if row.relative else (column.si_unit.si, column.unit)
-    words = row.grade or _deviations(row.lower / size, row.upper / size, "" if unit == "-" else unit)
-    words += "" if row.distribution == "normal" else f", {row.distribution}"
-    words += f", limits at ± {scatter:g} sigma" if scatter not in {None, 3.0} else ""
-    space = "" if unit == "-" else f" {unit}"
-    words += f", sd {row.sd / size:.10g}{space}" if row.sd is not None else ""
-    words += f", mean shifted by {row.mean_shift / size:+.10g}{space}".replace("-", "−") if row.mean_shift else ""
-    is_relative = row.relative and bool(limits)
-    value = (limits, is_relative, row.grade, row.distribution, scatter, row.mean_shift, row.sd)
-    return Value(value=value, shown=words, label=column.plain_name)
-
-
-def _deviations(lower: float, upper: float, unit: str) -> str:
-    """Return two deviations as a drawing gives them: `± 0.05 mm`, `−0.1 to +0.2 mm`."""
-    space = " " if unit else ""
-    if lower == -upper:
-        return f"± {upper:.10g}{space}{unit}"
-    ends = (f"{end:+.10g}".replace("-", "−") if end else "0" for end in (lower, upper))
-    return f"{' to '.join(ends)}{space}{unit}"
 
 
 def result_rows(sheet: RawSheet | None) -> dict[Name, dict[str, Any]]:
