@@ -74,7 +74,7 @@ def test_parts_measured_together_give_their_correlations(settled):
     assert told.code == "I531"
     assert told.place == "Tolerances!A2"
     measured = measured_correlation(PARTS[WALL], PARTS[DISK], by_scores=False)
-    words = f"Wall thickness with Disk thickness {measured.correlation:.2f} (95 %: {measured.low:.2f} to"
+    words = f"wall thickness with disk thickness {measured.correlation:.2f} (95 %: {measured.low:.2f} to"
     assert words in told.message
     assert "class shop the parts of sample Lot 7" in told.message
 
@@ -162,8 +162,8 @@ def test_what_a_class_changes_of_its_base_is_told_of_it(settled):
         ("I531", "Tolerances!A9"),
         ("W448", "Correlations!D2"),
     ]
-    assert "Mean radius with Disk thickness" in ledger.findings[0].message
-    assert "Mean radius with Disk thickness" not in ledger.findings[2].message
+    assert "mean radius with disk thickness" in ledger.findings[0].message
+    assert "mean radius with disk thickness" not in ledger.findings[2].message
 
 
 def test_contradicting_correlations_name_the_nearest_that_can_be(settled):
@@ -219,7 +219,7 @@ def test_a_lot_dimension_is_not_tied_to_one_of_a_part(settled):
     lots = {"scatters_between": "lots"}
     _, ledger = settled({"shop": [_row(WALL, sample=None), _row(YOUNG, **lots)]}, (YOUNG, WALL, 0.5))
     assert _told(ledger) == [("E349", "Correlations!C2")]
-    assert "Young's modulus scatters between lots, Wall thickness between parts." in ledger.findings[0].message
+    assert "Young's modulus scatters between lots, wall thickness between parts." in ledger.findings[0].message
     assert ledger.classes == {"shop"}
     found, ledger = settled({"shop": [_row(WALL, **lots), _row(DISK)]})
     assert (found, _told(ledger)) == ({}, [("W449", "Tolerances!A2")])

@@ -31,7 +31,7 @@ def texts(tmp_path_factory):
 def test_about_names_the_pairs_and_how_their_numbers_are_made(texts):
     """About lists the pairs of each class, the cross terms of the first-order sd, and how shares are shared out."""
     about = "\n".join(texts("About", tied=True))
-    assert "Class shop: Mean radius with Wall thickness -0.125; Wall thickness with Disk thickness 0.5." in about
+    assert "Class shop: Mean radius with wall thickness -0.125; Wall thickness with disk thickness 0.5." in about
     assert "2 r (slope × sd)(slope × sd)" in about
     assert "Shapley's value" in about
     assert "independently" not in about

@@ -14,6 +14,7 @@ from itertools import combinations
 from typing import Any, TypeAlias
 
 from flexlash.analysis.contradicting_correlations import contradictions, without_contradiction
+from flexlash.analysis.run_summary import dimension_words
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.spellings import plain
 from flexlash.schema.variant import CorrelationRow, ToleranceRow
@@ -174,7 +175,7 @@ class _Class:
         crossed = [pair for pair in entered if self.crossed(pair)]
         for pair in crossed:
             lot, part = sorted(pair, key=lambda name: self.rows[name].scatters_between)
-            self._refuse("E349", entered[pair], "dimension_2", value=_words(lot), detail=_words(part))
+            self._refuse("E349", entered[pair], "dimension_2", value=dimension_words(lot), detail=dimension_words(part))
         faults = [] if crossed else contradictions(entered, merged)
         for pair, nearest, alone in faults:
             detail = "" if alone else ", if the other rows named here are mended too,"
@@ -200,12 +201,8 @@ class _Class:
         return table.sheet
 
 
-def _words(name: str) -> str:
-    return DIMENSIONS[name].plain_name
-
-
 def _named(pair: Pair) -> str:
-    return f"{_words(pair[0])} with {_words(pair[1])}"
+    return f"{dimension_words(pair[0])} with {dimension_words(pair[1])}"
 
 
 def _told(found: MeasuredCorrelation) -> str:

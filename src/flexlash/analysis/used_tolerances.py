@@ -8,6 +8,7 @@ from typing import Any
 import polars as pl
 
 from flexlash.analysis.computed import Computed
+from flexlash.analysis.run_summary import dimension_title
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.spellings import plain
 from flexlash.schema.units import as_entered
@@ -59,7 +60,7 @@ def _partners(correlation: Iterable[Entry], name: str) -> str:
     partners = [
         (second if name == first else first, value) for first, second, value in correlation if name in (first, second)
     ]
-    return "; ".join(f"{DIMENSIONS[other].plain_name} {value:.4g}" for other, value in partners)
+    return "; ".join(f"{dimension_title(other)} {value:.4g}" for other, value in partners)
 
 
 def _numbers(limits: Limits) -> dict[str, float]:

@@ -28,9 +28,9 @@ _NOTES = (
     "the same with every digit, under tolerances.",
 )
 _HEADER = len(_NOTES) + 2
-_WIDTHS = {"variant": 26.0, "dimension": 24.0, "unit": 7.0, "distribution": 17.0, "scatters_with": 30.0, "source": 52.0}
+_WIDTHS = {"variant": 26.0, "dimension": 24.0, "unit": 7.0, "distribution": 17.0, "scatters_with": 40.0, "source": 52.0}
 _WIDTH = 12.0
-_INDENTED = frozenset({"distribution", "scatters_between", "scatters_with", "source"})
+_STYLES = dict.fromkeys(("distribution", "scatters_between", "source"), "indented") | {"scatters_with": "indented wrap"}
 _MORE_DIGITS = {"mean": 10, "standard_deviation": 100}
 """A mean is shown with one digit more than the first of the standard deviation, this with two."""
 
@@ -64,7 +64,7 @@ def write_used(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
 def _write_column(book: Book, sheet: Any, place: int, column: Column, frame: pl.DataFrame) -> None:
     """Write the cells of a column; a blank for none."""
     values, sds = frame[column.key].to_list(), frame["standard_deviation"].to_list()
-    style = book.format("indented" if column.key in _INDENTED else "text")
+    style = book.format(_STYLES.get(column.key, "text"))
     for row, (value, sd) in enumerate(zip(values, sds, strict=True), start=_HEADER + 1):
         if isinstance(value, str):
             shown = dimension_title(value) if column.key == "dimension" else value

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from flexlash.analysis.computed import Computed
-from flexlash.schema.columns import DIMENSIONS
+from flexlash.analysis.run_summary import dimension_title, dimension_words
 from flexlash.schema.findings import shown
 from flexlash.schema.spellings import plain
 
@@ -76,4 +76,4 @@ def _first(computed: Mapping[int, Computed]) -> Computed | None:
 
 
 def _pair(first: str, second: str) -> str:
-    return f"{DIMENSIONS[first].plain_name} with {DIMENSIONS[second].plain_name}"
+    return f"{dimension_title(first)} with {dimension_words(second)}"
