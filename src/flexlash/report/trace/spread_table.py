@@ -92,7 +92,7 @@ class SpreadTable:
         self.book, self.sheet, self.scatter = book, sheet, scatter
         self._cells: dict[str, list[Live]] = {key: [] for key in _COLUMNS}
         self._row = HEADER
-        self._not_there = book.workbook.add_format({"bg_color": "#FFFFFF", "border": 0})
+        self._not_there = book.workbook.add_format({"bg_color": "#FFFFFF", "border": 1, "border_color": "#FFFFFF"})
         for place, column in enumerate(_COLUMNS.values()):
             sheet.set_column(place, place, column.width)
             if column.heading:

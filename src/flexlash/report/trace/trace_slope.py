@@ -10,7 +10,7 @@ from typing import Any
 
 from flexlash.analysis.run_summary import dimension_title
 from flexlash.report.formula.functions import AND, IF, IFERROR, INDEX, ISNUMBER, MATCH, MAX, PI, on_sheet
-from flexlash.report.formula.live import Live, Range, put
+from flexlash.report.formula.live import Live, Range, live, put
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
 from flexlash.report.trace.inputs import ENTERED
@@ -46,6 +46,26 @@ class Moved:
     step: Live
     names: Range
     middles: Range
+
+
+class _SumsHere(Sums):
+    """The sums over points that some variant needs: here no reader adds a fillet or a taper."""
+
+    def __init__(self, page: Lines, sheet: Any, top: int, inputs: Stored) -> None:
+        super().__init__(page, sheet, SLOPE, top)
+        self._had = {name for name in DIMENSIONS if any(row[ENTERED[name].label] for row in inputs.rows)}
+
+    def junction_fillet(self) -> Live:
+        """Return the integral of the junction fillet [1/mm³]."""
+        return super().junction_fillet() if "junction_fillet_radius" in self._had else live(0.0)
+
+    def hub_fillet(self) -> Live:
+        """Return the integral of the hub fillet [1/mm³]."""
+        return super().hub_fillet() if "hub_fillet_radius" in self._had else live(0.0)
+
+    def taper(self) -> Live:
+        """Return the integral of a disk that thins in a straight line [1/mm³]."""
+        return super().taper() if "disk_hub_thickness" in self._had else live(0.0)
 
 
 class _Chain(Lines):
@@ -84,7 +104,7 @@ class _Chain(Lines):
             if name in DIMENSIONS:
                 self.line(name, self._input(name, inputs, moved, steps), (dimension_title(name), symbol, "", ""))
         write_shape(self)
-        write_integrals(self, Sums(self, self.sheet, SLOPE, top))
+        write_integrals(self, _SumsHere(self, self.sheet, top, inputs))
         write_windups(self)
         windup = self["rim_windup"] + self["wall_windup"] + self["junction_fillet_windup"]
         windup = windup + self["disk_body_windup"] + self["hub_fillet_windup"]
