@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import statistics
 
 import pytest
 from entry_books import CUP, UNIFORM_CUP, correlations, entry_book
@@ -95,3 +96,33 @@ def test_what_scatters_together_is_told_of_both(tmp_path):
         "one thickness wall_thickness": "Mean radius -0.125",
         "one thickness mean_radius": "Wall thickness -0.125",
     }
+
+
+@pytest.mark.slow
+def test_bases_samples_and_lots_are_told(workbook):
+    """A row that is taken over says from which class, a sample its parts and what they come to, lots that they are."""
+    values = (1.6031, 1.6112, 1.6054, 1.6097, 1.6081, 1.6045)
+    path = workbook(
+        [{**SOUND, "tolerance_class": "shop"}],
+        tolerances=[
+            {"tolerance_class": "shop", "based_on": "full"},
+            {"tolerance_class": "shop", "dimension": "wall_thickness", "lower_deviation": -0.02,
+             "upper_deviation": 0.02, "sample": "W"},
+            {"tolerance_class": "full", "dimension": "cylinder_length", "grade": "IT11"},
+            {"tolerance_class": "full", "dimension": "youngs_modulus", "lower_deviation": -4, "upper_deviation": 4},
+            {"tolerance_class": "full", "dimension": "torque", "lower_deviation": -4, "upper_deviation": 4,
+             "scatters_between": "lots"},
+        ],
+        measurements=[{"sample": "W", "part": place, "wall_thickness_mm": value} for place, value in enumerate(values)],
+    )  # fmt: skip
+    outcome = run(path, samples=64)
+    used = {row["dimension"]: row for row in used_tolerances(outcome.computed.values()).to_dicts()}
+    (first,) = {row.row for row in outcome.validated.classes["shop"] if row.dimension == "wall_thickness"}
+    assert used["wall_thickness"]["source"] == f"class shop, row {first}, sample W (6 parts)"
+    assert used["wall_thickness"]["mean"] == pytest.approx(statistics.mean(values), rel=1e-12)
+    assert used["wall_thickness"]["standard_deviation"] == pytest.approx(statistics.stdev(values), rel=1e-9)
+    assert used["cylinder_length"]["source"] == f"class shop, taken over from class full, row {first + 1}"
+    between = {name: row["scatters_between"] for name, row in used.items()}
+    assert between == {
+        "torque": "lots", "cylinder_length": "parts", "wall_thickness": "parts", "youngs_modulus": "lots"
+    }  # fmt: skip

@@ -48,6 +48,9 @@ RISING, NAMES = Range("$F$1:$F$3", (1.0, 2.0, 4.0)), Range("$G$1:$G$3", ("abc", 
 NUMBER, TEXT = Live("$A$2", NUMBERS[1]), Live("$B$1", "words")
 CASES = {
     "sum": (SUM(CELLS), 13.75),
+    "sum of a range with texts": (SUM(BLOCK), 13.75),
+    "greatest of a range with texts": (MAX(BLOCK, -50.0), max(NUMBERS)),
+    "least of texts alone": (MIN(NAMES), 0.0),
     "greatest": (MAX(CELLS), 9.0),
     "least": (MIN(CELLS), -7.5),
     "first place of the greatest": (MATCH(MAX(CELLS), CELLS, 0), 3.0),

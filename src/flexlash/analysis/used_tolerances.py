@@ -17,7 +17,7 @@ from flexlash.schema.variant import Limits, ToleranceRow
 from flexlash.tolerance.correlation import Entry
 from flexlash.tolerance.dimension_limits import distribution_of
 
-__all__ = ["source_words", "used_tolerances"]
+__all__ = ["source_words", "used_rows", "used_tolerances"]
 
 _SCHEMA = {column.key: pl.Float64() if column.is_number else pl.String() for column in TOLERANCES_USED}
 
@@ -27,11 +27,11 @@ def used_tolerances(variants: Iterable[Computed]) -> pl.DataFrame:
 
     Numbers are in the unit of the dimension's own column.
     """
-    return pl.DataFrame([row for one in variants for row in _rows_of(one)], schema=_SCHEMA, orient="row")
+    return pl.DataFrame([row for one in variants for row in used_rows(one)], schema=_SCHEMA, orient="row")
 
 
-def _rows_of(one: Computed) -> Iterator[dict[str, Any]]:
-    """Yield the rows of a variant in the order of its limits."""
+def used_rows(one: Computed) -> Iterator[dict[str, Any]]:
+    """Yield the rows of a variant in the order of its limits, each without what it has not."""
     variant, shares = one.variant, one.spread.shares if one.spread else {}
     rows = {row.dimension: row for row in one.among.validated.classes[plain(variant.tolerance_class)]}
     for name, limits in one.limits.items():

@@ -13,7 +13,7 @@ from typing import Any
 from flexlash.analysis.computed import Computed
 from flexlash.analysis.run_summary import dimension_title
 from flexlash.analysis.tolerance_spread import first_orders
-from flexlash.analysis.used_tolerances import used_tolerances
+from flexlash.analysis.used_tolerances import used_rows
 from flexlash.report.formula.stored import Stored
 from flexlash.schema.columns import DIMENSIONS, Column
 from flexlash.schema.units import ARCMIN
@@ -42,7 +42,7 @@ def stored_scatter(variants: Sequence[Computed]) -> tuple[Stored, Stored]:
 
 def _rows_of(one: Computed, first_order: FirstOrder) -> Iterator[dict[str, str | float | None]]:
     """Yield a row for each dimension of a variant that scatters or is shifted."""
-    for used in used_tolerances([one]).iter_rows(named=True):
+    for used in used_rows(one):
         name = used["dimension"]
         column, limits, slope = DIMENSIONS[name], one.limits[name], first_order.slopes.get(name)
         unit = column.si_unit.si
