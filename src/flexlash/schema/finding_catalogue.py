@@ -368,7 +368,7 @@ CATALOGUE = _rules(
     (
         "E223",
         "unknown sample",
-        '{place} {name} = "{value}" {detail}.',
+        '{place} {name} = "{value}": {detail} is not in Measurements.',
         "Write the name of a sample as Measurements has it, or add its rows and the column of the dimension there.",
         "A row of Tolerances takes mean and standard deviation from the values of its dimension in a sample of "
         "Measurements; letter case and spaces of the name do not matter.",
@@ -1011,7 +1011,7 @@ CATALOGUE = _rules(
     (
         "W442",
         "mean outside the limits",
-        "{place} {name} = {value}: {detail}.",
+        "{place} {name} = {value}: {detail} outside the limits.",
         "Check the mean shift, Cpk or sample of the row of Tolerances, their unit, and the limits.",
         "More than half of the parts of such a process are outside the limits of the drawing. It is computed as "
         "entered; worst case and share outside the limits are those of the drawing.",
@@ -1027,7 +1027,7 @@ CATALOGUE = _rules(
     (
         "W444",
         "implausible standard deviation",
-        "{place} {name} = {value}: {detail}; 1 to 12 are plausible.",
+        "{place} {name} = {value}: {detail} standard deviations; 1 to 12 are plausible.",
         "Check the standard deviation and its unit, that of the deviations.",
         "Half the width of the limits over the standard deviation is three times Cp. Far more or less is often a "
         "standard deviation in another unit. It is used as entered.",

@@ -49,9 +49,9 @@ def process_verdict(low: float, high: float, mean: float, sd: float, *, is_enter
         words = f"{spelled_out(beyond / sd)} standard deviations beyond the limits; at most {_FARTHEST:g} is possible"
         return ProcessVerdict("E339", "mean", f"the mean of the process lies {words}")
     if beyond > _ROUNDING * (high - low):
-        return ProcessVerdict("W442", "mean", "the mean of the process lies outside the limits")
+        return ProcessVerdict("W442", "mean", "the mean of the process lies")
     if is_entered and not _FEWEST * (1 - _ROUNDING) <= sigma <= _MOST * (1 + _ROUNDING):
-        return ProcessVerdict("W444", "scatter", f"it puts the limits at ± {spelled_out(sigma)} standard deviations")
+        return ProcessVerdict("W444", "scatter", f"it puts the limits at ± {spelled_out(sigma)}")
     return None
 
 

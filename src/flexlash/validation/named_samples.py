@@ -50,7 +50,7 @@ class NamedSamples:
             self._report("I504", record["row"], value=name, suggestion=meant, certain_value=meant)
         is_missing = dimension is not None and dimension not in found and (key, dimension) not in self.samples.faults
         if is_missing:
-            words = f"has no measured {inner_name(DIMENSIONS[dimension])}"
+            words = f"{inner_name(DIMENSIONS[dimension])} of this sample"
             self._report("E223", record["row"], value=name, detail=words)
         return found.get(dimension)
 
@@ -58,7 +58,7 @@ class NamedSamples:
         if is_no_value(name):
             self._report("E221", row, value=name, **no_value_facts(columns_of("Tolerances")[_KEY]))
         elif self.samples.is_whole:
-            self._report("E223", row, value=name, detail="is no sample of Measurements", **self.meant[name])
+            self._report("E223", row, value=name, detail="this sample", **self.meant[name])
 
     def _report(self, code: str, row: int, **facts: Any) -> None:
         self.ledger.add_in(self.table, code, row, _KEY, **facts)
