@@ -7,10 +7,12 @@ submission's correlation is one of normal scores: 2 sin(π ρ/6) of Pearson's be
 import math
 from functools import cache
 
+import numpy as np
 import pytest
 from entry_books import CUP, UNIFORM_CUP, correlations, entry_book
-from reference_inputs import CORRELATED_WALLS, REFERENCE_ERROR
+from reference_inputs import CORRELATED_WALLS, REFERENCE_ERROR, SCATTER
 
+from flexlash.mechanics.flexspline import backlash
 from flexlash.pipeline import run
 from flexlash.schema.units import ARCMIN
 
@@ -70,3 +72,33 @@ def test_first_order_follows_the_reference(outcome_of, correlation):
     """The first-order sd at mid-limits is the reference's sd within half a per cent, as the model is nearly linear."""
     row = outcome_of(correlation).results.row(0, named=True)
     assert row["first_order_sd_arcmin"] * ARCMIN == pytest.approx(CORRELATED_WALLS[correlation][0] * 1e-5, rel=5e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("correlation", [0.5, 1.0])
+def test_lots_and_parts_of_tied_thicknesses(outcome_of, correlation):
+    """Within and between lots are what the part as a product of its lot (E, ν) and its dimensions says.
+
+    Y = g h: within² = E[g²] Var h and between² = Var g (E h)², each by draws of its own.
+    """
+    draws = np.random.default_rng(8).standard_normal((7, 1 << 19))
+    scores = min(2 * math.sin(math.pi * correlation / 6), 1.0)
+    draws[1] = scores * draws[0] + math.sqrt(1 - scores**2) * draws[1]
+    of_part = (*TIED, "cylinder_length", "mean_radius", "disk_inner_radius")
+    of_lot = ("youngs_modulus", "poisson_ratio")
+    drawn = {
+        name: SCATTER[name].location + SCATTER[name].scale * SCATTER[name].standard_at(score)
+        for name, score in zip((*of_part, *of_lot), draws, strict=True)
+    }
+    middle = {"torque": 800.0} | {name: distribution.expectation for name, distribution in SCATTER.items()}
+    centre, of_parts, of_lots = (
+        backlash("cup", middle | {name: drawn[name] for name in group}) / ARCMIN for group in ((), of_part, of_lot)
+    )
+    factor = of_lots / centre
+    row = outcome_of(correlation).results.row(0, named=True)
+    for name, exact in (
+        ("within_lot_sd", math.sqrt(np.mean(factor**2)) * of_parts.std()),
+        ("between_lots_sd", factor.std() * of_parts.mean()),
+    ):
+        error = math.hypot(row[f"{name}_standard_error_arcmin"], 8e-4 * exact)
+        assert abs(row[f"{name}_arcmin"] - exact) <= 4 * error, name

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from b3_160 import CUP, NOMINAL
+from scipy.special import ndtr, ndtri
 from toleranced import SUM, every_number, plan, statistics_of_row
 
 from flexlash.tolerance import propagate
@@ -123,16 +124,27 @@ def test_the_first_order_sd_has_the_cross_terms(correlation):
     assert uniform.texts["first_order_valid"] in {"yes", "no"}
 
 
-def test_lots_divide_what_ties_add():
-    """Of a sum with the lot inputs tied, between² = s₁² + s₂² + 2 ρ s₁ s₂, and within² is what the third adds."""
-    tied = replace(
-        SUM, correlation=(("torque", "cylinder_length", 0.5),), between=frozenset({"torque", "cylinder_length"})
-    )
-    for method in ("line", "sobol"):
-        told = statistics_of_row(tied, plan(method, seed=4)).numbers
-        for name, exact in (("within_lot_sd", 2.0), ("between_lots_sd", math.sqrt(7))):
-            assert abs(told[name] - exact) <= 4 * told[f"{name}_standard_error"] + 1e-9, (method, name)
-            assert told[f"{name}_standard_error"] < 0.02
+@pytest.mark.parametrize("method", ["line", "sobol"])
+@pytest.mark.parametrize(
+    ("tie", "between", "within_sd", "between_sd"),
+    [
+        (("torque", "cylinder_length", 0.5), {"torque", "cylinder_length"}, 2.0, math.sqrt(7)),
+        (("cylinder_length", "wall_thickness", 0.5), {"torque"}, 2.0, 1.0),
+        (("cylinder_length", "wall_thickness", -0.5), {"torque"}, math.sqrt(12), 1.0),
+    ],
+)
+def test_lots_divide_what_ties_add(tie, between, within_sd, between_sd, method):
+    """Of a sum the sds within and between lots, and the share of lots that fail, are those of the tied normals.
+
+    10 + a + b − c with sds 1, 2 and 2: a lot fails where its mean is above the limit less z(1350 ppm) · within.
+    """
+    row = replace(SUM, correlation=(tie,), between=frozenset(between))
+    told = statistics_of_row(row, plan(method, seed=4)).numbers
+    fails = float(ndtr(-(row.upper_limit - 10 - within_sd * float(ndtri(1 - 1350e-6))) / between_sd))
+    for name, exact in (("within_lot_sd", within_sd), ("between_lots_sd", between_sd), ("lots_failing", fails)):
+        error = told[f"{name}_standard_error"]
+        assert abs(told[name] - exact) <= 4 * error + 1e-9, name
+        assert error < 0.02
 
 
 def test_a_tie_of_a_lot_and_a_part_is_refused():
