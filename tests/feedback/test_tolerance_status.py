@@ -8,8 +8,12 @@ from filled import SOUND, filled
 from libreoffice import convert_all, needs_libreoffice
 
 from flexlash.feedback.template.entry_rules import FIRST_ROW
+from flexlash.pipeline import check
 from flexlash.reading.raw import ErrorCell
 from flexlash.schema.columns import ENTRY_SHEETS
+
+_STANDARD = 14
+"""Rows of class standard, before all others."""
 
 _ROW = {"tolerance_class": "mine", "dimension": "wall_thickness", "lower_deviation": -0.02, "upper_deviation": 0.02}
 _GRADE = {"lower_deviation": None, "upper_deviation": None, "grade": "IT9"}
@@ -78,9 +82,10 @@ TOLERANCE_ROWS = [
     ({"based_on": "standard"}, "based on class needs a row without a dimension"),
 ]
 
-_PAIR = {"tolerance_class": "row 0", "dimension_1": "wall_thickness", "dimension_2": "disk_thickness"}
+_NO_ROW = "dimension 2 has no row in the class"
+_PAIR = {"tolerance_class": "standard", "dimension_1": "wall_thickness", "dimension_2": "disk_thickness"}
 CORRELATION_ROWS = [
-    (_PAIR | {"tolerance_class": "row 2", "correlation": 0.6}, "complete"),
+    (_PAIR | {"tolerance_class": "based", "correlation": 0.6}, "complete"),
     (_PAIR | {"tolerance_class": None, "correlation": 0.6}, "tolerance class missing"),
     (_PAIR | {"tolerance_class": "none", "correlation": 0.6}, "tolerance class not in Tolerances"),
     (_PAIR | {"dimension_1": None, "correlation": 0.6}, "dimension 1 missing"),
@@ -89,23 +94,26 @@ CORRELATION_ROWS = [
     (_PAIR, "correlation missing"),
     (_PAIR | {"correlation": 1.01}, "correlation is not a number from -1 to 1"),
     (_PAIR | {"correlation": "0,6"}, "correlation is not a number from -1 to 1"),
-    (_PAIR | {"tolerance_class": "row 4", "correlation": -1.0, "reason": "one set-up"}, "pair used twice"),
+    (_PAIR | {"tolerance_class": "pairs", "correlation": -1.0, "reason": "one set-up"}, "pair used twice"),
     (
         {
-            "tolerance_class": "Row 4",
+            "tolerance_class": "Pairs",
             "dimension_1": "disk_thickness",
             "dimension_2": "wall_thickness",
             "correlation": 0.0,
         },
         "pair used twice",
     ),
-    (_PAIR | {"tolerance_class": "row 4", "dimension_2": "mean_radius", "correlation": 1.0}, "complete"),
+    (_PAIR | {"tolerance_class": "row 0", "dimension_2": "mean_radius", "correlation": 1.0}, _NO_ROW),
+    (_PAIR | {"tolerance_class": "Based", "dimension_2": "mean_radius", "correlation": 0.5}, "complete"),
+    (_PAIR | {"tolerance_class": "standard", "dimension_2": "mean_radius", "correlation": 0.8}, "complete"),
 ]
 
 
 def _tolerances():
     rows = [_ROW | {"tolerance_class": f"row {number}"} | change for number, (change, _) in enumerate(TOLERANCE_ROWS)]
-    return [*rows, {**_ROW, "tolerance_class": "twin"}, {**_ROW, "tolerance_class": "Twin"}]
+    twins = [{**_ROW, "tolerance_class": name} for name in ("twin", "Twin")]
+    return [*rows, *twins, *({"tolerance_class": name, "based_on": "standard"} for name in ("based", "pairs"))]
 
 
 @pytest.fixture(scope="module")
@@ -124,8 +132,7 @@ def _statuses(path, sheet, first, count):
 
 
 def _of_tolerances(path):
-    standard = 14
-    return _statuses(path, "Tolerances", FIRST_ROW + 1 + standard, len(TOLERANCE_ROWS) + 2)
+    return _statuses(path, "Tolerances", FIRST_ROW + 1 + _STANDARD, len(_tolerances()))
 
 
 def _of_correlations(path):
@@ -134,7 +141,8 @@ def _of_correlations(path):
 
 def test_stored_status_tells_what_a_row_lacks(path):
     """The stored status names the first thing that a row of Tolerances or Correlations lacks."""
-    assert _of_tolerances(path) == [text for _, text in TOLERANCE_ROWS] + ["class and dimension used twice"] * 2
+    added = ["class and dimension used twice"] * 2 + ["complete"] * 2
+    assert _of_tolerances(path) == [text for _, text in TOLERANCE_ROWS] + added
     assert _of_correlations(path) == [text for _, text in CORRELATION_ROWS]
 
 
@@ -142,7 +150,7 @@ def test_without_measurements_there_is_no_sample(tmp_path):
     """In a plain template a sample has no sheet to stand on."""
     file = tmp_path / "plain.xlsx"
     file.write_bytes(filled([SOUND], tolerances=[{**_ROW, "sample": "lot 12"}]))
-    assert _statuses(file, "Tolerances", FIRST_ROW + 1 + 14, 2) == ["sample without a sheet Measurements", None]
+    assert _statuses(file, "Tolerances", FIRST_ROW + 1 + _STANDARD, 2) == ["sample without a sheet Measurements", None]
 
 
 @pytest.mark.slow
@@ -152,3 +160,12 @@ def test_the_status_formula_calculates_what_is_stored(path, tmp_path):
     (recalculated,) = convert_all([path], "xlsx", tmp_path)
     assert _of_tolerances(recalculated) == _of_tolerances(path)
     assert _of_correlations(recalculated) == _of_correlations(path)
+
+
+@pytest.mark.parametrize(("sheet", "statuses"), [("Tolerances", _of_tolerances), ("Correlations", _of_correlations)])
+def test_the_status_agrees_with_check(path, sheet, statuses):
+    """A row that is complete has no error for `flexlash check`, and every other row has one."""
+    first = FIRST_ROW + 1 + (_STANDARD if sheet == "Tolerances" else 0)
+    blamed = {finding.row for finding in check(path).findings if finding.level == "error" and finding.sheet == sheet}
+    lacking = {first + row for row, text in enumerate(statuses(path)) if text != "complete"}
+    assert lacking == blamed

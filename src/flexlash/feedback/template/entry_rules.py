@@ -25,7 +25,12 @@ HEADER_ROW = 3
 FIRST_ROW = HEADER_ROW + 1
 PREPARED_ROWS = 2000
 SIDE_ROWS = 500
-_MEASURED_ROWS = 5000
+_MEASURED_ROWS = 1000
+"""LibreOffice keeps the rules of no more than a thousand rows below the last entry."""
+
+_LISTED_ROWS = {"Measurements": 10_000}
+"""Rows whose names are listed, where these are more than those that are prepared."""
+
 _LIST_ROWS = 20
 _FAR = 1e9
 """What stands for no bound in a rule that must have one."""
@@ -54,12 +59,8 @@ _LISTS = {
     ("Correlations", "dimension_2"): "fl_dimensions",
 }
 
-_ROWS = {
-    "Materials": "fl_materials",
-    "Tolerances": "fl_tolerance_rows",
-    "Measurements": "fl_sample_rows",
-}
-"""The filled rows of a sheet's first column, as far as they are prepared, by name."""
+_ROWS = {"Tolerances": "fl_tolerance_rows", "Measurements": "fl_sample_rows"}
+"""The cells of a sheet's first column, by name."""
 
 _NAMES = {"Tolerances": "fl_tolerance_classes", "Measurements": "fl_samples"}
 """The names in a sheet's first column, each once."""
@@ -135,10 +136,14 @@ def write_lists(workbook: Any, sheet: Any, names: Mapping[str, Sequence[str]]) -
         sheet.write_string(0, index, name)
         sheet.write_column(1, index, entries)
         workbook.define_name(name, f"=Lists!${letter}$2:${letter}${len(entries) + 1}")
+    block = _first_column("Materials", names)
+    workbook.define_name("fl_materials", f"={block.partition(':')[0]}:INDEX({block},MAX(1,COUNTA({block})))")
     for schema, title in _ROWS.items():
         if schema in names:
-            block = _first_column(schema, names)
-            workbook.define_name(title, f"={block.partition(':')[0]}:INDEX({block},MAX(1,COUNTA({block})))")
+            workbook.define_name(title, f"={_first_column(schema, names)}")
+    if "Correlations" in names:
+        block = _first_column("Tolerances", names).replace("$A$", "$B$")
+        workbook.define_name("fl_tolerance_dimensions", f"={block}")
     for index, schema in enumerate((one for one in _NAMES if one in names), start=len(lists)):
         _write_names(workbook, sheet, index, schema, names)
     sheet.hide()
@@ -146,8 +151,9 @@ def write_lists(workbook: Any, sheet: Any, names: Mapping[str, Sequence[str]]) -
 
 
 def _first_column(schema: str, names: Mapping[str, Sequence[str]]) -> str:
-    """Return the prepared cells of a sheet's first column."""
-    return f"{schema}!$A${FIRST_ROW + 1}:$A${FIRST_ROW + prepared_rows(schema, len(names[schema]))}"
+    """Return the cells of a sheet's first column whose names are listed."""
+    rows = max(prepared_rows(schema, len(names[schema])), _LISTED_ROWS.get(schema, 0))
+    return f"{schema}!$A${FIRST_ROW + 1}:$A${FIRST_ROW + rows}"
 
 
 def _write_names(workbook: Any, sheet: Any, index: int, schema: str, names: Mapping[str, Sequence[str]]) -> None:

@@ -142,7 +142,7 @@ def no_number(column: Column) -> Rule:
     is_low = operator.le if column.exclusive_minimum else operator.lt
     bounds = [] if least is None else [f"{{{key}}}{'<=' if column.exclusive_minimum else '<'}{least:.15g}"]
     bounds += [] if most is None else [f"{{{key}}}>{most:.15g}"]
-    beyond = f"OR({','.join(bounds)})" if len(bounds) > 1 else bounds[0] if bounds else "FALSE"
+    beyond = f"OR({','.join(bounds)})" if len(bounds) > 1 else bounds[0] if bounds else "0"
 
     def holds(row: Row, _: Known) -> bool:
         value = row.get(key)

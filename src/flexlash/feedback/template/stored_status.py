@@ -12,7 +12,7 @@ from flexlash.feedback.template.filling import Entries
 from flexlash.feedback.template.status_rules import Known, Row, Stage, entry_text, stage_text
 from flexlash.reading.raw import Unstored
 
-__all__ = ["counted", "listed_name", "listed_names", "stored_statuses"]
+__all__ = ["counted", "counted_pairs", "listed_name", "listed_names", "stored_statuses"]
 
 _DAY_0 = datetime.datetime(1899, 12, 30)  # noqa: DTZ001
 """The day that Excel counts from."""
@@ -32,6 +32,12 @@ def listed_names(entries: Entries) -> list[str]:
 def counted(names: Iterable[Any]) -> Counter[Any]:
     """Return how often each name stands there, in small letters."""
     return Counter(str(name).casefold() for name in names)
+
+
+def counted_pairs(entries: Entries, first: str, second: str) -> Counter[Any]:
+    """Return how often two columns say each pair of names, in small letters."""
+    texts = ([listed_name(row.get(key)).casefold() for key in (first, second)] for row in entries.rows)
+    return Counter(map(tuple, texts))
 
 
 def stored_statuses(entries: Entries, stages: Sequence[Stage], known: Known) -> list[str]:

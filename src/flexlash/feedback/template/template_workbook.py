@@ -21,7 +21,7 @@ from flexlash.feedback.template.entry_rules import (
 )
 from flexlash.feedback.template.filling import Entries, Filling, study
 from flexlash.feedback.template.status_column import shade_entries, write_progress, write_status
-from flexlash.feedback.template.stored_status import counted, listed_names
+from flexlash.feedback.template.stored_status import counted, counted_pairs, listed_names
 from flexlash.feedback.template.template_formats import cell_formats
 from flexlash.feedback.template.tolerance_status import CORRELATION_STATUS, tolerance_status
 from flexlash.feedback.template.variant_status import VARIANT_STATUS
@@ -111,6 +111,7 @@ class _Template:
         known = {
             "fl_materials": counted(self.names["Materials"]),
             "fl_tolerance_rows": counted(self.names["Tolerances"]),
+            "fl_tolerance_dimensions": counted_pairs(self.entries["Tolerances"], "tolerance_class", "dimension"),
             "fl_sample_rows": counted(self.names.get("Measurements", ())),
         }
         stages = {

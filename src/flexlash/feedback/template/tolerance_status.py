@@ -219,6 +219,25 @@ def _same_cells(one: str, other: str) -> str:
     )
 
 
+def _without_row(key: str) -> Rule:
+    """Return the rule that a class on Tolerances, unless it is based on another, has a row for a dimension."""
+    own, base, any_row = (
+        f"COUNTIFS(fl_tolerance_rows,{{tolerance_class}},fl_tolerance_dimensions,{criterion})"
+        for criterion in (f"TRIM({{{key}}})", '""', '"<>#"')
+    )
+
+    def holds(row: Row, known: Known) -> bool:
+        name, dimension = entry_text(row, "tolerance_class"), entry_text(row, key).strip()
+        rows = known["fl_tolerance_dimensions"]
+        return known["fl_tolerance_rows"][name] > 0 and not rows[name, dimension] and not rows[name, ""]
+
+    return Rule(
+        text=f"{key.replace('_', ' ')} has no row in the class",
+        excel=f"AND({any_row}>0,{own}=0,{base}=0)",
+        holds=holds,
+    )
+
+
 def _required(column: Column) -> Sequence[Rule]:
     """Return the rules of a column of Correlations."""
     rules = [missing(column)] if column.required else []
@@ -239,6 +258,7 @@ CORRELATION_STATUS = (
                 excel="TRIM({dimension_1})=TRIM({dimension_2})",
                 holds=lambda row, _: entry_text(row, "dimension_1").strip() == entry_text(row, "dimension_2").strip(),
             ),
+            *(_without_row(key) for key in ("dimension_1", "dimension_2")),
             Rule(
                 text="pair used twice",
                 excel=f"{_same_cells('dimension_1', 'dimension_2')}+{_same_cells('dimension_2', 'dimension_1')}>1",
