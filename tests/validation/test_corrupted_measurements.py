@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import datetime
+import math
 from collections.abc import Callable
 from random import Random
 from typing import Any, NamedTuple
@@ -9,7 +11,8 @@ from typing import Any, NamedTuple
 import pytest
 from measured_parts import HEADERS, measured_rows, samples_of
 
-from flexlash.reading.raw import ERROR_WORDS, ErrorCell, RawSheet, Submission
+from flexlash.analysis.assessment import assess
+from flexlash.reading.raw import ERROR_WORDS, ErrorCell, Percentage, RawSheet, Submission, Unstored
 from flexlash.validation.validate import validate
 
 pytestmark = pytest.mark.slow
@@ -103,7 +106,7 @@ def _submission(rows: list[list[Any]]) -> Submission:
             name=name,
             rows={
                 number: {
-                    column: ErrorCell(value) if value in ERROR_WORDS else value
+                    column: ErrorCell(value) if isinstance(value, str) and value in ERROR_WORDS else value
                     for column, value in enumerate(line, start=1)
                     if value is not None
                 }
@@ -113,6 +116,29 @@ def _submission(rows: list[list[Any]]) -> Submission:
         for name, table in lines.items()
     }
     return Submission(name="corrupted.xlsx", sha256="", kind="workbook", sheets=sheets)
+
+
+_ANYTHING = (
+    1e308, -1e308, 5e-324, -5e-324, 1e-300, 1e200, 1e154, 1e30, 1e9, 0, -0.0, 2**53 + 1, 10**30, 1.6, math.nan,
+    math.inf, "", " ", "1e999", "=1+1", "x" * 300, "\ud800", "{place}", "%s", "1,6", "#REF!", "TRUE", True, Unstored(),
+    Percentage(0.05), Percentage(1e300), datetime.date(2026, 4, 1), datetime.time(23, 59), datetime.timedelta(days=-3),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("use", [None, "deviation"])
+def test_whatever_was_measured_is_judged(use):
+    """Cells of any content, tiny and huge numbers among them, end in findings at cells that are there."""
+    for seed in range(150):
+        random = Random(seed)  # noqa: S311
+        rows = measured_rows(random.choice((5, 8, 40)), "walls", use)
+        for _ in range(random.choice((1, 3, 60))):
+            random.choice(rows)[random.randrange(5)] = random.choice(_ANYTHING)
+        for row in rows if seed % 5 == 0 else ():
+            row[_WALL] = random.choice([one for one in _ANYTHING if type(one) is float and math.isfinite(one)])
+        validated = validate(_submission(rows))
+        assess(validated, validated.settings)
+        there = {f"{column}{number}" for column in _COLUMNS for number in range(1, len(rows) + 2)}
+        assert {one.cell for one in validated.findings if one.sheet == "Measurements"} <= there, seed
 
 
 def _is_spare(cell: str) -> bool:

@@ -24,6 +24,9 @@ __all__ = [
 ScattersBetween: TypeAlias = Literal["parts", "lots"]
 """Whether every part has a value of its own, or a whole lot one."""
 
+_UNSEEN, _LAST_DIGITS = 1e-15, 1e-13
+"""Difference [SI], and as a share of the value, up to which two measured values are one."""
+
 FAR = 8.3
 """Beyond this many standard deviations a normal has no weight in double precision."""
 
@@ -82,14 +85,16 @@ class MeasuredDimension:
 
     @property
     def scatters(self) -> bool:
-        """Whether some of the values differ."""
-        return min(self.values) < max(self.values)
+        """Whether some of the values differ by more than their last digits, and by more than any gauge sees."""
+        least, most = min(self.values), max(self.values)
+        return most - least > _UNSEEN + _LAST_DIGITS * max(abs(least), abs(most))
 
     @cached_property
     def standard_deviation(self) -> float:
         """Standard deviation of the values (n − 1), about their rounded mean; 0 where they do not differ."""
-        squares = math.fsum((value - self.mean) ** 2 for value in self.values)
-        return math.sqrt(squares / (len(self.values) - 1)) if self.scatters else 0.0
+        if not self.scatters:
+            return 0.0
+        return math.sqrt(math.fsum((value - self.mean) ** 2 for value in self.values) / (len(self.values) - 1))
 
     @cached_property
     def _digest(self) -> int:

@@ -235,8 +235,11 @@ def _mean_and_sd(values: Array) -> tuple[float, float]:
     if values.min() == values.max():
         return float(values[0]), 0.0
     mean = math.fsum(values.tolist()) / len(values)
-    squares = math.fsum(((values - mean) ** 2).tolist())
-    return mean, math.sqrt(squares / (len(values) - 1))
+    beyond = values - mean
+    # Over the greatest of them, so that no square of a tiny or a huge one is lost.
+    greatest = float(np.max(np.abs(beyond)))
+    squares = math.fsum(((beyond / greatest) ** 2).tolist())
+    return mean, greatest * math.sqrt(squares / (len(values) - 1))
 
 
 def _normal_scores(values: Array) -> Array:

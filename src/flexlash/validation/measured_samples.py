@@ -23,6 +23,9 @@ _COLUMNS = columns_of("Measurements")
 _MEANT_AS_DEVIATIONS = 0.2
 """Share of values that are not above 0 from which on they are deviations rather than slips."""
 
+_GREATEST = 1e9
+"""Greatest number, in any unit, that a dimension or deviation can be; beyond it sums of squares end."""
+
 _Part = tuple[int, float | None]
 """Row of a part and what was measured [printed unit]; None for a cell that could not be read."""
 
@@ -74,9 +77,9 @@ class _Gathering:
         measured: dict[str, dict[str, MeasuredDimension]] = {name: {} for name in self.rows}
         for column in _COLUMNS.values():
             for name, parts in self._parts_under(column).items():
+                values = [(row, value) for row, value in parts if value is not None and abs(value) <= _GREATEST]
                 self.faults[name, column.dimension] += [row for row, value in parts if value is None]
-                self.faults[name, column.dimension] += spoilt[name]
-                values = [(row, value) for row, value in parts if value is not None]
+                self.faults[name, column.dimension] += [*spoilt[name], *self._report_endless(column, parts)]
                 if uses[name] == "value":
                     self._check_bounds(name, column, values)
                 self._report_odd(name, column, values, are_sizes=uses[name] == "value")
@@ -142,6 +145,13 @@ class _Gathering:
                 self._report("E342", by_use[fewest][0], "use_as", **facts)
                 spoilt[name].append(by_use[fewest][0])
         return uses, spoilt
+
+    def _report_endless(self, column: Column, parts: Sequence[_Part]) -> list[int]:
+        """Report numbers that are no size at all; return their rows."""
+        rows = [row for row, value in parts if value is not None and abs(value) > _GREATEST]
+        for row in rows:
+            self._report("E208", row, column.key, requirement=f"{column.requirement}, at most {_GREATEST:,.0f},")
+        return rows
 
     def _check_bounds(self, name: str, column: Column, values: Sequence[tuple[int, float]]) -> None:
         """Report sizes that no part can have."""

@@ -62,7 +62,7 @@ def _report_scatter(sample: MeasuredDimension, row: ToleranceRow, tolerances: Ta
         found = f"{count} value{'s' * (count > 1)}"
         ledger.add("E340", found=found, **facts)
         return True
-    if min(sample.values) == max(sample.values):
+    if not sample.scatters:
         unit = "" if column.unit in {"", "-"} else f" {column.unit}"
         detail = f"{sample.values[0] / column.si_unit.si:.10g}{unit}"
         ledger.add("E341", found=f"{count} values", detail=detail, **facts)

@@ -39,6 +39,8 @@ _OWNERS: Mapping[str, tuple[str, ...]] = {
     "Materials": ("material",),
     "Tolerances": ("tolerance_class", "dimension"),
     "Settings": ("setting",),
+    "Measurements": ("sample", "part"),
+    "Correlations": ("tolerance_class", "dimension_1", "dimension_2"),
 }
 """The columns that say whose row it is, by entry sheet."""
 
