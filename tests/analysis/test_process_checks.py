@@ -148,6 +148,15 @@ def test_a_graded_process_is_told_at_its_row_once(tmp_path):
     assert outcome.results["status"].to_list() == ["error", "ok", "error", "ok", "warning"]
 
 
+def test_a_cpk_beside_a_graded_shift_is_compared(tmp_path):
+    """Where the limits are a grade's, Cpk and mean shift are compared at the size: 7 of 12.5 µm leave 0.44 of Cp."""
+    graded = {"dimension": "wall_thickness", "grade": "IT9", "cp": 1.5, "mean_shift": -0.007}
+    classes = {"apart": graded | {"cpk": 1.1}, "alike": graded | {"cpk": 0.66}}
+    outcome = check(book(tmp_path, classes))
+    assert told(outcome) == [("W443", "Tolerances!F2")]
+    assert "for variant apart with this Mean shift Cpk is 0.66; the mean shift is used." in str(outcome.findings)
+
+
 def test_some_variants_of_a_class_are_held(tmp_path):
     """Only the variants whose grade is too close for the process wait; the others of the class are computed."""
     classes = {

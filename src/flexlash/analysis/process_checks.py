@@ -17,6 +17,7 @@ from flexlash.schema.spellings import plain
 from flexlash.schema.variant import Limits, ToleranceRow, Variant
 from flexlash.tolerance.limit_arrays import LimitArrays
 from flexlash.validation.ledger import Ledger
+from flexlash.validation.process_entries import BLAMED
 from flexlash.validation.validated import Table, Validated
 
 __all__ = ["processes_are_usual", "report_processes"]
@@ -37,7 +38,7 @@ def processes_are_usual(
     for row in rows:
         if row.dimension in limits and _hangs_on_size(row):
             one = limits[row.dimension]
-            usual = usual & is_usual_process(one.low, one.high, one.mean, one.sd)
+            usual = usual & is_usual_process(one.low, one.high, one.mean, one.sd) & (row.cpk is None)
     return usual
 
 
@@ -54,7 +55,7 @@ def report_processes(
         if limit is None or not limit.low < limit.high or not _hangs_on_size(row):
             continue
         sd = limit.standard_deviation
-        verdict = process_verdict(limit.low, limit.high, limit.mean, sd, is_entered=row.sd is not None)
+        verdict = process_verdict(limit.low, limit.high, limit.mean, sd, is_entered=row.sd is not None, cpk=row.cpk)
         if verdict and (row.sample or validated.tolerances is None):
             _report_at_variant(ledger, variant, row, verdict)
         elif verdict and validated.tolerances:
@@ -71,8 +72,7 @@ def _report_at_variant(ledger: Ledger, variant: Variant, row: ToleranceRow, verd
 
 def _report_at_row(ledger: Ledger, variant: Variant, table: Table, row: ToleranceRow, verdict: ProcessVerdict) -> None:
     """Record a process at the cell of Tolerances that tells it, unless it is told; an error holds the variant."""
-    keys = ("mean_shift", "cpk") if verdict.blamed == "mean" else ("standard_deviation", "cp")
-    key = next((key for key in keys if table.entered(row.row, key) != ""), "dimension")
+    key = next((key for key in BLAMED[verdict.blamed] if table.entered(row.row, key) != ""), "dimension")
     if verdict.code[0] == "E":
         ledger.hold("class", plain(variant.tolerance_class), table.sheet, row.row, variant.row)
     place = (verdict.code, table.sheet, str(table.address(row.row, key)))

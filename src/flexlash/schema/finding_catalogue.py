@@ -1019,7 +1019,7 @@ CATALOGUE = _rules(
     (
         "W443",
         "Cpk and mean shift disagree",
-        "{place} {name} = {value}: with this Mean shift Cpk is {other}; the mean shift is used.",
+        "{place} {name} = {value}: {detail}; the mean shift is used.",
         "Clear the mean shift to take the mean from Cp and Cpk, or clear Cpk.",
         "Cp and Cpk give how far the mean lies off the middle, and the harmful side is taken. A mean shift says it "
         "itself, with its side.",

@@ -21,22 +21,27 @@ _LEAST = 0.5
 _FARTHEST = 3.0
 """Standard deviations beyond the limits from which on hardly one part in a thousand is within them."""
 
+_HUNDREDTH = 0.0051
+"""Difference of two Cpk from which on they are not one number in two decimals."""
+
 _ROUNDING = 1e-9
 
 
 class ProcessVerdict(NamedTuple):
-    """What is wrong with a process: the code of the finding, whether mean or scatter is to blame, and the words."""
+    """What is wrong with a process: the code of the finding, which of mean, scatter and cpk is to blame, the words."""
 
     code: str
     blamed: str
     words: str
 
 
-def process_verdict(low: float, high: float, mean: float, sd: float, *, is_entered: bool) -> ProcessVerdict | None:
+def process_verdict(
+    low: float, high: float, mean: float, sd: float, *, is_entered: bool, cpk: float | None = None
+) -> ProcessVerdict | None:
     """Return what is wrong with a process of this mean and sd between limits that differ, None where it can be meant.
 
     All four in one unit. A standard deviation that is itself entered must also be a usual one, since it may be in
-    another unit.
+    another unit; `cpk` is one that is told beside the mean.
 
     >>> process_verdict(-2.0, 2.0, 5.5, 1.0, is_entered=True).words
     'the mean of the process lies 3.5 standard deviations beyond the limits; at most 3 is possible'
@@ -50,6 +55,9 @@ def process_verdict(low: float, high: float, mean: float, sd: float, *, is_enter
         return ProcessVerdict("E339", "mean", f"the mean of the process lies {words}")
     if beyond > _ROUNDING * (high - low):
         return ProcessVerdict("W442", "mean", "the mean of the process lies")
+    given = min(high - mean, mean - low) / (3 * sd)
+    if cpk is not None and abs(given - cpk) > _HUNDREDTH:
+        return ProcessVerdict("W443", "cpk", f"with this Mean shift Cpk is {spelled_out(given)}")
     if is_entered and not _FEWEST * (1 - _ROUNDING) <= sigma <= _MOST * (1 + _ROUNDING):
         return ProcessVerdict("W444", "scatter", f"it puts the limits at ± {spelled_out(sigma)}")
     return None

@@ -112,9 +112,10 @@ class ToleranceRow:
 
     `mean_shift` and `sd` of a normal process are in the unit of the deviations, so that they are relative, too.
     `harmful_shift` says instead which share of the width of the limits the mean lies off their middle, to the side
-    that raises the backlash. `sample` is what was measured of the dimension: its mean and standard deviation are those
-    of the process. `scatters_between` says whether it is one value for a whole lot. A row that a class takes over from
-    another keeps the name and the row number of that class.
+    that raises the backlash. `cpk` is the one told beside a mean shift, which should give it. `sample` is what was
+    measured of the dimension: its mean and standard deviation are those of the process. `scatters_between` says whether
+    it is one value for a whole lot. A row that a class takes over from another keeps the name and the row number of
+    that class.
     """
 
     row: int
@@ -129,6 +130,7 @@ class ToleranceRow:
     mean_shift: float = 0.0
     sd: float | None = None
     harmful_shift: float = 0.0
+    cpk: float | None = None
     sample: MeasuredDimension | None = None
     scatters_between: ScattersBetween = "parts"
 

@@ -11,15 +11,19 @@ from flexlash.schema.variant import ToleranceRow
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import Table
 
-__all__ = ["check_process", "check_verdict"]
+__all__ = ["BLAMED", "check_process", "check_verdict"]
 
 _COLUMNS = columns_of("Tolerances")
+BLAMED = {
+    "mean": ("sample", "mean_shift", "cpk"),
+    "scatter": ("sample", "standard_deviation", "cp"),
+    "cpk": ("cpk",),
+}
+"""The cells of which the first that is filled is to blame for where a process lies, or how it scatters."""
+
 _OF_A_PROCESS = ("mean_shift", "standard_deviation", "cp", "cpk", "sample")
 _SCATTERS = ("limits_sigma", "standard_deviation", "cp", "sample")
 """What tells the standard deviation, of which a row has one at most."""
-
-_HUNDREDTH = 0.0051
-"""Difference of two Cpk from which on they are not one number in two decimals."""
 
 
 def check_process(table: Table, ledger: Ledger, record: Mapping[str, Any]) -> None:
@@ -91,18 +95,9 @@ def check_verdict(table: Table, ledger: Ledger, record: Mapping[str, Any], row: 
     mean = middle + row.mean_shift + row.harmful_shift * width
     if sample:
         mean, sd = sample.mean, sample.standard_deviation
-    _check_agreement(table, ledger, record, (width / 2 - abs(row.mean_shift)) / (3 * sd))
-    verdict = process_verdict(row.lower, row.upper, mean, sd, is_entered=row.sd is not None)
+    verdict = process_verdict(row.lower, row.upper, mean, sd, is_entered=row.sd is not None, cpk=row.cpk)
     if verdict is None:
         return True
-    to_blame = ("sample", "mean_shift", "cpk") if verdict.blamed == "mean" else ("sample", "standard_deviation", "cp")
-    key = next((key for key in to_blame if record[key] is not None), "dimension")
+    key = next((key for key in BLAMED[verdict.blamed] if record[key] is not None), "dimension")
     ledger.add_in(table, verdict.code, record["row"], key, value=record[key], detail=verdict.words)
     return verdict.code[0] != "E"
-
-
-def _check_agreement(table: Table, ledger: Ledger, record: Mapping[str, Any], implied: float) -> None:
-    """Warn of a Cpk that is not the one that the mean shift beside it gives."""
-    cpk = record["cpk"]
-    if cpk is not None and record["mean_shift"] is not None and abs(implied - cpk) > _HUNDREDTH:
-        ledger.add_in(table, "W443", record["row"], "cpk", value=cpk, other=f"{implied:.4g}")

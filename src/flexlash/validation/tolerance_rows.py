@@ -73,6 +73,8 @@ def _process(record: Mapping[str, Any], factor: float) -> dict[str, float]:
         found["limits_sigma"] = float(f"{3 * cp:.15g}")
         if cpk is not None and shift is None:
             found["harmful_shift"] = (cp - cpk) / (2 * cp)
+        elif cpk is not None:
+            found["cpk"] = cpk
     return found
 
 
