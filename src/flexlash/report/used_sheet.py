@@ -24,11 +24,11 @@ USED = "Tolerances used"
 _NOTES = (
     "Limits are the drawing's, whatever the process does: worst case and shares outside the drawing take them. Mean "
     "and standard deviation are those of the parts. A dimension without a row is exact.",
-    "What the sheet Trace adds up to first order for one variant stands here for all; the file of -o NAME.json holds "
+    "What Trace spread adds up for one variant stands here for all; the file of -o NAME.json holds "
     "the same with every digit, under tolerances.",
 )
 _HEADER = len(_NOTES) + 2
-_WIDTHS = {"variant": 26.0, "dimension": 24.0, "unit": 7.0, "distribution": 17.0, "scatters_with": 40.0, "source": 52.0}
+_WIDTHS = {"variant": 26.0, "dimension": 24.0, "unit": 7.0, "distribution": 17.0, "scatters_with": 24.0, "source": 44.0}
 _WIDTH = 12.0
 _STYLES = dict.fromkeys(("distribution", "scatters_between", "source"), "indented") | {"scatters_with": "indented wrap"}
 _MORE_DIGITS = {"mean": 10, "standard_deviation": 100}

@@ -135,6 +135,8 @@ class _Sums:
         numbers, top, of_all, of_lots = tied.cells(NUMBER), self.row + 1, [], []
         first = IFERROR(MATCH(number, numbers, 0), 0.0)
         last = IF(first > 0, MATCH(number, numbers, 1), 0.0)
+        remark = IF(first > 0, "", "none of this variant")
+        put(self.sheet, self.row, _FIRST - 1, remark, self.book.format("hint"))
         for line in range(_most(tied)):
             place = first + line
             here = AND(first > 0, place <= last)
