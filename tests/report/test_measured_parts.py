@@ -6,12 +6,14 @@ import re
 from types import SimpleNamespace
 
 import numpy as np
+import openpyxl
 import polars as pl
 import pytest
 from grids import for_each
 from said import said_of
 
 from flexlash.pipeline import run
+from flexlash.report.results_sheet import FIRST_ROW
 from flexlash.report.wording.measured_parts import PARTS, how_left_open, left_open_by, left_open_words
 from flexlash.schema.variant import Limits, MeasuredDimension
 
@@ -25,7 +27,7 @@ standard,youngs_modulus,-0.5,0.5,%,
 def told(table, sound, tmp_path):
     """Return a function that spreads variants with these limits by so many measured walls, and gives the outcome."""
 
-    def tell(count, *limits, sample="lot"):
+    def tell(count, *limits, sample="lot", output=None):
         wall = float(sound["wall_thickness_mm"])
         values = np.random.default_rng(4).standard_normal(count)
         values = wall + 0.004 * (values - values.mean()) / values.std(ddof=1)
@@ -36,7 +38,7 @@ def told(table, sound, tmp_path):
         rows = [{**sound, "variant": f"v{place}", "backlash_limit_arcmin": limit} for place, limit in enumerate(limits)]
         for row in rows:
             row.pop("tolerance_class", None)
-        return run(table(rows), tolerances=tolerances, measurements=measurements)
+        return run(table(rows), output, tolerances=tolerances, measurements=measurements)
 
     return tell
 
@@ -141,3 +143,19 @@ def test_a_class_without_its_sample_has_no_interval(told):
     outcome = told(20, 3.75, sample="")
     assert outcome.results["p99_865_sample_low_arcmin"].null_count() == 1
     assert PARTS not in said_of(outcome)
+
+
+def test_explorer_and_results_show_what_is_left_open(told, tmp_path):
+    """The Explorer tells it of the picked variant, the worst; Results shows the ends in digits that tell them apart."""
+    report = tmp_path / "report.xlsx"
+    outcome = told(20, 3.723, output=report)
+    (found,) = outcome.results.to_dicts()
+    book = openpyxl.load_workbook(report, data_only=True)
+    assert book["Explorer"]["A17"].value == "Left open by measured parts"
+    assert book["Explorer"]["B17"].value == left_open_words(found)
+    keys = {cell.value: cell.column for cell in book["Results"][2]}
+    for key in ("probability_over_limit_sample_low", "probability_over_limit_sample_high"):
+        cell = book["Results"].cell(row=FIRST_ROW + 1, column=keys[key])
+        assert cell.value == pytest.approx(found[key])
+        decimals = len(cell.number_format.rstrip("%").partition(".")[2])
+        assert 0.01 < 10.0**-decimals / (100 * found[key]) <= 0.1
