@@ -162,6 +162,32 @@ def test_a_dimension_that_does_nothing_leaves_nothing_open():
     assert not {*KEYS} & {*told(one)[0].numbers}
 
 
+def root(dimensions):
+    """Return what only sizes from 0.65 on have."""
+    return np.sqrt(dimensions["torque"] - 0.65)
+
+
+def test_ends_that_reach_what_cannot_be_tell_nothing():
+    """Where an end reaches impossible shapes nothing is told, and rows beside it keep their bits."""
+    near, far = (
+        row(root, {"torque": 1.0}, {"torque": replace(sampled("torque", *ends, 5), distribution="measured")}, 1.2)
+        for ends in ((0.96, 1.04), (0.72, 1.28))
+    )
+    alone = interval(told(near)[0])
+    first, second = told(near, far)
+    assert interval(first) == alone
+    assert not {*KEYS} & {*second.numbers}
+
+
+def test_a_wide_process_of_few_parts_keeps_to_where_it_ended():
+    """The upper end of a scatter that would reach impossible sizes is cut where the process as measured ends."""
+    wide = sampled("torque", 0.6, 1.4, 5)
+    one = row(lambda d: np.sqrt(d["torque"]), {"torque": 1.0}, {"torque": wide}, 1.2)
+    low, high, least, most = interval(told(one)[0])
+    assert 0 <= low < high < 0.5
+    assert least < most < (1 + 8.3 * 0.1) ** 0.5
+
+
 def test_lots_do_not_change_it():
     """What lots share is no matter of how many parts were measured."""
     one = cup()

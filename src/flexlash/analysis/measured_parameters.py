@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from flexlash.schema.arrays import Array
-from flexlash.schema.variant import Limits, MeasuredDimension
+from flexlash.schema.variant import FAR, Limits, MeasuredDimension
 from flexlash.tolerance.combined_uncertainty import standard_scores
 from flexlash.tolerance.correlation import Entry, correlated_scores, score_factor
 from flexlash.tolerance.nearest_correlation import admissible_interval
@@ -24,6 +24,9 @@ from flexlash.tolerance.sample_uncertainty import SampleUncertainty
 from flexlash.tolerance.shape_uncertainty import BENDS, bent_values
 
 __all__ = ["EndRows", "ends_of", "moves_of", "products_of"]
+
+_MOST_REACH = 0.5
+"""Part of a size that a normal process may reach to either side; what goes further is cut where it ended before."""
 
 _AS_MEASURED = "measured"
 """Distribution of a dimension that is taken as its values are, not as normal with their mean and sd."""
@@ -119,6 +122,8 @@ def _of_dimension(row: TolerancedRow, name: str, limit: Limits) -> Iterator[EndR
 
     def moved(offset: float, ratio: float) -> TolerancedRow:
         process = replace(limit, mean_shift=limit.mean_shift + offset * sd, sd=ratio * sd)
+        if limit.distribution == "normal" and FAR * process.standard_deviation > _MOST_REACH * abs(process.mean):
+            process = replace(process, cut=limit.cut or limit.reach)
         return replace(row, limits={**row.limits, name: process})
 
     off, (low, high) = uncertainty.offset_end, uncertainty.sd_ends

@@ -6,8 +6,11 @@ measured dimension are moved to the ends of their intervals, one at a time, and 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from flexlash.analysis.measured_parameters import EndRows, ends_of, moves_of, products_of
 from flexlash.tolerance.combined_uncertainty import (
@@ -49,34 +52,50 @@ def with_measured_uncertainty(
     return known
 
 
-def _spread(rows: Sequence[TolerancedRow], plan: SamplingPlan) -> list[SpreadStatistics]:
-    """Return the statistics of rows, rows alike together."""
-    found: dict[int, SpreadStatistics] = {}
-    for batch in batches_alike(rows):
-        found |= zip(batch, batch_statistics([rows[index] for index in batch], plan), strict=True)
+def _spread(rows: Sequence[TolerancedRow], plan: SamplingPlan) -> list[SpreadStatistics | None]:
+    """Return the statistics of rows, rows alike together; None where shapes that cannot be are reached."""
+    found: dict[int, SpreadStatistics | None] = {}
+    with np.errstate(all="ignore"):
+        for batch in batches_alike(rows):
+            try:
+                found |= zip(batch, batch_statistics([rows[index] for index in batch], plan), strict=True)
+            except ValueError:
+                found |= {index: _alone(rows[index], plan) for index in batch}
     return [found[index] for index in range(len(rows))]
+
+
+def _alone(row: TolerancedRow, plan: SamplingPlan) -> SpreadStatistics | None:
+    """Return the statistics of a row whose like reach shapes that cannot be; None where it does so itself."""
+    try:
+        return batch_statistics([row], plan)[0]
+    except ValueError:
+        return None
 
 
 def _intervals(
     row: TolerancedRow,
-    first: SpreadStatistics,
+    first: SpreadStatistics | None,
     ends: Sequence[EndRows],
-    spread: Sequence[tuple[SpreadStatistics, SpreadStatistics]],
+    spread: Sequence[tuple[SpreadStatistics | None, SpreadStatistics | None]],
 ) -> dict[str, float]:
-    """Return the ends of the intervals of one row, of its spread as it is and with each parameter at either end."""
-    output = _numbers(first)
-    if not output.sd > 0:
+    """Return the ends of the intervals of one row, of its spread as it is and with each parameter at either end.
+
+    There are none where nothing scatters, or where a parameter's end reaches shapes that cannot be.
+    """
+    known = [_numbers(one) for one in (first, *(one for pair in spread for one in pair)) if one is not None]
+    if len(known) <= 2 * len(spread) or not known[0].sd > 0 or not all(one.is_known for one in known):
         return {}
+    output, at_ends = known[0], zip(known[1::2], known[2::2], strict=True)
     parameters = [
         Parameter(
             moves=moves,
             low=end.low,
             high=end.high,
-            at_low=_numbers(low),
-            at_high=_numbers(high),
+            at_low=low,
+            at_high=high,
             scatters=end.scatters,
         )
-        for moves, end, (low, high) in zip(moves_of(row), ends, spread, strict=True)
+        for moves, end, (low, high) in zip(moves_of(row), ends, at_ends, strict=True)
     ]
     products = [
         Product(first=parameters[one], second=parameters[two], correlation=parameters[place], estimate=estimate)
@@ -93,8 +112,9 @@ def _intervals(
 
 
 def _numbers(statistics: SpreadStatistics) -> OutputNumbers:
-    """Return what of a row's statistics the intervals are made of."""
-    mean, sd, percentile = (statistics.numbers[name] or 0.0 for name in ("mean", "sd", "p99_865"))
+    """Return what of a row's statistics the intervals are made of; NaN where it has none."""
+    found = (statistics.numbers.get(name) for name in ("mean", "sd", "p99_865"))
+    mean, sd, percentile = (math.nan if number is None else number for number in found)
     return OutputNumbers(
         mean=mean, sd=sd, percentile=percentile, probability=statistics.numbers.get("probability_over_limit")
     )

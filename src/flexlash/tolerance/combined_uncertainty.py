@@ -41,6 +41,11 @@ class OutputNumbers:
     probability: float | None = None
 
     @property
+    def is_known(self) -> bool:
+        """Whether all of them are numbers: impossible shapes have none."""
+        return all(map(math.isfinite, (self.mean, self.sd, self.percentile, self.probability or 0.0)))
+
+    @property
     def score(self) -> float:
         """Normal score of what stays below the limit, within what counts as neither none nor all."""
         return min(max(-float(ndtri(self.probability or 0.0)), -_FARTHEST), _FARTHEST)

@@ -75,8 +75,8 @@ class SampleUncertainty:
         if count < _FEWEST:
             raise ValueError(f"values are {count}: at least {_FEWEST} are required")
         ordered = sorted(values)
-        trimmed = int(count / (2 * math.sqrt(count - 4))) if count > _FEWEST else 0
-        kept = ordered[trimmed : count - trimmed] or ordered
+        trimmed = int(count / (2 * math.sqrt(count - 4)))
+        kept = ordered[trimmed : count - trimmed]
         mean = math.fsum(ordered) / count
         middle = math.fsum(kept) / len(kept)
         squares = math.fsum((value - mean) ** 2 for value in ordered)

@@ -23,8 +23,8 @@ Values: TypeAlias = tuple[float, ...]
 BENDS = 2
 """Ways in which a curve is bent: more or less skewed, with longer or shorter tails."""
 
-_POINTS = 1000
-"""Values that stand for a bent curve, so many that its tails do not end where a limit may lie."""
+_POINTS = 1000, 20_000
+"""Fewest and most values that stand for a bent curve, so many that its tails do not end where a limit may lie."""
 
 _CAUTION = 1.5
 """Times the standard errors by which a curve is bent: few values show less of a tail than there is."""
@@ -53,7 +53,8 @@ def bent_values(values: Values) -> tuple[tuple[Values, Values], ...]:
 
 def _bent(values: Values) -> Iterator[tuple[Values, Values]]:
     """Yield the pairs; bends that turn a curve back are put in order."""
-    scores = ndtri((np.arange(_POINTS) + 0.625) / (_POINTS + 0.25))
+    points = min(max(len(values), _POINTS[0]), _POINTS[1])
+    scores = ndtri((np.arange(points) + 0.625) / (points + 0.25))
     curve, (skewness, kurtosis) = _curve(values, scores), _errors(values)
     reach = _CAUTION * float(ndtri(0.975))
     for bend in (skewness / 6 * (scores**2 - 1), kurtosis / 24 * (scores**3 - 3 * scores)):
