@@ -18,6 +18,7 @@ from flexlash import __version__
 from flexlash.cli import cli, main
 from flexlash.schema.columns import ENTRY_SHEETS
 from flexlash.schema.finding_catalogue import CATALOGUE
+from flexlash.validation.template_versions import TEMPLATE_VERSION
 
 SHAPE = [
     "submission", "path", "sha256", "version", "seed", "method", "seconds", "exit_code", "error", "counts", "findings",
@@ -330,7 +331,7 @@ def test_template_never_overwrites_a_filled_one(tmp_path, capsys, main_in):
 def test_template_upgrade_moves_an_old_file(table, sound, capsys, main_in):
     """--upgrade writes a filled template beside the old file, says how many rows moved, and ends with the next step."""
     old = table([{**sound, "day": "1"}, {**sound, "variant": "b", "torque_Nm": ""}])
-    new = old.with_name("submission-v3.xlsx")
+    new = old.with_name(f"submission-v{TEMPLATE_VERSION}.xlsx")
     assert main_in("template", "--upgrade", old) == 0
     said = capsys.readouterr()
     assert said.out.splitlines() == [f"{old}: 2 rows of Variants carried over.", f"Template written: {new}"]
@@ -349,7 +350,10 @@ def test_template_upgrade_says_what_could_not_move(tmp_path, capsys, main_in):
     book.save(old)
     assert main_in("template", "--upgrade", old, "-o", tmp_path / "new.xlsx") == 0
     said = capsys.readouterr()
-    assert said.out.splitlines()[0] == f"{old}, made from template version 3: 11 rows of Variants carried over."
+    assert (
+        said.out.splitlines()[0]
+        == f"{old}, made from template version {TEMPLATE_VERSION}: 11 rows of Variants carried over."
+    )
     assert said.err.splitlines()[:2] == [
         "  Variants!H5: formulas that never stored a result show #N/A until you enter their values.",
         "  The sheet Drawings with 1 row was left behind.",
@@ -361,7 +365,7 @@ def test_template_upgrade_overwrites_neither_old_nor_new(tmp_path, table, sound,
     """An existing file is replaced when told to, the old one never."""
     old = table([sound])
     before = old.read_bytes()
-    new = tmp_path / "submission-v3.xlsx"
+    new = tmp_path / f"submission-v{TEMPLATE_VERSION}.xlsx"
     new.write_bytes(b"filled")
     assert main_in("template", "--upgrade", old) == 2
     assert new.read_bytes() == b"filled"
@@ -395,6 +399,47 @@ def test_template_upgrade_refuses_in_words(tmp_path, capsys, main_in, content, c
 def test_template_upgrade_usage(main_in):
     """The example is no place for an old file."""
     assert main_in("template", "--upgrade", "x.xlsx", "--example") == 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("named", "sheets"),
+    [
+        (["--with", "measurements"], ["Measurements"]),
+        (["--with", " Correlations ,measurements"], ["Measurements", "Correlations"]),
+        (["--with", "measurements", "--with", "correlations"], ["Measurements", "Correlations"]),
+        (["--with", "all", "--example"], ["Measurements", "Correlations"]),
+        (["--example"], []),
+    ],
+)
+def test_template_with_optional_sheets(tmp_path, main_in, named, sheets):
+    """--with adds the sheets that it names, with commas or one by one; all adds each that there is."""
+    assert main_in("template", "-o", tmp_path / "new.xlsx", *named) == 0
+    written = openpyxl.load_workbook(tmp_path / "new.xlsx").sheetnames
+    assert written == ["Variants", "Materials", "Tolerances", "Settings", *sheets, "Dictionary", "Lists"]
+
+
+@pytest.mark.slow
+def test_template_upgrade_with_optional_sheets(tmp_path, table, sound, main_in):
+    """--upgrade and --with go together."""
+    assert main_in("template", "--upgrade", table([sound]), "--with", "all", "-o", tmp_path / "new.xlsx") == 0
+    assert {"Measurements", "Correlations"} < {*openpyxl.load_workbook(tmp_path / "new.xlsx").sheetnames}
+
+
+@pytest.mark.parametrize(
+    ("named", "words"),
+    [
+        ("measurement", "there is no optional sheet measurement. There are measurements, correlations and all."),
+        ("all,sweep", "the sheet sweep comes with a later version of flexlash. There are measurements,"),
+        ("other-sources", "the sheet other-sources comes with a later version"),
+        ("levers", "the sheet levers comes with a later version"),
+    ],
+)
+def test_template_says_which_optional_sheets_there_are(tmp_path, main_in, capsys, named, words):
+    """A sheet that there is not is a mistake of usage; nothing is written."""
+    assert main_in("template", "-o", tmp_path / "new.xlsx", "--with", named) == 2
+    assert words in " ".join(capsys.readouterr().err.split())
+    assert not (tmp_path / "new.xlsx").exists()
 
 
 def test_schema_json_is_the_dictionary():

@@ -11,6 +11,7 @@ import regenerate
 from finding_examples import SUBMISSIONS
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
+from made_up_parts import measured_parts
 
 from flexlash.cli.recreation import recreate
 from flexlash.comparison.difference import difference
@@ -81,6 +82,16 @@ def _data(name, **options):
     return lambda folder, sound: (regenerate.ROOT / "data" / f"{name}.xlsx", options)  # noqa: ARG005
 
 
+def _measured_tables(folder, sound):  # noqa: ARG001
+    import polars as pl
+
+    filling, paths = measured_parts(), {}
+    for name in ("variants", "tolerances", "measurements", "correlations"):
+        paths[name] = folder / f"{name}.csv"
+        pl.DataFrame(list(getattr(filling, name)), infer_schema_length=None).write_csv(paths[name])
+    return paths.pop("variants"), paths
+
+
 MADE = {
     "the study": _data("b3-160-study", strict=True),
     "faults": _data("needs-fixing"),
@@ -95,6 +106,8 @@ MADE = {
     "a copied sheet": _example("a copied sheet"),
     "hidden and merged": _example("overlooked"),
     "a later sheet": _example("calibrated"),
+    "measured parts": _data("measured-parts"),
+    "tables of measured parts": _measured_tables,
 }
 
 
@@ -116,7 +129,11 @@ def test_the_report_is_made_anew_to_the_byte(what, tmp_path, sound):
     assert found.different == 0
     assert found.numbers > 30
     assert found.outcome.outputs == (tmp_path / f"{path.stem}-recreated.xlsx", tmp_path / "anew.xlsx")
-    kept = {key: value for key, value in options.items() if key not in {"tolerances", "materials"}}
+    kept = {
+        key: value
+        for key, value in options.items()
+        if key not in {"tolerances", "materials", "measurements", "correlations"}
+    }
     again = run(found.outcome.outputs[0], **kept)
     numbers = [name for name in original.results.columns if name not in {"findings", "status"}]
     assert again.results.select(numbers).equals(original.results.select(numbers))

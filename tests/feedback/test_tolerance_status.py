@@ -153,6 +153,15 @@ def test_without_measurements_there_is_no_sample(tmp_path):
     assert _statuses(file, "Tolerances", FIRST_ROW + 1 + _STANDARD, 2) == ["sample without a sheet Measurements", None]
 
 
+def test_a_class_may_hold_nothing_but_its_base(tmp_path):
+    """A variant may name a class that is only based on another, and a gap above it in Tolerances changes nothing."""
+    file = tmp_path / "based.xlsx"
+    rows = [SOUND | {"variant": name, "tolerance_class": name} for name in ("shop", "shoq")]
+    file.write_bytes(filled(rows, tolerances=[{}, {"tolerance_class": "shop", "based_on": "standard"}]))
+    assert _statuses(file, "Variants", FIRST_ROW + 1, 2) == ["complete", "tolerance class not in Tolerances"]
+    assert _statuses(file, "Tolerances", FIRST_ROW + 1 + _STANDARD, 2) == [None, "complete"]
+
+
 @pytest.mark.slow
 @needs_libreoffice
 def test_the_status_formula_calculates_what_is_stored(path, tmp_path):

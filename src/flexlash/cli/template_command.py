@@ -39,7 +39,7 @@ def _optional(context: click.Context, option: click.Parameter, value: tuple[str,
 @click.command()
 @click.option(
     "-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE.xlsx",
-    help="Where to write it. Default: flexlash-template.xlsx; with --upgrade OLD-v2.xlsx beside OLD.",
+    help="Where to write it. Default: flexlash-template.xlsx; with --upgrade beside OLD, as OLD-vVERSION.xlsx.",
 )  # fmt: skip
 @click.option("--example", is_flag=True, help="Fill it with the published B3-160 study.")
 @click.option(
