@@ -185,11 +185,11 @@ def _processes(folder: Path) -> Made:
     rows = {
         "unknown sample": wall | {"sample": "walls"},
         "unknown base": {"based_on": "standart"},
-        "told twice": wall | {"limits_sigma": 3, "standard_deviation": 0.004},
+        "twice": wall | {"limits_sigma": 3, "standard_deviation": 0.004},
         "above Cp": wall | {"cp": 1.1, "cpk": 1.33},
         "uniform": wall | {"distribution": "uniform", "mean_shift": 0.007},
         "circle": {"based_on": "circle"},
-        "far off": wall | {"mean_shift": 7, "standard_deviation": 0.004},
+        "far": wall | {"mean_shift": 7, "standard_deviation": 0.004},
         "outside": wall | {"mean_shift": 0.022, "standard_deviation": 0.004},
         "disagree": wall | {"mean_shift": 0.007, "cp": 1.5, "cpk": 1.1},
         "micrometres": wall | {"standard_deviation": 4.1e-6},

@@ -614,7 +614,7 @@ CATALOGUE = _rules(
     (
         "E335",
         "process told twice",
-        "{place} {name} = {value}, beside {other}: both tell of the same process; one of them is required.",
+        "{place} {name} = {value}, beside {other}: only one of them can hold.",
         "Clear one of the two cells.",
         "Limits at ± sigma, Standard deviation, Cp and Sample each give the standard deviation, and Sample the mean as "
         "well. With two of them flexlash cannot know which holds.",

@@ -44,17 +44,17 @@ def process_verdict(
     another unit; `cpk` is one that is told beside the mean.
 
     >>> process_verdict(-2.0, 2.0, 5.5, 1.0, is_entered=True).words
-    'the mean of the process lies 3.5 standard deviations beyond the limits; at most 3 is possible'
+    'the mean lies 3.5 standard deviations beyond the limits; at most 3 is possible'
     """
     sigma, beyond = (high - low) / (2 * sd), max(low - mean, mean - high)
     if sigma < _LEAST * (1 - _ROUNDING):
         words = f"{spelled_out(sigma)} standard deviations off their middle; at least 0.5 is required"
-        return ProcessVerdict("E339", "scatter", f"the limits of the process lie {words}")
+        return ProcessVerdict("E339", "scatter", f"the limits lie {words}")
     if beyond > _FARTHEST * sd * (1 + _ROUNDING):
         words = f"{spelled_out(beyond / sd)} standard deviations beyond the limits; at most {_FARTHEST:g} is possible"
-        return ProcessVerdict("E339", "mean", f"the mean of the process lies {words}")
+        return ProcessVerdict("E339", "mean", f"the mean lies {words}")
     if beyond > _ROUNDING * (high - low):
-        return ProcessVerdict("W442", "mean", "the mean of the process lies")
+        return ProcessVerdict("W442", "mean", "the mean lies")
     given = min(high - mean, mean - low) / (3 * sd)
     if cpk is not None and abs(given - cpk) > _HUNDREDTH:
         return ProcessVerdict("W443", "cpk", f"with this Mean shift Cpk is {spelled_out(given)}")
