@@ -44,14 +44,14 @@ def process_verdict(
     another unit; `cpk` is one that is told beside the mean.
 
     >>> process_verdict(-2.0, 2.0, 5.5, 1.0, is_entered=True).words
-    'the mean lies 3.5 standard deviations beyond the limits; at most 3 is possible'
+    'the mean lies 3.5 standard deviations beyond the limits; 3 are possible'
     """
     sigma, beyond = (high - low) / (2 * sd), max(low - mean, mean - high)
     if sigma < _LEAST * (1 - _ROUNDING):
         words = f"{spelled_out(sigma)} standard deviations off their middle; at least 0.5 is required"
         return ProcessVerdict("E339", "scatter", f"the limits lie {words}")
     if beyond > _FARTHEST * sd * (1 + _ROUNDING):
-        words = f"{spelled_out(beyond / sd)} standard deviations beyond the limits; at most {_FARTHEST:g} is possible"
+        words = f"{spelled_out(beyond / sd)} standard deviations beyond the limits; {_FARTHEST:g} are possible"
         return ProcessVerdict("E339", "mean", f"the mean lies {words}")
     if beyond > _ROUNDING * (high - low):
         return ProcessVerdict("W442", "mean", "the mean lies")
