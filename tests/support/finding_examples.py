@@ -14,7 +14,7 @@ from typing import Any
 
 import openpyxl
 from entry_books import entry_book
-from measured_parts import HEADERS, measured_rows, samples_of
+from measured_parts import HEADERS, measured_rows, samples_of, scattered
 from openpyxl.packaging.custom import StringProperty
 from small_workbook import MAIN, OLE2, WORKBOOK, archive_of, parts_of
 
@@ -335,10 +335,12 @@ def _measured(folder: Path) -> Made:
     rows += [["coarse", number, None, 1.6, None] for number in range(1, 13)]
     rows += [["round", number, None, wall, None] for number, wall in enumerate([1.6, 1.61] * 20)]
     rows += [["above", number, None, wall, None] for number, wall in enumerate([0.02, -0.01, 0.0, -0.015, 0.01])]
+    rows += [["inch", number, None, None, wall / 25.4] for number, wall in enumerate(scattered(20))]
     rows[5][3], rows[6][0], rows[7][2], rows[9][1] = 16.07, "wal", "deviation", 8
     names = ("wall", "few", "fewer", "coarse", "round", "above")
     variants = _numbered(*({"tolerance_class": name} for name in names))
-    tolerances = samples_of(*((name, "wall_thickness", name) for name in names))
+    variants.append(CUP | {"variant": "inch", "tolerance_class": "inch", "disk_thickness_mm": 1.6})
+    tolerances = samples_of(*((name, "wall_thickness", name) for name in names), ("inch", "disk_thickness", "inch"))
     sheets = {"Variants": _lines(variants), "Tolerances": tolerances, "Measurements": rows}
     return _book(folder, {**sheets, "Correlations": [["of prices", 0.3]]})
 

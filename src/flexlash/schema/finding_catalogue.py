@@ -1093,6 +1093,15 @@ CATALOGUE = _rules(
         "class uses is no fault.",
     ),
     (
+        "W454",
+        "measured in another unit or way",
+        "{place}: the values of {name} in sample {other} are {detail}.",
+        "Write the unit in which was measured into the header; under Use as, value for sizes, deviation for what was "
+        "measured above the entered value.",
+        "A column of micrometres under a header in millimetres, or sizes called deviations, put the whole process "
+        "beside its drawing. The values are used as they stand.",
+    ),
+    (
         "I501",
         "unit converted",
         "{place}: {name} is given in {value} and was converted to {unit}.",

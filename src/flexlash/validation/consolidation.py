@@ -17,7 +17,7 @@ _UNKNOWN = frozenset({"E209", "E210", "E211", "E223", "E224", "E307", "E309"})
 """Codes of names that are unknown however they are spelt."""
 
 
-_TOLD_BY_FIRST = frozenset({"E324", "E339", "W438", "W442", "W443", "W444"})
+_TOLD_BY_FIRST = frozenset({"E324", "E339", "W438", "W442", "W443", "W444", "W454"})
 """Codes of findings elsewhere that the first row which shows them gives their words."""
 
 

@@ -36,6 +36,7 @@ from flexlash.validation.materials_and_classes import (
 from flexlash.validation.meant_names import MeantNames
 from flexlash.validation.measured_samples import Samples, measured_samples
 from flexlash.validation.row_checks import check_cells, check_relations
+from flexlash.validation.sample_sizes import report_sample_sizes
 from flexlash.validation.settings_table import settings_of
 from flexlash.validation.template_versions import TEMPLATE_VERSION, check_version
 from flexlash.validation.typed_columns import tabulate
@@ -68,6 +69,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     if variants is not None:
         _check_rows(variants, used, ledger)
         report_unused_classes(tables.get("Tolerances"), variants, used.classes, ledger)
+        report_sample_sizes(samples, tables.get("Tolerances"), variants, ledger)
     _report_other_sources(submission, ledger)
     sound = None if variants is None or ledger.everything else _sound(variants.frame, ledger.rows)
     return Validated(
