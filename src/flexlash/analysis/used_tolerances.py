@@ -81,8 +81,9 @@ def source_words(row: ToleranceRow, tolerance_class: str) -> str:
     'class standard, built in'
     """
     words = [f"class {tolerance_class}"]
-    if plain(row.tolerance_class) != plain(tolerance_class):
-        words.append(f"taken over from class {row.tolerance_class}")
+    own = row.tolerance_class
+    if own != tolerance_class and plain(own) != plain(tolerance_class):
+        words.append(f"taken over from class {own}")
     words.append(f"row {row.row}" if row.row else "built in")
     if row.sample:
         words.append(f"sample {row.sample.sample} ({len(row.sample.values)} parts)")
