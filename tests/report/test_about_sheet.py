@@ -13,6 +13,7 @@ from flexlash.pipeline import run
 from flexlash.report.about_sheet import CHECKSUMS, SHEETS, TABS
 from flexlash.report.wording.verdict import RULES
 from flexlash.schema.result_columns import RESULTS
+from flexlash.schema.used_columns import TOLERANCES_USED
 
 
 @pytest.fixture(scope="module")
@@ -46,10 +47,12 @@ def test_every_sheet_is_listed_with_its_line(book):
     assert all(SHEETS[name] for name in visible)
 
 
-def test_every_column_of_results_is_defined(book):
-    """Each heading of Results stands in About with its help."""
+def test_every_column_is_defined(book):
+    """Each heading of Results and of Tolerances used stands in About with its help."""
     defined = [(name, text) for name, text, _ in _section(book["About"], "Columns of Results")]
     assert defined == [(column.label, column.help) for column in RESULTS]
+    defined = [(name, text) for name, text, _ in _section(book["About"], "Columns of Tolerances used")]
+    assert defined == [(column.label, column.help) for column in TOLERANCES_USED]
 
 
 def test_verdict_and_digits_are_explained(book):

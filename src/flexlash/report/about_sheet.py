@@ -19,6 +19,7 @@ from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, SETTINGS
 from flexlash.schema.number_words import grouped
 from flexlash.schema.result_columns import result_columns
+from flexlash.schema.used_columns import TOLERANCES_USED
 from flexlash.tolerance.cross_check import AGREEMENT
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES
 from flexlash.tolerance.engine.line_precision import MOST_LINES, PROBABILITY_PRECISION, SD_PRECISION
@@ -259,6 +260,7 @@ def write_about(book: Book, outcome: Outcome, later: Sequence[str] = ()) -> None
         ("Not covered", [("", text) for text in LEFT_OUT]),
         ("Errata of the published study", [("", text) for text in ERRATA]),
         ("Columns of Results", [(column.label, column.help) for column in _result_columns(outcome)]),
+        ("Columns of Tolerances used", [(column.label, column.help) for column in TOLERANCES_USED]),
         ("Dimensions", [(name, f"{column.sheet}: {column.label}") for name, column in DIMENSIONS.items()]),
     )
     for title, entries in sections:
