@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from b3_160 import CUP, NOMINAL
@@ -81,3 +83,15 @@ def test_limits_that_coincide_shift_their_row_alone(told):
     radii = np.array([0.040, 0.0402, 0.040])
     expected = CUP(NOMINAL | {"torque": torques, "disk_inner_radius": radii})
     assert [exact, shifted, other] == expected.tolist()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["line", "sobol"])
+def test_without_shares_all_else_keeps_its_bits(method):
+    """Where nobody asks which dimension causes how much, every other number is the same to the last bit."""
+    sampling = plan(method, 256, 3)
+    for row in ROWS[::3]:
+        whole, bare = statistics_of_row(row, sampling), statistics_of_row(row, replace(sampling, shares=False))
+        assert bare.shares == bare.total_shares == {}
+        numbers = {name: value for name, value in whole.numbers.items() if not name.startswith("main_contributor")}
+        assert [bare.numbers, bare.texts, bare.swings] == [numbers, whole.texts, whole.swings]

@@ -42,7 +42,7 @@ def with_measured_uncertainty(
     for index, ends in uncertain.items():
         work += [] if by_lines else [replace(rows[index], between=None)]
         work += [row for end in ends for row in (end.at_low, end.at_high)]
-    lines = replace(plan, method="line", samples=plan.samples if by_lines else None, cross_check=False)
+    lines = replace(plan, method="line", samples=plan.samples if by_lines else None, cross_check=False, shares=False)
     found, known = iter(_spread(work, lines)), list(statistics)
     for index, ends in uncertain.items():
         first = known[index] if by_lines else next(found)

@@ -112,7 +112,9 @@ def batch_statistics(rows: Sequence[TolerancedRow], plan: SamplingPlan) -> list[
         if index not in statistics:
             points = plan.points("random" if plan.method == "random" else "sobol")
             spread = batch.sampled(index, points)
-            statistics[index] = statistics_of(spread, limit_of_row, coverage=plan.coverage, note=note)
+            statistics[index] = statistics_of(
+                spread, limit_of_row, coverage=plan.coverage, note=note, shares=plan.shares
+            )
         if plan.cross_check and plan.method != "random":
             plain = batch.sampled(index, plan.points("random"))
             statistics[index] = cross_checked(statistics[index], plain, limit_of_row)

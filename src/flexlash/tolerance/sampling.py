@@ -56,7 +56,8 @@ class SamplingPlan:
 
     `inputs` names all that may vary in any row; `samples` counts the lines or points in all, None for as many as the
     method needs. `coverage` is the probability of the coverage interval, `acceptable` the share of parts over the limit
-    from which a lot fails. `cross_check` puts plain Monte Carlo beside the method.
+    from which a lot fails. `cross_check` puts plain Monte Carlo beside the method. Without `shares` nobody asks which
+    input causes how much, which takes about as long as all else where inputs are correlated.
     """
 
     method: Method
@@ -66,6 +67,7 @@ class SamplingPlan:
     coverage: float = 0.95
     acceptable: float = 1350e-6
     cross_check: bool = False
+    shares: bool = True
 
     def points(self, method: PointMethod) -> UnitPoints:
         """Return the points of a method, drawn once a process; another method than the plan's takes its default."""

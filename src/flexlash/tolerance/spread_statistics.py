@@ -85,8 +85,13 @@ def named_probabilities(coverage: float) -> dict[str, float]:
     return PERCENTILES | {"coverage_low": (1 - coverage) / 2, "coverage_high": (1 + coverage) / 2}
 
 
-def statistics_of(spread: Spread, limit: float | None, *, coverage: float, note: str = "") -> SpreadStatistics:
-    """Return the statistics of a spread; `note` says why it was not made otherwise."""
+def statistics_of(
+    spread: Spread, limit: float | None, *, coverage: float, note: str = "", shares: bool = True
+) -> SpreadStatistics:
+    """Return the statistics of a spread, without shares where they are not asked for.
+
+    `note` says why it was not made otherwise.
+    """
     probabilities = named_probabilities(coverage)
     levels = np.array(list(probabilities.values()))
     numbers: dict[str, float] = dict(zip(probabilities, spread.quantile(levels).tolist(), strict=True))
@@ -107,7 +112,7 @@ def statistics_of(spread: Spread, limit: float | None, *, coverage: float, note:
         method=spread.method,
         size=spread.size,
         note=note,
-        shares=spread.variance_shares,
+        shares=spread.variance_shares if shares else VarianceShares(first={}, total={}, first_error={}, total_error={}),
     )
 
 

@@ -124,7 +124,9 @@ class _Reading:
         inputs = self._lines.inputs.take(rows)
         moments = moments_of(self._drawn).widened(self._margin)
         variance = moments.sd[rows] ** 2, 2 * moments.sd[rows] * moments.sd_error[rows]
-        shares = line_shares(drawing.model(drawn), inputs, variance, plan.seed, drawing.surrogate(drawn))
+        shares, names = np.empty((4, 0, len(rows))), inputs.names if plan.shares else ()
+        if plan.shares:
+            shares = line_shares(drawing.model(drawn), inputs, variance, plan.seed, drawing.surrogate(drawn))
         numbers = self._quantile_numbers() | self._over_numbers()
         numbers |= {
             "mean": moments.mean,
@@ -146,7 +148,7 @@ class _Reading:
                 method="line",
                 size=self._lines.lines,
                 note=notes[rows[index]],
-                shares=VarianceShares.of(inputs.names, shares[:, :, index]),
+                shares=VarianceShares.of(names, shares[:, :, index]),
             )
             for index, values in enumerate(zip(*columns.values(), strict=True))
         ]
