@@ -65,6 +65,7 @@ def _deviations_alike(row: ToleranceRow, nominal: Array) -> tuple[Array, Array]:
     return lower, upper
 
 
+@np.errstate(over="ignore")
 def varying(sizes: Mapping[str, Array], rows: Iterable[ToleranceRow]) -> set[str]:
     """Return the dimensions that a class gives limits in one of some variants alike, whatever their process is."""
     found = set()
