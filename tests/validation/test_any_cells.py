@@ -19,6 +19,7 @@ import pytest
 import xlsxwriter
 from edited_workbooks import reading_here
 from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
 from openpyxl.utils.exceptions import IllegalCharacterError
 
 from flexlash.analysis.run_summary import finding_lines, summary_lines
