@@ -6,6 +6,7 @@ Dimensions that no part has at once, such as mean radius and bore, contradict no
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping
 
 import numpy as np
@@ -47,7 +48,7 @@ def contradictions(entered: Collection[Pair], correlations: Mapping[Pair, float]
     [(('b', 'c'), 0.62, True)]
     """
     told: set[Pair] = set()
-    for names in _possible(correlations):
+    for names in [] if _are_weak(correlations) else _possible(correlations):
         some = {pair: value for pair, value in correlations.items() if names.issuperset(pair)}
         own = [(*pair, value) for pair, value in some.items() if pair in entered]
         matrix = _matrix(some)
@@ -76,6 +77,19 @@ def without_contradiction(measured: Mapping[Pair, float]) -> dict[Pair, float]:
         may_change[first, second] = may_change[second, first] = True
     nearest = nearest_correlations(matrix.scores, may_change)
     return {pair: float(nearest[place]) for pair, place in places.items()}
+
+
+def _are_weak(correlations: Mapping[Pair, float]) -> bool:
+    """Return whether no dimension has correlations of more than 1 in all, which never contradict (Gershgorin 1931).
+
+    >>> _are_weak({("a", "b"): 0.5, ("b", "c"): -0.5}), _are_weak({("a", "b"): 0.5, ("b", "c"): 0.6})
+    (True, False)
+    """
+    total: dict[str, float] = defaultdict(float)
+    for pair, value in correlations.items():
+        for name in pair:
+            total[name] += abs(value)
+    return max(total.values(), default=0.0) <= 1
 
 
 def _matrix(correlations: Mapping[Pair, float]) -> CorrelationMatrix:
