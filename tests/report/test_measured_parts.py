@@ -12,7 +12,10 @@ import pytest
 from grids import for_each
 from said import said_of
 
+from flexlash.analysis.run_summary import limit_lines
 from flexlash.pipeline import run
+from flexlash.report.page.page_facts import Found, page_facts
+from flexlash.report.report_data import report_data
 from flexlash.report.results_sheet import FIRST_ROW
 from flexlash.report.wording.measured_parts import PARTS, how_left_open, left_open_by, left_open_words
 from flexlash.schema.variant import Limits, MeasuredDimension
@@ -159,3 +162,16 @@ def test_explorer_and_results_show_what_is_left_open(told, tmp_path):
         assert cell.value == pytest.approx(found[key])
         decimals = len(cell.number_format.rstrip("%").partition(".")[2])
         assert 0.01 < 10.0**-decimals / (100 * found[key]) <= 0.1
+
+
+def test_the_terminal_and_the_page_tell_it_of_a_variant_that_fails(told):
+    """The line of a failing variant ends with it; the page of a variant has it as a sentence and as numbers."""
+    outcome = told(20, 3.7)
+    (found,) = outcome.results.to_dicts()
+    assert list(limit_lines(outcome))[1].endswith(f"; its measured parts leave open {left_open_words(found)}.")
+    facts = page_facts(outcome, Found.of(outcome, ran=True), ran=True, data=report_data(outcome))
+    (page,) = facts["variants"]
+    sentences = {one["topic"]: one["text"] for one in page["sentences"]}
+    assert f"leave open {left_open_words(found)} (95 %)" in sentences[PARTS]
+    assert {key for key in found if "_sample_" in key} <= {one["key"] for one in page["numbers"]}
+    assert {one["topic"]: one["text"] for one in facts["sentences"]}[PARTS] == said_of(outcome)[PARTS]

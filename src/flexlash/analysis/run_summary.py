@@ -16,7 +16,7 @@ from flexlash.schema.finding_catalogue import Level
 from flexlash.schema.findings import CATALOGUE, Finding, shown
 from flexlash.schema.limit_verdict import BOUNDS, VERDICTS, misses_limit
 from flexlash.schema.lot_words import lots_words, some_lots_fail
-from flexlash.schema.number_words import ALL_UNITS, angle_words, grouped, rounded, share_words
+from flexlash.schema.number_words import ALL_UNITS, angle_words, grouped, range_words, rounded, share_words
 from flexlash.validation.blocking_errors import Waiting, waiting_rows
 
 if TYPE_CHECKING:
@@ -295,7 +295,14 @@ def lines_of_limits(counts: Mapping[str, int], worst: Iterable[Mapping[str, Any]
         words = share_words(row)
         units = f"{words} units" if words in ALL_UNITS else f"{words} of units"
         lots = f"; {lots_words(row, 'fails', 'fail')}" if some_lots_fail(row) else ""
-        yield f"  {shown(row['variant'], longest=200)}: {units} are over {row['backlash_limit_arcmin']:g}′{lots}."
+        variant, limit = shown(row["variant"], longest=200), f"{row['backlash_limit_arcmin']:g}′"
+        yield f"  {variant}: {units} are over {limit}{lots}{_left_open(row)}."
+
+
+def _left_open(row: Mapping[str, Any]) -> str:
+    """Return what measured parts leave open of a row's share over the limit; an empty text where none were measured."""
+    low, high = (row.get(f"probability_over_limit_sample_{end}") for end in ("low", "high"))
+    return "" if low is None or high is None else f"; its measured parts leave open {range_words(low, high)}"
 
 
 def points_words(outcome: Outcome) -> str:
