@@ -192,7 +192,7 @@ def _processes(folder: Path) -> Made:
         "far": wall | {"mean_shift": 7, "standard_deviation": 0.004},
         "outside": wall | {"mean_shift": 0.022, "standard_deviation": 0.004},
         "disagree": wall | {"mean_shift": 0.007, "cp": 1.5, "cpk": 1.1},
-        "micrometres": wall | {"standard_deviation": 4.1e-6},
+        "narrow": wall | {"standard_deviation": 4.1e-4},
     }
     return entry_book(
         folder / "study.xlsx",

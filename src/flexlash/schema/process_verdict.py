@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import sys
 from typing import NamedTuple
 
 import numpy as np
@@ -15,8 +17,9 @@ __all__ = ["ProcessVerdict", "is_usual_process", "process_verdict"]
 _FEWEST, _MOST = 1.0, 12.0
 """Standard deviations between the middle of the limits and either of them that processes have."""
 
-_LEAST = 0.5
-"""The same below which hardly a part in three is within its limits: the least that Limits at ± sigma may be."""
+_LEAST, _GREATEST = 0.5, 300.0001
+"""The same that can be meant: the least that Limits at ± sigma may be, at which hardly a part in three is within the
+limits, and three times the greatest Cp."""
 
 _FARTHEST = 3.0
 """Standard deviations beyond the limits from which on hardly one part in a thousand is within them."""
@@ -41,14 +44,15 @@ def process_verdict(
     """Return what is wrong with a process of this mean and sd between limits that differ, None where it can be meant.
 
     All four in one unit. A standard deviation that is itself entered must also be a usual one, since it may be in
-    another unit; `cpk` is one that is told beside the mean.
+    another unit; `cpk` is one that is told beside the mean. Numbers may be too large or too small to divide.
 
     >>> process_verdict(-2.0, 2.0, 5.5, 1.0, is_entered=True).words
     'the mean lies 3.5 standard deviations beyond the limits; 3 are possible'
     """
-    sigma, beyond = (high - low) / (2 * sd), max(low - mean, mean - high)
-    if sigma < _LEAST * (1 - _ROUNDING):
-        words = f"{spelled_out(sigma)} standard deviations off their middle; at least 0.5 is required"
+    sigma, beyond = (high - low) / 2 / sd if sd > 0 else math.inf, max(low - mean, mean - high)
+    most = _GREATEST if is_entered else sys.float_info.max
+    if not _LEAST * (1 - _ROUNDING) <= sigma <= most:
+        words = f"{spelled_out(sigma)} standard deviations off their middle; 0.5 to 300 are possible"
         return ProcessVerdict("E339", "scatter", f"the limits lie {words}")
     if beyond > _FARTHEST * sd * (1 + _ROUNDING):
         words = f"{spelled_out(beyond / sd)} standard deviations beyond the limits; {_FARTHEST:g} are possible"
