@@ -207,3 +207,16 @@ def test_rows_that_lines_do_not_serve_are_told_by_points():
     }
     for name, value in exact.items():
         assert abs(numbers[name] - value) <= 4 * numbers[f"{name}_standard_error"]
+
+
+@pytest.mark.parametrize("between", [frozenset(), frozenset({"wall_thickness"}), LOTS])
+def test_an_output_without_a_variance_has_lots_that_fail_alone(between):
+    """A wall whose tail ends at 0, where the backlash has no end, tells no sd within or between; the rest is told."""
+    wall = Limits(low=1e-4, high=3.1e-3, sigma=0.6, mean_shift=-1.5e-3, cut=(0.0, math.inf))
+    young = {"youngs_modulus": GRINDING["youngs_modulus"]} if between == LOTS else {}
+    one = replace(row(CUP, NOMINAL, {"wall_thickness": wall} | young, 3.8 * ARCMIN), between=between)
+    numbers = statistics_of_row(one, plan()).numbers
+    assert 0 < numbers["probability_over_limit"] < 1
+    assert 0 <= numbers["lots_failing"] <= 1
+    if "sd" not in numbers:
+        assert "within_lot_sd" not in numbers

@@ -90,20 +90,25 @@ def _asked(lots: Lots, row: SpreadStatistics, limit: float | None, plan: Samplin
     if limit is None:
         return None
     probability, low, high = (
-        float(row.numbers[f"probability_over_limit{end}"] or 0.0) for end in ("", "_low", "_high")
+        float(row.numbers.get(f"probability_over_limit{end}") or 0.0) for end in ("", "_low", "_high")
     )
     return lots.failing(limit, plan.acceptable, lambda _: (probability, (high - low) / _REACH))
 
 
 def _told(row: SpreadStatistics, division: Division, failing: tuple[float, float] | None) -> SpreadStatistics:
-    """Return statistics with what lots and parts have of them."""
-    sd, error = (float(row.numbers[name] or 0.0) for name in ("sd", "sd_standard_error"))
-    numbers: dict[str, float | None] = {
+    """Return statistics with what lots and parts have of them; of an output without a variance only who fails."""
+    sd, error = (row.numbers.get(name) for name in ("sd", "sd_standard_error"))
+    numbers: dict[str, float | None] = {} if sd is None else _divided(sd, error or 0.0, division)
+    if failing is not None:
+        numbers |= dict(zip(("lots_failing", "lots_failing_standard_error"), failing, strict=True))
+    return replace(row, numbers={**row.numbers, **numbers})
+
+
+def _divided(sd: float, error: float, division: Division) -> dict[str, float | None]:
+    """Return the standard deviations within and between lots, with their standard errors."""
+    return {
         "within_lot_sd": division.within * sd,
         "within_lot_sd_standard_error": math.hypot(division.within * error, division.within_error * sd),
         "between_lots_sd": division.between * sd,
         "between_lots_sd_standard_error": math.hypot(division.between * error, division.between_error * sd),
     }
-    if failing is not None:
-        numbers |= dict(zip(("lots_failing", "lots_failing_standard_error"), failing, strict=True))
-    return replace(row, numbers={**row.numbers, **numbers})
