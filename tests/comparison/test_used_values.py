@@ -45,6 +45,7 @@ def _with_wall(**process):
 
 PROCESSES = {
     "Cp": ({"cp": 1.1}, "limits at ± 3.3 sigma"),
+    "Cpk at three sigma": ({"cp": 1.0, "cpk": 0.9}, "Cp 1, Cpk 0.9"),
     "Cp and Cpk": ({"cp": 1.1, "cpk": 0.9}, "Cp 1.1, Cpk 0.9"),
     "mean and deviation": (
         {"mean_shift": -0.003, "standard_deviation": 0.004},

@@ -94,6 +94,8 @@ def test_an_old_template_with_sheets_of_measurements_keeps_them(tmp_path, versio
     for row in (["Class", "first"], ["tolerance_class", "dimension_1", "dimension_2", "correlation"]):
         tied.append(row)
     tied.append(["standard", "wall_thickness", "rim_thickness", 0.4])
+    hint = "One row per class and dimension: a grade, or lower and upper deviation. No row: exact."
+    book["Tolerances"]["A2"] = hint
     path = tmp_path / "old.xlsx"
     book.save(path)
     upgrade = upgraded(path)
@@ -107,6 +109,7 @@ def test_an_old_template_with_sheets_of_measurements_keeps_them(tmp_path, versio
     said = " ".join(upgrade.remarks)
     assert "Wall thickness [in]" in said
     assert "Correlations!A1" in said
+    assert "Tolerances!A2" not in said
 
 
 def test_the_marked_copy_marks_the_new_sheets(tmp_path):
