@@ -145,6 +145,13 @@ def test_shares_of_lots_in_words(share):
     assert lots_words({"lots_failing": share[0], "lots_failing_standard_error": share[1]}) == SHARES[share]
 
 
+def test_whether_lots_fail_that_are_alike_may_not_be_settled():
+    """Where all lots are alike and their share over the limit is too near to the acceptable one, that is said."""
+    row = {"lots_failing": 1.0, "lots_failing_standard_error": 0.4, "between_lots_sd_arcmin": 0.0}
+    assert lots_words(row) == "not settled"
+    assert lots_words(row | {"lots_failing_standard_error": 0.01}) == "every lot"
+
+
 def test_lots_that_differ_are_never_told_as_none_or_all():
     """A share that is told as 0 or 1 of lots that differ is practically so."""
     for share, words in ((0.0, "practically no lot"), (1.0, "practically every lot")):

@@ -74,6 +74,8 @@ def lots_words(row: Mapping[str, Any], has: str = "", have: str = "") -> str:
     share, error = row.get("lots_failing"), row.get("lots_failing_standard_error") or 0.0
     if share is None:
         return ""
+    if row.get("between_lots_sd_arcmin") == 0:
+        return f"{'every lot' if share else 'no lot'} {has}".strip() if is_settled(row) else "not settled"
     for rare, one in ((share, "no lot"), (1 - share, "every lot")):
         if rare < _LEAST and error < _LEAST:
             # What is told as none of lots that differ is hardly ever so.
