@@ -110,6 +110,14 @@ def test_what_lies_at_the_bound_is_never_settled():
     assert said.endswith("no number of parts would settle it.")
 
 
+def test_an_interval_without_units_is_told_as_such():
+    """Where the calculation finds no unit over the limit and measured parts leave none open, both are said at once."""
+    assert " ".join(left_open_by(facts_of(60), row(1e-13, 0.0, 1e-11))) == (
+        "Units over the limit are practically none by calculation, and whatever 60 measured parts (wall thickness) "
+        "leave open (95 %). At either end the verdict is green."
+    )
+
+
 def test_without_a_limit_the_percentile_is_told():
     """A variant without a limit has no verdict, its P99.865 has an interval."""
     none = {**row(0.1, None, None, limit=None), "probability_over_limit": None}

@@ -95,6 +95,8 @@ def _interval(facts: SummaryFacts, row: Row) -> str:
         low, high = (angle_words(row[f"p99_865_sample_{end}_arcmin"]) for end in ("low", "high"))
         return f"99.865 % of units stay below {tail} by calculation; {parts} leave open {low} to {high} (95 %)"
     told, wide = brief_share(row), left_open_words(row)
+    if wide == told:
+        return f"units over the limit are {told} by calculation, and whatever {parts} leave open (95 %)"
     return f"units over the limit are {told} by calculation; {parts} leave open {wide} (95 %)"
 
 
