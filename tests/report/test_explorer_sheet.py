@@ -253,6 +253,19 @@ def test_lots_follow_the_variant_and_its_own_limit(study, tmp_path):
     assert _number(values[SHARE]) == pytest.approx(1.0)
 
 
+def test_lots_that_are_alike_may_not_be_settled(study, tmp_path):
+    """Where it is not known whether lots fail that are all alike, neither none nor all is told."""
+    curves = stored_curves(drawn_variants(study[0])[:1])
+    for error, words in ((0.4, "not settled"), (0.001, "practically none")):
+        curves.rows[0].update({"Lots failing": 0.0, "error of Lots failing": error})
+        path = tmp_path / f"{error}.xlsx"
+        with xlsxwriter.Workbook(path) as workbook:
+            book = Book(workbook)
+            write_explorer(book, curves, extent_of(study[0]))
+            curves.write(book, CURVES_NOTE)
+        assert values_of(path, "Explorer")[LOTS[2]] == words
+
+
 @pytest.mark.slow
 @needs_libreoffice
 @pytest.mark.usefixtures("_curves_without_a_report")

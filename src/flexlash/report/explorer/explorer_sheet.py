@@ -86,6 +86,9 @@ _FIGURES = {
 _RAREST_LOTS = 1e-7
 """Per cent of lots below which none is told to fail."""
 
+_UNSETTLED_LOTS = 5.0
+"""Standard error [%] of none or all from which that is not known of lots that are all alike."""
+
 _LOTS = ("Within-lot sd", "Between-lots sd")
 """Figures of lots and parts, below the others."""
 
@@ -224,8 +227,10 @@ def _write_failing_lots(book: Book, sheet: Any, choice: Choice, working: Working
     has = ISNUMBER(share)
     percent = working.cell("lots failing in %", IF(has, share * 100, 0.0))
     rest = working.cell("or not failing, what is less", MIN(percent, live(100.0) - percent))
-    decimals = decimals_to(MAX(IF(has, error * 100, 0.0), rest * _FINEST), _USUAL, most=_MOST)
+    unsure = working.cell("its standard error in %", IF(has, error * 100, 0.0))
+    decimals = decimals_to(MAX(unsure, rest * _FINEST), _USUAL, most=_MOST)
     counted = CONCATENATE(FIXED(percent, decimals), " %")
-    words = IF(rest < _RAREST_LOTS, IF(percent <= rest, "practically none", "practically all"), counted)
+    end = IF(percent <= rest, "practically none", "practically all")
+    words = IF(rest < _RAREST_LOTS, IF(unsure > _UNSETTLED_LOTS, "not settled", end), counted)
     put(sheet, row, 5, choice.figure(IF(has, words, NONE)), book.format("figure"))
     sheet.write_string(row, 6, "of lots", book.format("quiet"))
