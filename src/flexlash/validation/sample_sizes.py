@@ -83,7 +83,8 @@ def _judged(sample: MeasuredDimension, entered: float, unit: float) -> tuple[str
     shown = f"the entered {spelled_out(entered / column.si_unit.si, 6)} {column.unit}".rstrip(" -")
     if sample.are_deviations:
         return (f"deviations of the size of {shown} itself", "") if _SAME < ratio < 1 / _SAME else ("", "")
-    if ratio <= 0 or 1 / _OTHER < ratio < _OTHER:
+    # Sizes below 0 have an error of their own.
+    if min(sample.values) <= 0 or 1 / _OTHER < ratio < _OTHER:
         return "", ""
     times = f"{spelled_out(ratio, 2)} times" if ratio > 1 else f"a {spelled_out(1 / ratio, 2)}th of"
     return f"about {times} {shown}", _probable_unit(column, unit / ratio)
