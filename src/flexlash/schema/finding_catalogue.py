@@ -648,8 +648,9 @@ CATALOGUE = _rules(
         "process far off its limits",
         "{place} {name} = {value}: {detail}.",
         "Check mean, standard deviation and sample of the row of Tolerances, their unit, and the limits.",
-        "Of such a process next to no part would be within the limits of the drawing, so that an entry cannot be "
-        "meant: a unit mistaken by a thousand, deviations taken for values, the sample of another dimension.",
+        "Such a process has nothing to do with the limits of the drawing, so that an entry cannot be meant: a unit "
+        "mistaken by a thousand, deviations taken for values, the sample of another dimension. Parts that were made "
+        "wrong lie nearer to their limits; they are computed, with a warning.",
     ),
     (
         "E340",

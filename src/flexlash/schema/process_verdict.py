@@ -21,8 +21,11 @@ _LEAST, _GREATEST = 0.5, 300.0001
 """The same that can be meant: the least that Limits at ± sigma may be, at which hardly a part in three is within the
 limits, and three times the greatest Cp."""
 
-_FARTHEST = 3.0
-"""Standard deviations beyond the limits from which on hardly one part in a thousand is within them."""
+_LEAST_FOUND = 0.1
+"""The same of a process that was measured, or told by Cp, which may be as bad as it is."""
+
+_FARTHEST = 2.0
+"""Widths of the limits beyond them from which on a mean is that of another size; parts made wrong lie nearer."""
 
 _HUNDREDTH = 0.0051
 """Difference of two Cpk from which on they are not one number in two decimals."""
@@ -46,16 +49,16 @@ def process_verdict(
     All four in one unit. A standard deviation that is itself entered must also be a usual one, since it may be in
     another unit; `cpk` is one that is told beside the mean. Numbers may be too large or too small to divide.
 
-    >>> process_verdict(-2.0, 2.0, 5.5, 1.0, is_entered=True).words
-    'the mean lies 3.5 standard deviations beyond the limits; 3 are possible'
+    >>> process_verdict(-2.0, 2.0, 12.0, 1.0, is_entered=True).words
+    'the mean lies 2.5 times their width beyond the limits; 2 are possible'
     """
     sigma, beyond = (high - low) / 2 / sd if sd > 0 else math.inf, max(low - mean, mean - high)
-    most = _GREATEST if is_entered else sys.float_info.max
-    if not _LEAST * (1 - _ROUNDING) <= sigma <= most:
-        words = f"{spelled_out(sigma)} standard deviations off their middle; 0.5 to 300 are possible"
+    least, most = (_LEAST, _GREATEST) if is_entered else (_LEAST_FOUND, sys.float_info.max)
+    if not least * (1 - _ROUNDING) <= sigma <= most:
+        words = f"{spelled_out(sigma)} standard deviations off their middle; {least:g} to 300 are possible"
         return ProcessVerdict("E339", "scatter", f"the limits lie {words}")
-    if beyond > _FARTHEST * sd * (1 + _ROUNDING):
-        words = f"{spelled_out(beyond / sd)} standard deviations beyond the limits; {_FARTHEST:g} are possible"
+    if beyond > _FARTHEST * (high - low) * (1 + _ROUNDING):
+        words = f"{spelled_out(beyond / (high - low))} times their width beyond the limits; {_FARTHEST:g} are possible"
         return ProcessVerdict("E339", "mean", f"the mean lies {words}")
     if beyond > _ROUNDING * (high - low):
         return ProcessVerdict("W442", "mean", "the mean lies")
