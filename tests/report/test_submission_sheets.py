@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import openpyxl
 import pytest
+from made_up_parts import measured_parts
 
+from flexlash.feedback.template.template_workbook import template_bytes
 from flexlash.pipeline import run
 from flexlash.report import submission_sheets
 
@@ -117,3 +121,23 @@ def test_titles_of_our_template_look_like_titles(workbook, table, sound, tmp_pat
     assert {book[name]["A1"].font.sz for name in ("Submission", "Materials", "Tolerances", "Settings")} == {18}
     _, book = _report(table([sound]), tmp_path)
     assert book["Submission"]["A1"].font.sz == 11
+
+
+@pytest.mark.slow
+def test_measured_parts_and_correlations_stand_at_their_addresses(tmp_path):
+    """Both sheets are repeated cell by cell; a value that is blamed is coloured there, and Findings leads to it."""
+    filling = measured_parts()
+    measured = [dict(row) for row in filling.measurements]
+    measured[7]["wall_thickness_mm"] = 1.671
+    path = tmp_path / "parts.xlsx"
+    path.write_bytes(template_bytes(replace(filling, measurements=measured)))
+    outcome, book = _report(path, tmp_path)
+    assert ("W446", "Measurements!H12") in {(found.code, found.place) for found in outcome.findings}
+    cell = book["Measurements"]["H12"]
+    assert (cell.value, cell.comment.text[:4]) == (1.671, "W446")
+    links = {one.hyperlink.location for row in book["Findings"].iter_rows() for one in row if one.hyperlink}
+    assert "Measurements!H12" in links
+    given = openpyxl.load_workbook(path)
+    for name in ("Measurements", "Correlations"):
+        rows = [[one.value for one in row[:5]] for row in given[name]["A4:E64"]]
+        assert [[one.value for one in row[:5]] for row in book[name]["A4:E64"]] == rows, name
