@@ -109,3 +109,27 @@ def test_what_was_measured_counts_among_what_outputs_depend_on(tmp_path):
     assert digest == options_digest(Options(measurements=tmp_path / "a.csv"), tables, marked=False)
     assert digest != options_digest(Options(), {"Measurements": Source(name="a.csv", data=b"2")}, marked=False)
     assert set(Options(**dict.fromkeys(TABLES, "a.csv")).without_tables(jobs=3).tables) == set()
+
+
+def test_a_file_without_samples_is_one_by_its_name(table, sound, tmp_path):
+    """What a machine writes of one sample needs no column for it; lines around the parts are none of them."""
+    lines = ["Protocol 7;;", "Part;Wall thickness;Disk thickness", ";mm;mm"]
+    lines += [f"{part};{value:.6f};{value:.6f}".replace(".", ",") for part, value in enumerate(scattered(60), start=1)]
+    (tmp_path / "lathe 3.csv").write_text("\n".join([*lines, ";;", "measured by hand;;"]), encoding="utf-8")
+    tolerances = table([_LIMITS | {"sample": "Lathe 3"}], name="tolerances.csv")
+    files = {"tolerances": tolerances, "measurements": tmp_path / "lathe 3.csv"}
+    outcome = check(table([sound | {"tolerance_class": "shop"}]), **files)
+    assert [one for one in outcome.findings if one.level == "error"] == []
+    (told,) = (one for one in outcome.findings if one.code == "I532")
+    assert told.message == "lathe 3.csv has no column Sample: its parts are the sample lathe 3."
+    measured = outcome.validated.measured
+    assert list(measured) == ["lathe3"]
+    assert len(measured["lathe3"]["wall_thickness"].values) == 60
+    assert outcome.counts["computed"] == 1
+
+
+def test_a_sheet_of_a_workbook_must_name_its_samples(book, sound):
+    """The name of a workbook is that of a submission; its sheet Measurements says which sample a part is of."""
+    rows = [["Part", "Wall thickness [mm]"], *([part, value] for part, value in enumerate(scattered(60)))]
+    outcome = check(book({"Variants": [list(sound), list(sound.values())], "Measurements": rows}))
+    assert [one.code for one in outcome.findings if one.sheet == "Measurements"] == ["E111"]

@@ -345,6 +345,15 @@ def _measured(folder: Path) -> Made:
     return _book(folder, {**sheets, "Correlations": [["of prices", 0.3]]})
 
 
+def _by_machine(folder: Path) -> Made:
+    """Write what a measuring machine does, a file of the parts of one sample, beside a submission."""
+    parts = folder / "lathe 3.csv"
+    lines = [f"{number},{wall:.4f}" for number, wall in enumerate(scattered(60), start=1)]
+    parts.write_text("\n".join(["Part,Wall thickness [mm]", *lines]), encoding="utf-8")
+    sheets = {"Variants": _lines([CUP]), "Tolerances": samples_of(("standard", "wall_thickness", "lathe 3"))}
+    return _book(folder, sheets)[0], {"measurements": parts}
+
+
 def _mended(folder: Path) -> Made:
     """Write a table and what was mended in it."""
     original = _file(folder, _text([CUP]))[0]
@@ -381,6 +390,7 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "processes": _processes,
     "correlations": _tied,
     "parts measured together": _together,
+    "parts of one file": _by_machine,
     "variants": _variants,
     "settings": _settings,
     "calibrated": _calibrated,

@@ -6,7 +6,7 @@ import csv
 import io
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import islice
 
@@ -15,9 +15,9 @@ from flexlash.reading.encodings import WINDOWS, decoded
 from flexlash.reading.raw import ERROR_WORDS, CsvDialect, ErrorCell, RawSheet, RawValue
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
+from flexlash.reading.sample_of_file import add_sample
 from flexlash.schema.columns import ENTRY_SHEETS, columns_of
-from flexlash.schema.header_names import LAST_HEADER_ROW, known_names, name_and_unit
-from flexlash.schema.spellings import plain
+from flexlash.schema.header_names import LAST_HEADER_ROW, columns_named, known_names
 
 __all__ = [
     "DELIMITERS",
@@ -44,8 +44,6 @@ _WIDEST = 100_000
 _SHARED = 50_000
 """Different texts that are held once however often they stand in a table."""
 
-_LONGEST_HEADER = 200
-
 _Rows = dict[int, dict[int, RawValue]]
 
 
@@ -68,6 +66,7 @@ def read_table(data: bytes, name: str, file: str = "", limits: ReadingLimits | N
     read = _rows(records_of(io.StringIO(text, newline="\n"), delimiter, limits), limits)
     if "#" in text:
         mark_errors(read.rows)
+    sample_column = add_sample(read.rows, file) if name == "Measurements" and file else 0
     header, columns, others = number_columns(read.rows, name)
     longer = read.longer_than(header) if delimiter == "," and header else frozenset()
     # Without a quote no cell of a table that is separated by commas holds one.
@@ -80,6 +79,7 @@ def read_table(data: bytes, name: str, file: str = "", limits: ReadingLimits | N
         comma_number=settled.comma_number,
         foreign_text=_first_foreign(read.rows) if encoding == WINDOWS else None,
         longer=frozenset() if settled.has_decimal_point else longer,
+        sample_column=sample_column,
     )
     return RawSheet(name=name, rows=read.rows, numbers_are_texts=True, dialect=dialect)
 
@@ -213,23 +213,12 @@ def number_columns(rows: _Rows, schema: str) -> tuple[int, frozenset[int] | None
     columns = columns_of(schema) if schema in ENTRY_SHEETS else {}
     names = known_names(columns)
     top = {row: rows[row] for row in range(1, LAST_HEADER_ROW + 1) if row in rows}
-    known = {row: _known(cells, names) for row, cells in top.items()}
+    known = {row: columns_named(cells, names) for row, cells in top.items()}
     best = max(known, key=lambda row: len(known[row]), default=0)
     if not best or len(known[best]) < min(2, len(columns)):
         return 0, None, frozenset()
     numbers = frozenset(column for column, key in known[best].items() if columns[key].is_number)
     return best, numbers, frozenset(known[best]) - numbers
-
-
-def _known(cells: Mapping[int, RawValue], names: Mapping[str, str]) -> dict[int, str]:
-    """Return the keys of the columns that the cells of a row are headers of, by place."""
-    keys = {}
-    for column, cell in cells.items():
-        if isinstance(cell, str) and len(cell) <= _LONGEST_HEADER:
-            key = names.get(plain(name_and_unit(cell)[0]))
-            if key is not None:
-                keys[column] = key
-    return keys
 
 
 def _first_foreign(rows: _Rows) -> tuple[int, int] | None:

@@ -84,6 +84,7 @@ class CsvDialect:
     comma_number: tuple[int, int] | None = None
     foreign_text: tuple[int, int] | None = None
     longer: frozenset[int] = frozenset()
+    sample_column: int = 0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1256,4 +1256,11 @@ CATALOGUE = _rules(
         "Two dimensions that are measured on the same parts have the correlation of these parts. That of few parts is "
         "uncertain, as its interval says.",
     ),
+    (
+        "I532",
+        "sample named by its file",
+        "{file} has no column Sample: its parts are the sample {value}.",
+        "Nothing to do where a class of Tolerances names that sample; else add the column Sample.",
+        "A measuring machine writes the parts of one sample into one file. A column Sample lets a file hold several.",
+    ),
 )

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from flexlash.schema.column import Column
 from flexlash.schema.spellings import plain
 
-__all__ = ["BLANK", "LAST_HEADER_ROW", "known_names", "name_and_unit"]
+__all__ = ["BLANK", "LAST_HEADER_ROW", "columns_named", "known_names", "name_and_unit"]
 
 LAST_HEADER_ROW = 15
 """The header row is one of so many first rows."""
@@ -37,6 +37,17 @@ def known_names(columns: Mapping[str, Column]) -> dict[str, str]:
     for key, column in columns.items():
         for spelling in (key, column.dimension, column.name, column.plain_name, *_SHORT.get(key, ())):
             keys[plain(spelling)] = key
+    return keys
+
+
+def columns_named(cells: Mapping[int, object], names: Mapping[str, str]) -> dict[int, str]:
+    """Return the keys of the columns that the cells of a row are headers of, by place; `names` are known ones."""
+    keys = {}
+    for place, cell in cells.items():
+        if isinstance(cell, str) and len(cell) <= _LONGEST:
+            key = names.get(plain(name_and_unit(cell)[0]))
+            if key is not None:
+                keys[place] = key
     return keys
 
 

@@ -14,13 +14,16 @@ _NAMES = {",": "comma", ";": "semicolon", "\t": "tab", "|": "bar"}
 
 
 def report_dialect(sheet: RawSheet, ledger: Ledger) -> None:
-    """Tell delimiter, encoding and decimal sign of a sheet that was read from a delimited text."""
+    """Tell delimiter, encoding, decimal sign and sample of a sheet that was read from a delimited text."""
     dialect = sheet.dialect
     if dialect is None:
         return
     facts: dict[str, Any] = {"file": dialect.file} if dialect.file else {}
     if dialect.delimiter != "," or dialect.encoding == "UTF-16":
         ledger.add("I507", value=_NAMES[dialect.delimiter], detail=dialect.encoding, **facts)
+    if dialect.sample_column:
+        parts = [cells[dialect.sample_column] for cells in sheet.rows.values() if dialect.sample_column in cells]
+        ledger.add("I532", value=str(parts[-1]), **facts)
     # What stands in another excerpt of the same table is told there.
     if dialect.comma_number and dialect.comma_number[0] in sheet.rows:
         facts |= _at(sheet, dialect.comma_number)
