@@ -182,6 +182,16 @@ def test_the_screen_says_the_same(tmp_path):
         assert getattr(answers[0], name) == getattr(expected, name), name
 
 
+def test_the_screen_tells_of_lots(tmp_path):
+    """Of a variant over its limit the lots that fail are told as of one piece."""
+    rows = [{**SOUND, "variant": f"v{number}", "backlash_limit_arcmin": 3.7 + number / 100} for number in range(9)]
+    path = _written(tmp_path / "gears.csv", rows)
+    answer, _ = _in_chunks(path, tmp_path / "out.csv", 4)
+    expected = answer_of(run(path, **FEW), ran=True)
+    assert list(answer.details) == list(expected.details)
+    assert "% of lots fail" in answer.details[1]
+
+
 def test_cross_check_and_tables_beside(tmp_path):
     """Further columns, and Tolerances and Materials given beside the table, give the bytes of one piece.
 

@@ -47,7 +47,8 @@ _NAMED = 3
 
 _TOLD = (
     "variant", "p99_865_arcmin", "backlash_limit_arcmin", "probability_over_limit", "probability_over_limit_low",
-    "probability_over_limit_high",
+    "probability_over_limit_high", "between_lots_sd_arcmin", "lots_failing", "lots_failing_standard_error",
+    "probability_over_limit_sample_low", "probability_over_limit_sample_high",
 )  # fmt: skip
 """What is told of a variant that is among the worst."""
 
