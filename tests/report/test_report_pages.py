@@ -92,6 +92,6 @@ def test_every_page_is_whole(printed, tmp_path, name, paper):
     assert set(shown) == set(names)
     for sheet in ONE_PAGE:
         assert shown.count(sheet) == 1, sheet
-    assert shown.count("Results") == 7
-    assert {shown.count(name) for name in ("Curves", "Compared", "Inputs")} == {1}
+    assert shown.count("Results") == 8
+    assert {shown.count(name) for name in ("Curves", "Compared", "Inputs", "Scatter", "Trace spread")} == {1}
     assert shown.count("Trace") == 2
