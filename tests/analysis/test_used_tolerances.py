@@ -50,6 +50,9 @@ def test_every_distribution_has_its_true_mean_and_sd(used_of):
     assert [length[key] for key in keys] == pytest.approx(expected, rel=1e-12)
     assert used["wall_thickness"]["standard_deviation"] == pytest.approx(0.04 / math.sqrt(12), rel=1e-9)
     assert used["disk_inner_radius"]["standard_deviation"] == pytest.approx(0.04 / math.sqrt(24), rel=1e-9)
+    # Two ends four standard deviations off the middle; nothing beyond the ends of the others.
+    assert length["outside_limits_ppm"] == pytest.approx(1e6 * math.erfc(4 / math.sqrt(2)), rel=1e-9)
+    assert [used[name]["outside_limits_ppm"] for name in list(used)[1:]] == [0.0, 0.0, 0.0]
     # Variance of a normal that is cut one standard deviation either side: 1 − 2φ(1)/(2Φ(1) − 1).
     cut = 1 - 2 * math.exp(-0.5) / math.sqrt(2 * math.pi) / math.erf(math.sqrt(0.5))
     assert used["youngs_modulus"]["unit"] == "GPa"
@@ -121,6 +124,9 @@ def test_bases_samples_and_lots_are_told(workbook):
     assert used["wall_thickness"]["source"] == f"class shop, row {first}, sample W (6 parts)"
     assert used["wall_thickness"]["mean"] == pytest.approx(statistics.mean(values), rel=1e-12)
     assert used["wall_thickness"]["standard_deviation"] == pytest.approx(statistics.stdev(values), rel=1e-9)
+    process = statistics.NormalDist(statistics.mean(values), statistics.stdev(values))
+    outside = process.cdf(1.58) + 1 - process.cdf(1.62)
+    assert used["wall_thickness"]["outside_limits_ppm"] == pytest.approx(1e6 * outside, rel=1e-6)
     assert used["cylinder_length"]["source"] == f"class shop, taken over from class full, row {first + 1}"
     between = {name: row["scatters_between"] for name, row in used.items()}
     assert between == {

@@ -15,7 +15,7 @@ from flexlash.schema.units import as_entered
 from flexlash.schema.used_columns import TOLERANCES_USED
 from flexlash.schema.variant import Limits, ToleranceRow
 from flexlash.tolerance.correlation import Entry
-from flexlash.tolerance.dimension_limits import distribution_of
+from flexlash.tolerance.dimension_limits import distribution_of, share_outside
 
 __all__ = ["source_words", "used_rows", "used_tolerances"]
 
@@ -45,6 +45,7 @@ def used_rows(one: Computed) -> Iterator[dict[str, Any]]:
             "distribution": limits.distribution if limits.low < limits.high else None,
             "scatters_between": limits.scatters_between if limits.low < limits.high else None,
             "scatters_with": _partners(one.correlation, name) or None,
+            "outside_limits_ppm": 1e6 * share_outside(limits) if limits.low < limits.high else 0.0,
             "share": shares.get(name),
             "source": source_words(rows[name], variant.tolerance_class),
         }

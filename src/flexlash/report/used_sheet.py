@@ -77,4 +77,6 @@ def _code(key: str, sd: float) -> str:
     """Return the number format of a column in a row of this standard deviation."""
     if key == "share":
         return percent_of(SHARE_OF_VARIANCE_ERROR)
+    if key == "outside_limits_ppm":
+        return "#,##0.0"
     return decimals_of(sd / _MORE_DIGITS[key], "general") if key in _MORE_DIGITS else "general"

@@ -50,6 +50,13 @@ TOLERANCES_USED = (
         type="text",
     ),
     _used(
+        "outside_limits_ppm",
+        "Outside limits [ppm]",
+        "Parts outside the limits of the drawing, per million, by the process.",
+        minimum=0,
+        maximum=1_000_000,
+    ),
+    _used(
         "share", "Share of variance", "Its own share of the variance of the backlash, a fraction.", minimum=0, maximum=1
     ),
     _used(

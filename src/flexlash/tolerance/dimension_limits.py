@@ -26,6 +26,7 @@ __all__ = [
     "distributions",
     "limits_of",
     "shape_problems",
+    "share_outside",
 ]
 
 ROUNDING = 1e-12
@@ -230,6 +231,23 @@ def distribution_of(limits: Limits) -> Distribution:
     if limits.cut:
         return TruncatedNormal(limits.mean, limits.standard_deviation, *limits.cut)
     return Normal(limits.mean, limits.standard_deviation)
+
+
+def share_outside(limits: Limits) -> float:
+    """Return the share of parts outside the limits of the drawing, whatever their process.
+
+    Equation: P(x < low) + P(x > high)
+    Arguments: limits that differ [SI].
+    Valid: any distribution; 0 of one that is cut at the limits.
+    Source: definition.
+
+    >>> f"{1e6 * share_outside(Limits(low=1.58, high=1.62)):.0f} ppm"
+    '2700 ppm'
+    """
+    spread = distribution_of(limits)
+    ends = (np.array([limits.low, limits.high]) - spread.location) / spread.scale
+    below, within = spread.probability_below(ends).tolist()
+    return float(below + (1 - within))
 
 
 def distributions(limits: Mapping[str, Limits]) -> dict[str, Distribution]:
