@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from flexlash.report.formula.functions import decimals_to
 from flexlash.report.formula.live import live
 from flexlash.report.layout.styles import decimals_of
-from flexlash.schema.number_words import angle_words, places, rounded, share_words
+from flexlash.schema.number_words import angle_words, places, range_words, rounded, share_words
 from flexlash.tolerance.capability import clopper_pearson
 
 thorough = settings(deadline=None, max_examples=300, derandomize=True)
@@ -169,3 +169,20 @@ def test_a_number_without_an_error_keeps_its_usual_digits():
 def test_an_angle_in_words(value, error, words):
     """An angle is told in four digits, or in fewer where its standard error is greater."""
     assert angle_words(value, error) == words
+
+
+_ENDS = (0.0, 1e-12, 1e-9, 3e-6, 0.0123, 0.5, 0.9994, 0.99999932, 1 - 1e-9, 1 - 1e-12, 1.0)
+
+
+@for_each("low", _ENDS)
+def test_an_interval_with_any_ends_has_words(low):
+    """Where nothing but all units is the upper end, the lower one alone is told."""
+    for high in (end for end in _ENDS if end >= low):
+        assert re.search(r"\d (%|ppm|ppb)|none|all", range_words(low, high)), (low, high)
+
+
+def test_an_interval_up_to_all_is_told_by_its_lower_end():
+    """With two digits of what it leaves to all, or of itself."""
+    assert range_words(0.99912, 1.0) == "at least 99.912 %"
+    assert range_words(3e-6, 1.0) == "at least 3 ppm"
+    assert range_words(0.0, 1.0) == "anything from none to all"

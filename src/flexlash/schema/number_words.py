@@ -99,12 +99,14 @@ def range_words(low: float, high: float) -> str:
     if low > 1 - _LEAST:
         return _ALL
     factor, unit = _unit(high)
-    most = f"{_two_digits(high, factor)}{unit}"
+    is_open = high > 1 - _LEAST
     if low < _LEAST:
-        return f"at most {most}" if high <= 1 - _LEAST else "anything from none to all"
+        return "anything from none to all" if is_open else f"at most {_two_digits(high, factor)}{unit}"
     own, its = _unit(low) if low < _FAR_APART * high else (factor, unit)
-    least = f"{_two_digits(low, own)}{its if its != unit else ''}"
-    return f"{least} to {most}" if high <= 1 - _LEAST else f"at least {least}{unit if its == unit else ''}"
+    least = _two_digits(low, own)
+    if is_open:
+        return f"at least {least}{its}"
+    return f"{least}{its if its != unit else ''} to {_two_digits(high, factor)}{unit}"
 
 
 def _two_digits(share: float, factor: float) -> str:
