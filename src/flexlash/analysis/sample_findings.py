@@ -68,4 +68,4 @@ def normality_words(p: float) -> str:
 def _steps(values: tuple[float, ...]) -> str:
     """Return how few different values there are, where a coarse gauge may be why they fit no curve."""
     different = len(set(values))
-    return f"; only {different} different values, as of a coarse gauge" if different * _COARSE <= len(values) else ""
+    return f"; only {different} different values, a coarse gauge?" if different * _COARSE <= len(values) else ""

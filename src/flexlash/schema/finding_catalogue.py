@@ -663,7 +663,7 @@ CATALOGUE = _rules(
     (
         "E341",
         "measured values without scatter",
-        "{place}: all {found} of {dimension} in sample {value} are {detail}; values that differ are required.",
+        "{place}: all {found} of {dimension} in sample {value} are {detail}; some must differ.",
         "Measure with a finer gauge; for an exact dimension enter 0 for both deviations and no sample.",
         "Parts that scatter less than a gauge shows all measure the same. That says how coarse the gauge is, and "
         "nothing of the process.",
@@ -679,7 +679,7 @@ CATALOGUE = _rules(
     (
         "E343",
         "deviations taken for values",
-        "{place}: {found} values of {name} in sample {other} are not above 0 ({detail}), as only deviations can be.",
+        "{place}: {found} values of {name} in sample {other} are not above 0 ({detail}).",
         "Write deviation under Use as in every row of the sample, or mend the values.",
         "A dimension of a part is greater than 0. What was measured above and below the entered value is a deviation, "
         "which flexlash must be told.",
@@ -1054,7 +1054,7 @@ CATALOGUE = _rules(
     (
         "W447",
         "measured values that are not normal",
-        "{place}: the {found} of {dimension} in sample {value} do not look normal (Anderson–Darling {detail}).",
+        "{place}: {found} of {dimension} in sample {value} do not look normal (Anderson–Darling {detail}).",
         "Choose the distribution measured, or look for the reason: two machines, drift, sorted parts, a coarse gauge.",
         "Of normal processes one in twenty has p below 0.05. Where values are not normal, the tails of the normal "
         "distribution of their mean and standard deviation are wrong, and with them shares over the limit of a few per "
