@@ -216,13 +216,12 @@ def _judge_widths(
         told = kinds.get(name)
         if not code or (column.sheet == "Settings" and code == "W421") or (told and (told, code) != ("cut", "E333")):
             continue
-        unit = "" if column.unit in {"", "-"} else f" {column.unit}"
         ledger.add_at(
             code,
             variant,
             column.key if column.sheet == "Variants" else "material",
             name=column.name,
-            value=f"{nominal / column.si_unit.si:.10g}{unit}",
+            value=f"{nominal / column.si_unit.si:.10g}{column.unit_behind}",
             other=variant.tolerance_class,
             detail=f"{share:.2g}" if code == "W441" else f"{100 * share:.3g}",
         )
@@ -231,7 +230,7 @@ def _judge_widths(
 def _general_and_meant(rows: Sequence[ToleranceRow]) -> tuple[set[str], set[str]]:
     """Return the dimensions with a general tolerance, and those that are meant to scatter."""
     general = {row.dimension for row in rows if (row.grade or "").startswith("2768")}
-    return general, {row.dimension for row in rows if row.grade or row.lower < row.upper}
+    return general, {row.dimension for row in rows if row.scatters}
 
 
 def _width_code(share: float, *, coarse: bool, meant: bool) -> str:

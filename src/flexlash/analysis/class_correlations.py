@@ -11,9 +11,9 @@ from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any, TypeAlias
+from typing import Any
 
-from flexlash.analysis.contradicting_correlations import contradictions, without_contradiction
+from flexlash.analysis.contradicting_correlations import Pair, contradictions, without_contradiction
 from flexlash.analysis.run_summary import dimension_words
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.spellings import plain
@@ -22,10 +22,7 @@ from flexlash.tolerance.sample_statistics import MeasuredCorrelation, measured_c
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import Validated
 
-__all__ = ["Pair", "class_correlations"]
-
-Pair: TypeAlias = tuple[str, str]
-"""Two dimensions in the order of `DIMENSIONS`."""
+__all__ = ["class_correlations"]
 
 _LISTED = 4
 """Most pairs that a message lists."""
@@ -91,7 +88,7 @@ class _Known:
 
 def _of_class(known: _Known, key: str, rows: Sequence[ToleranceRow], ledger: Ledger) -> dict[Pair, float]:
     """Return the correlations of a class, and record what is wrong with them."""
-    by_name = {row.dimension: row for row in rows if row.grade or row.lower < row.upper}
+    by_name = {row.dimension: row for row in rows if row.scatters}
     ordered = {name: by_name[name] for name in DIMENSIONS if name in by_name}
     entered = {pair: row for pair, row in known.entered(key).items() if ordered.keys() >= set(pair)}
     sampled = [row for row in ordered.values() if row.sample is not None]

@@ -8,13 +8,14 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping
+from typing import TypeAlias
 
 import numpy as np
 
 from flexlash.tolerance.correlation import CorrelationMatrix
 from flexlash.tolerance.nearest_correlation import admissible, nearest_correlations
 
-__all__ = ["contradictions", "without_contradiction"]
+__all__ = ["Pair", "contradictions", "without_contradiction"]
 
 _NEVER_TOGETHER = (
     ("bore_diameter", "mean_radius"),
@@ -29,7 +30,8 @@ _NEVER_TOGETHER = (
 _STEPS = 10_000
 """Admissible values are told in these parts of 1, rounded to the side where they stay admissible."""
 
-Pair = tuple[str, str]
+Pair: TypeAlias = tuple[str, str]
+"""Two dimensions in the order of `DIMENSIONS`."""
 
 
 def contradictions(entered: Collection[Pair], correlations: Mapping[Pair, float]) -> Iterator[tuple[Pair, float, bool]]:

@@ -23,20 +23,13 @@ from flexlash.validation.validated import Table, Validated
 __all__ = ["processes_are_usual", "report_processes"]
 
 
-def _hangs_on_size(row: ToleranceRow) -> bool:
-    """Whether a row's limits or its mean beside them are known only for a variant."""
-    if row.distribution in {"uniform", "triangular"}:
-        return False
-    return bool(row.grade or (row.sample and (row.relative or not row.sample.are_deviations)))
-
-
 def processes_are_usual(
     limits: Mapping[str, LimitArrays], rows: Sequence[ToleranceRow]
 ) -> npt.NDArray[np.bool_] | np.bool_:
     """Return of which variants alike `report_processes` has surely nothing to say."""
     usual: npt.NDArray[np.bool_] | np.bool_ = np.True_
     for row in rows:
-        if row.dimension in limits and _hangs_on_size(row):
+        if row.dimension in limits and row.has_process and row.waits_for_size:
             one = limits[row.dimension]
             usual = usual & is_usual_process(one.low, one.high, one.mean, one.sd) & (row.cpk is None)
     return usual
@@ -52,7 +45,7 @@ def report_processes(
     """
     for row in rows:
         limit = limits.get(row.dimension)
-        if limit is None or not limit.low < limit.high or not _hangs_on_size(row):
+        if limit is None or not (limit.low < limit.high and row.has_process and row.waits_for_size):
             continue
         sd = limit.standard_deviation
         verdict = process_verdict(limit.low, limit.high, limit.mean, sd, is_entered=row.sd is not None, cpk=row.cpk)

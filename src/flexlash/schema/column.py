@@ -163,6 +163,11 @@ class Column:
         return f"one of {', '.join(self.choices)}" if self.choices else ""
 
     @property
+    def unit_behind(self) -> str:
+        """The unit as it stands behind a number: ` mm`; an empty text for a plain number."""
+        return "" if self.unit in {"", "-"} else f" {self.unit}"
+
+    @property
     def requirement(self) -> str:
         """What a cell must hold, in words: `a number in mm greater than 0`."""
         if self.choices:
@@ -170,8 +175,8 @@ class Column:
         if not self.is_number:
             return "a text"
         words = "a whole number" if self.type == "integer" else "a number"
-        if self.unit not in {"", "-"}:
-            words += f" in {self.unit}"
+        if self.unit_behind:
+            words += f" in{self.unit_behind}"
         bounds = [self.rules[name].words for name in ("minimum", "maximum") if name in self.rules]
         return " ".join(filter(None, [words, " and ".join(bounds)]))
 

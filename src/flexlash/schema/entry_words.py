@@ -25,8 +25,7 @@ def _bounds(column: Column) -> str:
     """Return what a number must be: `a number from 30 to 90 °`."""
     if column.minimum is None:
         return "a number" if column.maximum is None else f"a number of at most {column.maximum:.15g}"
-    unit = "" if column.unit in {"", "-"} else f" {column.unit}"
-    least = f"{column.minimum:.15g}"
+    unit, least = column.unit_behind, f"{column.minimum:.15g}"
     if column.maximum is None:
         return f"a number above {least}{unit}" if column.exclusive_minimum else f"a number of at least {least}{unit}"
     most = f"{column.maximum:.15g}{unit}"

@@ -134,6 +134,21 @@ class ToleranceRow:
     sample: MeasuredDimension | None = None
     scatters_between: ScattersBetween = "parts"
 
+    @property
+    def scatters(self) -> bool:
+        """Whether the limits differ; those of a grade always do."""
+        return bool(self.grade) or self.lower < self.upper
+
+    @property
+    def has_process(self) -> bool:
+        """Whether parts scatter about a mean of their own, and not merely somewhere between the limits."""
+        return self.distribution not in {"uniform", "triangular"}
+
+    @property
+    def waits_for_size(self) -> bool:
+        """Whether limits, or a sample's mean beside them, are known only for the size that a variant has."""
+        return bool(self.grade or (self.sample and (self.relative or not self.sample.are_deviations)))
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Limits:

@@ -10,7 +10,6 @@ from typing import Any
 from flexlash.schema.columns import columns_of
 from flexlash.schema.spellings import plain
 from flexlash.schema.variant import ToleranceRow
-from flexlash.validation.cell_values import is_no_value, no_value_facts
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.meant_names import MeantNames
 from flexlash.validation.validated import Table
@@ -95,7 +94,8 @@ class ClassBases:
             self._report_several(key, rows)
             row, base = rows[0]
             if (spelling := plain(base)) not in known:
-                self._report_unknown(row, base, meant)
+                facts = meant.unknown("E224", _COLUMNS[_KEY], base)
+                self.ledger.add_in(self.table, row=row, key=_KEY, value=base, **facts)
                 self.ledger.spoil("class", key, self.table.sheet, row)
                 continue
             if base != known[spelling]:
@@ -103,12 +103,6 @@ class ClassBases:
                 self.ledger.add_in(self.table, "I504", row, _KEY, value=base, suggestion=name, certain_value=name)
             bases[key] = spelling
         return bases
-
-    def _report_unknown(self, row: int, base: str, meant: MeantNames) -> None:
-        if is_no_value(base):
-            self.ledger.add_in(self.table, "E221", row, _KEY, value=base, **no_value_facts(_COLUMNS[_KEY]))
-        else:
-            self.ledger.add_in(self.table, "E224", row, _KEY, value=base, **meant[base])
 
     def _report_several(self, key: str, rows: Sequence[tuple[int, str]]) -> None:
         """Tell each row of a class that says anew what it is based on of the others."""

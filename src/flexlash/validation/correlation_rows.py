@@ -7,10 +7,10 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from flexlash.schema.columns import DIMENSIONS, columns_of
-from flexlash.schema.spellings import affordable, misspelt, plain, spelt_alike, suggested
+from flexlash.schema.spellings import plain
 from flexlash.schema.variant import CorrelationRow, ToleranceRow
-from flexlash.validation.cell_values import is_no_value, no_value_facts
 from flexlash.validation.ledger import Ledger
+from flexlash.validation.meant_names import MeantNames
 from flexlash.validation.validated import Table
 
 __all__ = ["correlation_rows_of"]
@@ -19,9 +19,6 @@ _COLUMNS = columns_of("Correlations")
 _PAIR = ("dimension_1", "dimension_2")
 _NEEDED = ("tolerance_class", *_PAIR, "correlation")
 _ORDER = {name: place for place, name in enumerate(DIMENSIONS)}
-
-_NEAR = 0.7
-"""Likeness from which on a class is suggested."""
 
 
 def correlation_rows_of(
@@ -32,7 +29,7 @@ def correlation_rows_of(
     `classes` are those of Tolerances by plain name.
     """
     known = {key: rows[0].tolerance_class if rows else key for key, rows in classes.items()}
-    named = _Names(known, few=table.frame["tolerance_class"].n_unique() <= affordable(known))
+    meant = MeantNames(list(known.values()), table.frame["tolerance_class"].drop_nulls().n_unique())
     doubled = _report_twice(table, ledger)
     # Of a class with faulty rows of Tolerances it cannot be told which dimensions it leaves exact.
     whole = {key: _scattering(rows) for key, rows in classes.items() if key not in ledger.classes}
@@ -42,7 +39,7 @@ def correlation_rows_of(
         if name is None or (row, "tolerance_class") in table.faulty:
             ledger.everything = True
             continue
-        owner = _owner(table, ledger, row, name, named)
+        owner = _owner(table, ledger, record, known, meant)
         if owner is None:
             continue
         faulty = row in doubled or any((row, key) in table.faulty or record[key] is None for key in _NEEDED)
@@ -58,43 +55,20 @@ def correlation_rows_of(
     return tuple(found)
 
 
-class _Names(dict[str, dict[str, str | None]]):
-    """What unknown classes probably mean, looked up once each, where so `few` are named that all can be compared."""
-
-    def __init__(self, known: Mapping[str, str], *, few: bool) -> None:
-        super().__init__()
-        self.known = known
-        self.few = few
-        self._spelt = spelt_alike(known.values())
-
-    def __missing__(self, value: str) -> dict[str, str | None]:
-        """Look a name up."""
-        self[value] = (
-            {
-                "suggestion": suggested(value, list(self.known.values()), _NEAR),
-                "certain_value": misspelt(value, self._spelt),
-            }
-            if self.few
-            else {}
-        )
-        return self[value]
-
-
-def _owner(table: Table, ledger: Ledger, row: int, name: str, named: _Names) -> str | None:
+def _owner(
+    table: Table, ledger: Ledger, record: Mapping[str, Any], known: Mapping[str, str], meant: MeantNames
+) -> str | None:
     """Return the plain name of the class of a row; of one that there is not, None, after it spoilt what it may mean."""
+    row, name, column = record["row"], record["tolerance_class"], _COLUMNS["tolerance_class"]
     key = plain(name)
-    if key in named.known:
-        if name != (meant := named.known[key]):
-            _report(table, ledger, "I504", row, "tolerance_class", value=name, suggestion=meant, certain_value=meant)
+    if key in known:
+        if name != known[key]:
+            facts = {"suggestion": known[key], "certain_value": known[key]}
+            ledger.add_in(table, "I504", row, column.key, value=name, **facts)
         return key
-    if is_no_value(name):
-        _report(
-            table, ledger, "E221", row, "tolerance_class", value=name, **no_value_facts(_COLUMNS["tolerance_class"])
-        )
-        return None
-    facts = named[name]
-    _report(table, ledger, "E309", row, "tolerance_class", value=name, **facts)
-    if (likely := plain(facts.get("suggestion") or "")) in named.known:
+    facts = meant.unknown("E309", column, name)
+    ledger.add_in(table, row=row, key=column.key, value=name, **facts)
+    if (likely := plain(facts.get("suggestion") or "")) in known:
         ledger.spoil("class", likely, table.sheet, row)
     return None
 
@@ -107,27 +81,21 @@ def _report_twice(table: Table, ledger: Ledger) -> set[int]:
             groups[plain(name), frozenset(pair)].append(row)
     doubled = {row: others for rows in groups.values() for row, others in table.partners(rows, _PAIR[1])}
     for row, others in doubled.items():
-        _report(table, ledger, "E345", row, _PAIR[1], value=table.entered(row, _PAIR[1]), other=others)
+        ledger.add_in(table, "E345", row, _PAIR[1], value=table.entered(row, _PAIR[1]), other=others)
     return set(doubled)
 
 
 def _scattering(rows: Sequence[ToleranceRow]) -> set[str]:
-    return {row.dimension for row in rows if row.grade or row.lower < row.upper}
+    return {row.dimension for row in rows if row.scatters}
 
 
 def _reports_pair(table: Table, ledger: Ledger, record: Mapping[str, Any], scattering: Collection[str]) -> bool:
     """Report a dimension that is tied to itself, or that its class leaves exact; return whether there is one."""
     row, pair = record["row"], [record[key] for key in _PAIR]
     if pair[0] == pair[1] and pair[0] in DIMENSIONS:
-        _report(table, ledger, "E346", row, _PAIR[1], value=table.entered(row, _PAIR[1]))
+        ledger.add_in(table, "E346", row, _PAIR[1], value=table.entered(row, _PAIR[1]))
         return True
     exact = [key for key, name in zip(_PAIR, pair, strict=True) if name in DIMENSIONS and name not in scattering]
     for key in exact:
-        _report(table, ledger, "E347", row, key, value=table.entered(row, key), other=record["tolerance_class"])
+        ledger.add_in(table, "E347", row, key, value=table.entered(row, key), other=record["tolerance_class"])
     return bool(exact)
-
-
-def _report(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts: Any) -> None:
-    """Record a finding at a cell of Correlations."""
-    name = _COLUMNS[key].name
-    ledger.add(code, sheet=table.sheet, cell=table.address(row, key), column=key, name=name, **facts)

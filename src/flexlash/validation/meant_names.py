@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
+from flexlash.schema.column import Column
 from flexlash.schema.spellings import affordable, misspelt, spelt_alike, suggested
+from flexlash.validation.cell_values import is_no_value, no_value_facts
 
 __all__ = ["MOST_NAMES", "MeantNames"]
 
 MOST_NAMES = 100_000
-"""Most materials or classes named, beyond which none of them is compared with those that there are."""
+"""Most materials, classes or samples named, beyond which none of them is compared with those that there are."""
 
 _NEAR = 0.7
 """Likeness from which on a name is suggested; short names of steels share letters by chance."""
@@ -32,3 +35,9 @@ class MeantNames(dict[str, dict[str, str | None]]):
             else {}
         )
         return self[value]
+
+    def unknown(self, code: str, column: Column, value: str) -> dict[str, Any]:
+        """Return code and facts of a name in a column that nothing has, or of a word that stands for none."""
+        if is_no_value(value):
+            return {"code": "E221", **no_value_facts(column)}
+        return {"code": code, **self[value]}

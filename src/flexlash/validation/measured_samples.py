@@ -172,12 +172,11 @@ class _Gathering:
     def _report_odd(self, name: str, column: Column, values: Sequence[tuple[int, float]], *, are_sizes: bool) -> None:
         """Warn of values that are probably slips, unless they have an error."""
         factor = self.table.heading.factors.get(column.key, 1.0)
-        unit = "" if column.unit in {"", "-"} else f" {column.unit}"
         faulty = {*self.faults[name, column.dimension]}
         for index, odd in odd_values([value / factor for _, value in values], are_sizes=are_sizes).items():
             row = values[index][0]
             if row not in faulty:
-                detail = f"{odd.least * factor:.6g} to {odd.most * factor:.6g}{unit}"
+                detail = f"{odd.least * factor:.6g} to {odd.most * factor:.6g}{column.unit_behind}"
                 facts = {"detail": detail, "other": self.names[name], "suggestion": odd.suggestion}
                 self._report("W446", row, column.key, **facts)
 
@@ -195,6 +194,4 @@ class _Gathering:
 
     def _report(self, code: str, row: int, key: str, **facts: Any) -> None:
         """Record a finding at a cell of Measurements."""
-        told = {"value": self.table.entered(row, key), **facts}
-        cell = self.table.address(row, key)
-        self.ledger.add(code, sheet=self.table.sheet, cell=cell, column=key, name=_COLUMNS[key].name, **told)
+        self.ledger.add_in(self.table, code, row, key, **{"value": self.table.entered(row, key), **facts})

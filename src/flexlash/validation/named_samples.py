@@ -9,7 +9,6 @@ from flexlash.schema.columns import DIMENSIONS, columns_of
 from flexlash.schema.entry_words import inner_name
 from flexlash.schema.spellings import plain
 from flexlash.schema.variant import MeasuredDimension
-from flexlash.validation.cell_values import is_no_value, no_value_facts
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.meant_names import MeantNames
 from flexlash.validation.measured_samples import Samples
@@ -55,10 +54,9 @@ class NamedSamples:
         return found.get(dimension)
 
     def _report_unknown(self, row: int, name: str) -> None:
-        if is_no_value(name):
-            self._report("E221", row, value=name, **no_value_facts(columns_of("Tolerances")[_KEY]))
-        elif self.samples.is_whole:
-            self._report("E223", row, value=name, detail="this sample", **self.meant[name])
+        facts = self.meant.unknown("E223", columns_of("Tolerances")[_KEY], name)
+        if self.samples.is_whole or facts["code"] != "E223":
+            self._report(row=row, value=name, **{"detail": "this sample", **facts})
 
     def _report(self, code: str, row: int, **facts: Any) -> None:
         self.ledger.add_in(self.table, code, row, _KEY, **facts)

@@ -86,9 +86,7 @@ def _check_cpk(table: Table, ledger: Ledger, record: Mapping[str, Any]) -> None:
 def check_verdict(table: Table, ledger: Ledger, record: Mapping[str, Any], row: ToleranceRow) -> bool:
     """Check a sound row's process beside its limits where these do not wait for a size; return whether it can be."""
     sample = row.sample
-    if row.grade or not row.lower < row.upper or (sample and (row.relative or not sample.are_deviations)):
-        return True
-    if row.distribution in {"uniform", "triangular"} or (sample and not sample.scatters):
+    if not (row.scatters and row.has_process) or row.waits_for_size or (sample and not sample.scatters):
         return True
     width, middle = row.upper - row.lower, (row.lower + row.upper) / 2
     sd = width / (2 * row.limits_sigma) if row.sd is None else row.sd

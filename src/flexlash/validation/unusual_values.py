@@ -46,8 +46,7 @@ def unusual_words(column: Column, value: float) -> str:
 
 
 def _words(column: Column, low: float, high: float) -> str:
-    unit = "" if column.unit in {"", "-"} else f" {column.unit}"
-    return f"{spelled_out(low)} to {spelled_out(high)}{unit}"
+    return f"{spelled_out(low)} to {spelled_out(high)}{column.unit_behind}"
 
 
 def _ranges(schema: str) -> Iterator[tuple[str, pl.Expr, pl.Expr]]:

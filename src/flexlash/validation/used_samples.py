@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
-from flexlash.schema.columns import DIMENSIONS, columns_of
+from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.entry_words import inner_name
 from flexlash.schema.spellings import affordable, misspelt, plain
 from flexlash.schema.variant import MeasuredDimension, ToleranceRow
@@ -56,16 +55,14 @@ def _spoil_by_faults(samples: Samples, tolerances: Table | None, ledger: Ledger)
 def _report_scatter(sample: MeasuredDimension, row: ToleranceRow, tolerances: Table, ledger: Ledger) -> bool:
     """Require that a dimension was measured on enough parts and scatters; return whether it does not."""
     count, column = len(sample.values), DIMENSIONS[row.dimension]
-    facts: dict[str, Any] = {"value": sample.sample, "dimension": inner_name(column), "column": "sample"}
-    facts |= {"sheet": tolerances.sheet, "cell": tolerances.address(row.row, "sample")}
+    facts = {"value": sample.sample, "dimension": inner_name(column)}
     if count < FEWEST_PARTS:
         found = f"{count} value{'s' * (count > 1)}"
-        ledger.add("E340", found=found, **facts)
+        ledger.add_in(tolerances, "E340", row.row, "sample", found=found, **facts)
         return True
     if not sample.scatters:
-        unit = "" if column.unit in {"", "-"} else f" {column.unit}"
-        detail = f"{sample.values[0] / column.si_unit.si:.10g}{unit}"
-        ledger.add("E341", found=f"{count} values", detail=detail, **facts)
+        detail = f"{sample.values[0] / column.si_unit.si:.10g}{column.unit_behind}"
+        ledger.add_in(tolerances, "E341", row.row, "sample", found=f"{count} values", detail=detail, **facts)
         return True
     return False
 
@@ -79,18 +76,10 @@ def _report_unused(samples: Samples, tolerances: Table | None, ledger: Ledger) -
     )
     used = {plain(name): name for name in reversed(entered)}
     known = {name: samples.names[name] for name in used if name in samples.names}
-    column = columns_of("Measurements")["sample"]
     for number, (name, row) in enumerate(_unused(samples, used)):
         meant = misspelt(samples.names[name], known) if known and number < affordable(known) else None
-        ledger.add(
-            "W453" if meant else "I529",
-            sheet=samples.table.sheet,
-            cell=samples.table.address(row, "sample"),
-            column="sample",
-            name=column.name,
-            value=samples.names[name],
-            suggestion=meant or "",
-        )
+        facts = {"value": samples.names[name], "suggestion": meant or ""}
+        ledger.add_in(samples.table, "W453" if meant else "I529", row, "sample", **facts)
 
 
 def _unused(samples: Samples, used: Mapping[str, str]) -> Iterator[tuple[str, int]]:

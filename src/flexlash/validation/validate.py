@@ -15,7 +15,6 @@ from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import columns_of
 from flexlash.schema.spellings import plain
 from flexlash.schema.variant import CorrelationRow, Material, Settings, ToleranceRow
-from flexlash.validation.cell_values import is_no_value, no_value_facts
 from flexlash.validation.class_bases import class_names
 from flexlash.validation.correlation_rows import correlation_rows_of
 from flexlash.validation.csv_findings import report_dialect
@@ -194,26 +193,19 @@ def _check_references(table: Table, ledger: Ledger, key: str, code: str, names: 
         return
     faulty = ledger.materials if key == "material" else ledger.classes
     meant = MeantNames(names, table.whole.named[key] if table.whole else table.frame[key].drop_nulls().n_unique())
-    known = meant.known
+    known, column = meant.known, columns_of("Variants")[key]
     spellings = {name: plain(name) for name in table.frame[key].drop_nulls().unique()}
     for row, value in table.frame.select("row", key).iter_rows():
         if value is None or (row, key) in table.faulty:
             continue
         spelling = spellings[value]
         if spelling not in known:
-            _report(table, ledger, row=row, key=key, value=value, **_unknown(key, code, value, meant))
+            _report(table, ledger, row=row, key=key, value=value, **meant.unknown(code, column, value))
         elif spelling in faulty:
             ledger.rows.add(row)
         elif value != known[spelling]:
             name = known[spelling]
             _report(table, ledger, "I504", row, key, value=value, suggestion=name, certain_value=name)
-
-
-def _unknown(key: str, code: str, value: str, meant: Mapping[str, Mapping[str, str | None]]) -> dict[str, Any]:
-    """Return code and facts of a name that no row of Materials or Tolerances has."""
-    if is_no_value(value):
-        return {"code": "E221", **no_value_facts(columns_of("Variants")[key])}
-    return {"code": code, **meant[value]}
 
 
 def _check_duplicates(table: Table, ledger: Ledger) -> None:
