@@ -128,6 +128,20 @@ def test_a_file_without_samples_is_one_by_its_name(table, sound, tmp_path):
     assert outcome.counts["computed"] == 1
 
 
+def test_headers_in_other_words_are_questions(table, sound, tmp_path):
+    """A machine's own headers are asked for one by one, and nothing else of the file is blamed."""
+    lines = ["Protocol;;", "Teil;Wanddicke;Bodendicke", ";mm;mm", *(f"{part};1,607;1,6" for part in range(9))]
+    (tmp_path / "lathe 3.csv").write_text("\n".join(lines), encoding="utf-8")
+    tolerances = table([_LIMITS | {"sample": "lathe 3"}], name="tolerances.csv")
+    files = {"tolerances": tolerances, "measurements": tmp_path / "lathe 3.csv"}
+    outcome = check(table([sound | {"tolerance_class": "shop"}]), **files)
+    errors = [one for one in outcome.findings if one.level == "error"]
+    assert [(one.code, one.cell, one.suggestion) for one in errors] == [
+        ("E112", "B2", "Wall thickness Δ [mm]"),
+        ("E112", "C2", "Disk thickness [mm]"),
+    ]
+
+
 def test_a_sheet_of_a_workbook_must_name_its_samples(book, sound):
     """The name of a workbook is that of a submission; its sheet Measurements says which sample a part is of."""
     rows = [["Part", "Wall thickness [mm]"], *([part, value] for part, value in enumerate(scattered(60)))]

@@ -255,6 +255,19 @@ def test_no_header_row(rows):
     assert ledger.everything
 
 
+def test_headers_in_other_words_are_questions_one_by_one():
+    """Where no row has headers of the template one in another language is taken for it, and each header is asked for."""
+    rows = {1: {1: "Werkzeug 7"}, 2: {1: "Werkstoff", 2: "Drehmoment", 3: "Wanddicke"}, 3: {1: "Stahl", 2: 800, 3: 1.6}}
+    ledger = Ledger("a.xlsx")
+    assert find_headings(RawSheet(name="Variants", rows=rows), "Variants", ledger).row == 2
+    told = [(found.code, found.cell, found.suggestion) for found in ledger.findings if found.code == "E112"]
+    assert told == [
+        ("E112", "A2", "Material"),
+        ("E112", "B2", "Torque T [N·m]"),
+        ("E112", "C2", "Wall thickness Δ [mm]"),
+    ]
+
+
 def test_missing_required_columns():
     """Each required column that is missing is named where it could be added; nothing is computed."""
     heading, ledger = _headings(["Variant", "Material", "Cylinder length l [mm]"])

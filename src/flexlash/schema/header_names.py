@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from flexlash.schema.column import Column
 from flexlash.schema.spellings import plain
 
-__all__ = ["BLANK", "LAST_HEADER_ROW", "columns_named", "known_names", "name_and_unit"]
+__all__ = ["BLANK", "LAST_HEADER_ROW", "called_names", "columns_named", "known_names", "name_and_unit"]
 
 LAST_HEADER_ROW = 15
 """The header row is one of so many first rows."""
@@ -38,6 +38,11 @@ def known_names(columns: Mapping[str, Column]) -> dict[str, str]:
         for spelling in (key, column.dimension, column.name, column.plain_name, *_SHORT.get(key, ())):
             keys[plain(spelling)] = key
     return keys
+
+
+def called_names(columns: Mapping[str, Column]) -> dict[str, str]:
+    """Return every name by which engineers call a column in other words, or in another language → key."""
+    return {plain(name): key for key, column in columns.items() for name in column.also_called.split()}
 
 
 def columns_named(cells: Mapping[int, object], names: Mapping[str, str]) -> dict[int, str]:

@@ -9,7 +9,14 @@ from flexlash.reading.raw import ErrorCell, RawSheet, RawValue, Unstored
 from flexlash.schema.cell_addresses import CellAddress, column_letters
 from flexlash.schema.columns import Column, columns_of
 from flexlash.schema.findings import shown
-from flexlash.schema.header_names import BLANK, LAST_HEADER_ROW, known_names, name_and_unit
+from flexlash.schema.header_names import (
+    BLANK,
+    LAST_HEADER_ROW,
+    called_names,
+    columns_named,
+    known_names,
+    name_and_unit,
+)
 from flexlash.schema.spellings import closest, misspelt, plain
 from flexlash.schema.units import Unit, find_unit
 from flexlash.validation.ledger import Ledger
@@ -85,9 +92,8 @@ class _Recogniser:
 
     def recognise(self) -> Heading | None:
         """Return the headings of the row, within the first fifteen, that has most of them."""
-        known = self.known_by_row()
-        best = max(known, key=lambda number: known[number], default=0)
-        if not known or known[best] < min(2, len(self.columns)):
+        best = self._header_row(self.known_by_row()) or self._header_row(self._named_by_row())
+        if not best:
             self.ledger.add("E109", sheet=self.sheet.name, cell=CellAddress(row=1, column=1))
             self.ledger.everything = True
             return None
@@ -101,6 +107,17 @@ class _Recogniser:
             self._take_header(heading, index, header, unknown.get(index))
         self._require(heading, max(self.sheet.rows[best]) + 1)
         return heading
+
+    def _header_row(self, counts: Mapping[int, int]) -> int:
+        """Return the row that names most columns, 0 where none names enough of them."""
+        best = max(counts, key=lambda number: counts[number], default=0)
+        return best if best and counts[best] >= min(2, len(self.columns)) else 0
+
+    def _named_by_row(self) -> dict[int, int]:
+        """Return how many columns each of the first rows names, also in other words, of which each is a question."""
+        names = called_names(self.columns) | self.spellings
+        top = {number: cells for number, cells in self.sheet.rows.items() if number <= LAST_HEADER_ROW}
+        return {number: len({*columns_named(cells, names).values()}) for number, cells in top.items()}
 
     def known_by_row(self) -> dict[int, int]:
         """Return how many columns each of the first rows names; a header that stands there twice counts once."""
