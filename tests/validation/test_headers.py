@@ -256,7 +256,7 @@ def test_no_header_row(rows):
 
 
 def test_headers_in_other_words_are_questions_one_by_one():
-    """Where no row has headers of the template one in another language is taken for it, and each header is asked for."""
+    """Where no row has headers of the template one in another language is taken, and each header is asked for."""
     rows = {1: {1: "Werkzeug 7"}, 2: {1: "Werkstoff", 2: "Drehmoment", 3: "Wanddicke"}, 3: {1: "Stahl", 2: 800, 3: 1.6}}
     ledger = Ledger("a.xlsx")
     assert find_headings(RawSheet(name="Variants", rows=rows), "Variants", ledger).row == 2
