@@ -20,7 +20,7 @@ from flexlash.tolerance.correlation import Entry, correlated_scores, score_facto
 from flexlash.tolerance.nearest_correlation import admissible_interval
 from flexlash.tolerance.row_batches import TolerancedRow
 from flexlash.tolerance.sample_statistics import MeasuredCorrelation, measured_correlation
-from flexlash.tolerance.sample_uncertainty import SampleUncertainty
+from flexlash.tolerance.sample_uncertainty import UPPER_SCORE, SampleUncertainty
 from flexlash.tolerance.shape_uncertainty import BENDS, bent_values
 
 __all__ = ["EndRows", "ends_of", "moves_of", "products_of"]
@@ -30,9 +30,6 @@ _MOST_REACH = 0.5
 
 _AS_MEASURED = "measured"
 """Distribution of a dimension that is taken as its values are, not as normal with their mean and sd."""
-
-_UPPER = 1.959963984540054
-"""Normal score of the upper end of a 95 % interval."""
 
 _SAME = 1e-9
 """Part within which a correlation of the row is that of the sample, and not one that was entered in its place."""
@@ -144,7 +141,7 @@ def _of_shape(row: TolerancedRow, name: str, limit: Limits) -> Iterator[EndRows]
         return replace(row, limits={**row.limits, name: process})
 
     for less, more in bent_values(sample.values):
-        yield EndRows(low=-_UPPER, high=_UPPER, at_low=bent(less), at_high=bent(more), scatters=False)
+        yield EndRows(low=-UPPER_SCORE, high=UPPER_SCORE, at_low=bent(less), at_high=bent(more), scatters=False)
 
 
 def _of_pair(row: TolerancedRow, tie: Entry, pair: MeasuredCorrelation) -> EndRows:

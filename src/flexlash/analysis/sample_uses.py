@@ -14,6 +14,7 @@ from flexlash.schema.spellings import plain
 from flexlash.schema.units import as_entered
 from flexlash.schema.variant import Limits, MeasuredDimension
 from flexlash.tolerance.sample_statistics import (
+    FEWEST_FOR_SD,
     Capability,
     MeasuredCorrelation,
     SampleStatistics,
@@ -26,9 +27,6 @@ __all__ = ["MOST_ROWS", "MeasuredPair", "SampleUse", "measured_pairs", "sample_u
 
 MOST_ROWS = 500
 """Most dimensions of samples, and most pairs of them, that are worked up; those that classes use come first."""
-
-_FEWEST = 2
-"""Fewest values that have a standard deviation."""
 
 _SAME = 12
 """Digits of limits, in the unit of the dimension, by which those of two variants are the same."""
@@ -150,7 +148,7 @@ def _rows_of(
     name, measured = one
     column = DIMENSIONS[measured.dimension]
     values = [as_entered(value, column.si_unit.si) for value in measured.values]
-    statistics = sample_statistics(values) if len(values) >= _FEWEST else None
+    statistics = sample_statistics(values) if len(values) >= FEWEST_FOR_SD else None
     row = SampleUse(
         sample=measured.sample,
         column=column,

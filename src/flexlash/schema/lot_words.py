@@ -6,7 +6,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from flexlash.schema.findings import spelled_out
-from flexlash.schema.number_words import ALL_UNITS, INTERVAL, glance, rounded, share_words
+from flexlash.schema.number_words import (
+    ALL_UNITS,
+    INTERVAL,
+    LEAST_SHARE,
+    RARE_SHARE,
+    glance,
+    rounded,
+    share_unit,
+    share_words,
+)
 
 __all__ = [
     "is_settled",
@@ -18,11 +27,8 @@ __all__ = [
     "some_lots_fail",
 ]
 
-_UNITS = ((1.0, 100.0, " % of lots"), (1e-3, 1e6, " lots in a million"), (1e-6, 1e9, " lots in a billion"))
-"""Shares below the first number are told in the unit, which is the factor times the share."""
-
-_LEAST = 1e-9
-"""Shares of lots below it are told as none."""
+_OF_LOTS = {" %": " % of lots", " ppm": " lots in a million", " ppb": " lots in a billion"}
+"""Units in which a share of lots is told, for those of other shares."""
 
 _UNKNOWN = 0.05
 """Standard error of a share of 0 or 1 from which it is not known whether all lots fail, which are alike, or none."""
@@ -77,17 +83,17 @@ def lots_words(row: Mapping[str, Any], has: str = "", have: str = "") -> str:
     if row.get("between_lots_sd_arcmin") == 0:
         return f"{'every lot' if share else 'no lot'} {has}".strip() if is_settled(row) else "not settled"
     for rare, one in ((share, "no lot"), (1 - share, "every lot")):
-        if rare < _LEAST and error < _LEAST:
+        if rare < LEAST_SHARE and error < LEAST_SHARE:
             # What is told as none of lots that differ is hardly ever so.
             return f"{'practically ' if scatters_between_lots(row) else ''}{one} {has}".strip()
-    words = f"all but {_counted(1 - share, error)}" if 1 - share < _UNITS[1][0] else _counted(share, error)
+    words = f"all but {_counted(1 - share, error)}" if 1 - share < RARE_SHARE else _counted(share, error)
     return f"{words} {have}".strip()
 
 
 def some_lots_fail(row: Mapping[str, Any]) -> bool:
     """Return whether some lots fail and others do not, by a row of Results."""
     share = row.get("lots_failing")
-    return share is not None and scatters_between_lots(row) and _LEAST <= share <= 1 - _LEAST
+    return share is not None and scatters_between_lots(row) and LEAST_SHARE <= share <= 1 - LEAST_SHARE
 
 
 def is_settled(row: Mapping[str, Any]) -> bool:
@@ -106,4 +112,5 @@ def _counted(share: float, error: float) -> str:
 
 def _unit(share: float) -> tuple[float, str]:
     """Return factor and name of the unit in which a share of lots is told."""
-    return [(factor, name) for most, factor, name in _UNITS if share < most or most == 1][-1]
+    factor, unit = share_unit(share)
+    return factor, _OF_LOTS[unit]

@@ -11,6 +11,8 @@ from flexlash.schema.findings import spelled_out
 __all__ = [
     "ALL_UNITS",
     "INTERVAL",
+    "LEAST_SHARE",
+    "RARE_SHARE",
     "angle_words",
     "brief_share",
     "glance",
@@ -19,6 +21,7 @@ __all__ = [
     "range_words",
     "rounded",
     "share_error",
+    "share_unit",
     "share_words",
 ]
 
@@ -69,7 +72,7 @@ def share_words(row: Mapping[str, Any]) -> str:
     value, low, high = (row[f"probability_over_limit{end}"] for end in ("", "_low", "_high"))
     if low == high and value in (0, 1):
         return "all" if value else "none"
-    if 1 - value < _RARE:
+    if 1 - value < RARE_SHARE:
         rest = _interval(1 - value, 1 - high, 1 - low)
         return _ALL if rest == _NONE else f"all but {rest}"
     return _interval(value, low, high)
@@ -83,7 +86,7 @@ def brief_share(row: Mapping[str, Any]) -> str:
     '5.3 ppm'
     """
     value, low, high = (row[f"probability_over_limit{end}"] for end in ("", "_low", "_high"))
-    if not _BRIEF <= value <= 1 - _RARE or high - low > value * _ROUGH:
+    if not _BRIEF <= value <= 1 - RARE_SHARE or high - low > value * _ROUGH:
         return share_words(row).split(" (")[0]
     return _share(value, 3)
 
@@ -94,15 +97,15 @@ def range_words(low: float, high: float) -> str:
     >>> range_words(1.2e-5, 8.04e-4), range_words(0.0, 8.04e-4), range_words(0.4121, 0.99934)
     ('12 to 800 ppm', 'at most 800 ppm', '41 to 99.934 %')
     """
-    if high < _LEAST:
+    if high < LEAST_SHARE:
         return _NONE
-    if low > 1 - _LEAST:
+    if low > 1 - LEAST_SHARE:
         return _ALL
-    factor, unit = _unit(high)
-    is_open = high > 1 - _LEAST
-    if low < _LEAST:
+    factor, unit = share_unit(high)
+    is_open = high > 1 - LEAST_SHARE
+    if low < LEAST_SHARE:
         return "anything from none to all" if is_open else f"at most {_two_digits(high, factor)}{unit}"
-    own, its = _unit(low) if low < _FAR_APART * high else (factor, unit)
+    own, its = share_unit(low) if low < _FAR_APART * high else (factor, unit)
     least = _two_digits(low, own)
     if is_open:
         return f"at least {least}{its}"
@@ -119,14 +122,16 @@ def _two_digits(share: float, factor: float) -> str:
 _UNITS = ((1.0, 100.0, " %"), (1e-3, 1e6, " ppm"), (1e-6, 1e9, " ppb"))
 """Shares below the first number are told in the unit, which is the factor times the share."""
 
-_RARE = 1e-3
+RARE_SHARE = 1e-3
+"""A share that leaves less than this to 1 is told by what it leaves."""
+
 _FINEST = 1e-4
 """Part of a share that is not told in words, however well it is known."""
 
 _BRIEF = 1e-6
 """Shares below it are told in two digits at most, without interval."""
 
-_LEAST = 1e-9
+LEAST_SHARE = 1e-9
 """Shares below it are told as none: tolerances do not bear more."""
 
 _ROUGH = 0.01
@@ -141,22 +146,26 @@ ALL_UNITS = frozenset({"all", _ALL})
 """What share_words says where no unit, or hardly one, is left out."""
 
 
-def _unit(share: float) -> tuple[float, str]:
-    """Return factor and name of the unit in which a share is told."""
+def share_unit(share: float) -> tuple[float, str]:
+    """Return factor and name of the unit in which a share is told.
+
+    >>> share_unit(0.02), share_unit(1.2e-4), share_unit(3e-8)
+    ((100.0, ' %'), (1000000.0, ' ppm'), (1000000000.0, ' ppb'))
+    """
     return [(factor, name) for most, factor, name in _UNITS if share < most or most == 1][-1]
 
 
 def _interval(value: float, low: float, high: float) -> str:
     """Return a share with its interval, in the unit of its upper end."""
-    if high < _LEAST:
+    if high < LEAST_SHARE:
         return _NONE
-    if value < _LEAST:
+    if value < LEAST_SHARE:
         return f"at most {_share(high, 3)}"
     if value < _BRIEF:
         return _share(value, 2 if high - low < value / 5 else 1)
     if low == high:
         return _share(value, 3)
-    factor, unit = _unit(high)
+    factor, unit = share_unit(high)
     finest, error = value * _FINEST, min(share_error(low, high), value, 1 - value)
     if places(error) > places(finest):
         return f"{rounded(value * factor, finest * factor)}{unit}"
@@ -168,7 +177,7 @@ def _interval(value: float, low: float, high: float) -> str:
 
 def _share(share: float, digits: int) -> str:
     """Return one share in per cent, ppm or ppb."""
-    factor, unit = _unit(share)
+    factor, unit = share_unit(share)
     return f"{spelled_out(share * factor, digits)}{unit}"
 
 

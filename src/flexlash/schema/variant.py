@@ -11,6 +11,7 @@ from flexlash.schema.columns import SETTINGS
 
 __all__ = [
     "FAR",
+    "FEWEST_PARTS",
     "CorrelationRow",
     "Limits",
     "Material",
@@ -61,6 +62,10 @@ class Variant:
     yield_strength: float | None = None
     youngs_modulus: float | None = None
     poisson_ratio: float | None = None
+
+
+FEWEST_PARTS = 5
+"""Fewest parts that tell how a dimension scatters, or two of them together: fewer leave nearly everything open."""
 
 
 @dataclass(frozen=True, kw_only=True)

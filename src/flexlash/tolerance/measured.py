@@ -17,15 +17,13 @@ from scipy.special import ndtri
 
 from flexlash.schema.argument_checks import number, numbers
 from flexlash.schema.arrays import Array
+from flexlash.schema.variant import FEWEST_PARTS
 from flexlash.tolerance.truncated_normal import TruncatedNormal
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
-__all__ = ["FEWEST_VALUES", "Measured"]
-
-FEWEST_VALUES = 5
-"""Fewest values that have a shape."""
+__all__ = ["Measured"]
 
 _INSIDE = 0.95
 """Probability that all of as many values as were measured lie between the ends."""
@@ -71,8 +69,8 @@ class Measured:
 
     def __init__(self, values: npt.ArrayLike, shift: float = 0.0) -> None:
         measured = numbers("values", values)
-        if measured.ndim != 1 or len(measured) < FEWEST_VALUES:
-            raise ValueError(f"values have the shape {measured.shape}: at least {FEWEST_VALUES} in a row are required")
+        if measured.ndim != 1 or len(measured) < FEWEST_PARTS:
+            raise ValueError(f"values have the shape {measured.shape}: at least {FEWEST_PARTS} in a row are required")
         if not np.isfinite(measured).all():
             raise ValueError("values must be finite")
         if measured.min() == measured.max():

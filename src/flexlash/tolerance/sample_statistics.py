@@ -12,14 +12,15 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import chdtri, log_ndtr, ndtri, stdtrit
+from scipy.special import log_ndtr, ndtri, stdtrit
 
 from flexlash.schema.argument_checks import number, numbers
 from flexlash.schema.arrays import Array
-from flexlash.schema.variant import MeasuredDimension
+from flexlash.schema.variant import FEWEST_PARTS, MeasuredDimension
+from flexlash.tolerance.sample_uncertainty import CONFIDENCE, UPPER_SCORE, SampleUncertainty
 
 __all__ = [
-    "FEWEST_PARTS",
+    "FEWEST_FOR_SD",
     "Capability",
     "MeasuredCorrelation",
     "SampleStatistics",
@@ -29,14 +30,8 @@ __all__ = [
     "sample_statistics",
 ]
 
-FEWEST_PARTS = 5
-"""Fewest parts that a correlation is told of: with fewer its interval holds nearly everything."""
-
-_CONFIDENCE = 0.95
-_TAIL = (1 - _CONFIDENCE) / 2
-_SURE = float(ndtri(1 - _TAIL))
-
-_FEWEST_VALUES = 2
+FEWEST_FOR_SD = 2
+"""Fewest values that have a standard deviation."""
 
 _FEWEST_FOR_NORMALITY = 5
 
@@ -107,16 +102,16 @@ def sample_statistics(values: npt.ArrayLike) -> SampleStatistics:
     measured = _measured(values)
     count = len(measured)
     mean, sd = _mean_and_sd(measured)
-    beyond = float(stdtrit(count - 1, 1 - _TAIL)) * sd / math.sqrt(count)
-    freedom = count - 1
+    beyond = float(stdtrit(count - 1, (1 + CONFIDENCE) / 2)) * sd / math.sqrt(count)
+    low, high = SampleUncertainty(size=count).sd_ends
     return SampleStatistics(
         count=count,
         mean=mean,
         mean_low=mean - beyond,
         mean_high=mean + beyond,
         sd=sd,
-        sd_low=sd * math.sqrt(freedom / float(chdtri(freedom, _TAIL))),
-        sd_high=sd * math.sqrt(freedom / float(chdtri(freedom, 1 - _TAIL))),
+        sd_low=sd * low,
+        sd_high=sd * high,
         normality=normality(measured),
     )
 
@@ -143,7 +138,7 @@ def capability(statistics: SampleStatistics, low: float, high: float) -> Capabil
     count, sd = statistics.count, statistics.sd
     cp = (high - low) / (6 * sd)
     cpk = min(high - statistics.mean, statistics.mean - low) / (3 * sd)
-    beyond = _SURE * math.sqrt(1 / (9 * count) + cpk**2 / (2 * (count - 1)))
+    beyond = UPPER_SCORE * math.sqrt(1 / (9 * count) + cpk**2 / (2 * (count - 1)))
     return Capability(
         cp=cp,
         cp_low=(high - low) / (6 * statistics.sd_high),
@@ -214,7 +209,7 @@ def measured_correlation(
     correlation = _pearson(*(_normal_scores(values) if by_scores else values for values in pair))
     if abs(correlation) == 1:
         return MeasuredCorrelation(count=count, correlation=correlation, low=correlation, high=correlation)
-    centre, beyond = math.atanh(correlation), _SURE / math.sqrt(count - 3)
+    centre, beyond = math.atanh(correlation), UPPER_SCORE / math.sqrt(count - 3)
     return MeasuredCorrelation(
         count=count, correlation=correlation, low=math.tanh(centre - beyond), high=math.tanh(centre + beyond)
     )
@@ -223,8 +218,8 @@ def measured_correlation(
 def _measured(values: npt.ArrayLike) -> Array:
     """Return at least two finite values in a row."""
     measured = numbers("values", values)
-    if measured.ndim != 1 or len(measured) < _FEWEST_VALUES:
-        raise ValueError(f"values have the shape {measured.shape}: at least {_FEWEST_VALUES} in a row are required")
+    if measured.ndim != 1 or len(measured) < FEWEST_FOR_SD:
+        raise ValueError(f"values have the shape {measured.shape}: at least {FEWEST_FOR_SD} in a row are required")
     if not np.isfinite(measured).all():
         raise ValueError("values must be finite")
     return measured

@@ -16,18 +16,18 @@ import numpy as np
 from scipy.special import chdtri, ndtr, ndtri, stdtrit
 
 from flexlash.schema.arrays import Array
+from flexlash.schema.variant import FEWEST_PARTS
 
-__all__ = ["CONFIDENCE", "SampleUncertainty"]
+__all__ = ["CONFIDENCE", "UPPER_SCORE", "SampleUncertainty"]
 
 CONFIDENCE = 0.95
 """Confidence of every interval."""
 
-_UPPER = float(ndtri((1 + CONFIDENCE) / 2))
+UPPER_SCORE = float(ndtri((1 + CONFIDENCE) / 2))
+"""Normal score of the upper end of an interval."""
+
 _SCORES = np.linspace(-5.0, 5.0, 1001)
 """Scores between which the chi-square quantiles of a normal process are straight to 1e-5; 1.96 need not be one."""
-
-_FEWEST = 5
-"""Fewest values whose fourth moment says anything."""
 
 
 @lru_cache(maxsize=256)
@@ -72,8 +72,8 @@ class SampleUncertainty:
         [0.6314, 2.0977]
         """
         count = len(values)
-        if count < _FEWEST:
-            raise ValueError(f"values are {count}: at least {_FEWEST} are required")
+        if count < FEWEST_PARTS:
+            raise ValueError(f"values are {count}: at least {FEWEST_PARTS} are required")
         ordered = sorted(values)
         trimmed = int(count / (2 * math.sqrt(count - 4)))
         kept = ordered[trimmed : count - trimmed]
@@ -105,13 +105,13 @@ class SampleUncertainty:
             tail = (1 - CONFIDENCE) / 2
             low, high = (math.sqrt((self.size - 1) / float(chdtri(self.size - 1, end))) for end in (tail, 1 - tail))
         else:
-            low, high = self.sd_ratios(np.array([-_UPPER, _UPPER])).tolist()
+            low, high = self.sd_ratios(np.array([-UPPER_SCORE, UPPER_SCORE])).tolist()
         return low, high
 
     def sd_ratios(self, scores: Array) -> Array:
         """Return the standard deviation over that of the sample, at scores."""
         if self.kurtosis is None:
             return np.interp(scores, _SCORES, _normal_ratios(self.size))
-        enlarged = self.size / (self.size - _UPPER)
+        enlarged = self.size / (self.size - UPPER_SCORE)
         error = math.sqrt(max(self.kurtosis - (self.size - 3) / self.size, 0.0) / (self.size - 1))
         return np.asarray(np.sqrt(enlarged) * np.exp(enlarged * error / 2 * scores))

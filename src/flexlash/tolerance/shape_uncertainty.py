@@ -15,6 +15,7 @@ from scipy.special import ndtri
 
 from flexlash.schema.arrays import Array
 from flexlash.tolerance.measured import Measured
+from flexlash.tolerance.sample_uncertainty import UPPER_SCORE
 
 __all__ = ["BENDS", "bent_values"]
 
@@ -56,7 +57,7 @@ def _bent(values: Values) -> Iterator[tuple[Values, Values]]:
     points = min(max(len(values), _POINTS[0]), _POINTS[1])
     scores = ndtri((np.arange(points) + 0.625) / (points + 0.25))
     curve, (skewness, kurtosis) = _curve(values, scores), _errors(values)
-    reach = _CAUTION * float(ndtri(0.975))
+    reach = _CAUTION * UPPER_SCORE
     for bend in (skewness / 6 * (scores**2 - 1), kurtosis / 24 * (scores**3 - 3 * scores)):
         less, more = (tuple(np.sort(curve + side * reach * bend).tolist()) for side in (-1.0, 1.0))
         yield less, more

@@ -7,15 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.entry_words import inner_name
 from flexlash.schema.spellings import affordable, misspelt, plain
-from flexlash.schema.variant import MeasuredDimension, ToleranceRow
+from flexlash.schema.variant import FEWEST_PARTS, MeasuredDimension, ToleranceRow
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.measured_samples import Samples
 from flexlash.validation.validated import Table
 
-__all__ = ["FEWEST_PARTS", "report_used_samples"]
-
-FEWEST_PARTS = 5
-"""Fewest values of a dimension that a class may use."""
+__all__ = ["report_used_samples"]
 
 
 def report_used_samples(
