@@ -5,6 +5,7 @@ import html
 import io
 import re
 import time
+from functools import partial
 from pathlib import Path
 
 import httpx
@@ -13,7 +14,9 @@ from filled import SOUND
 from own_workbooks import REFUSED
 from served import served
 
-from flexlash.feedback.template.template_workbook import study, template_bytes
+from flexlash.feedback.template.filling import Filling, study
+from flexlash.feedback.template.template_workbook import template_bytes
+from flexlash.schema.columns import OPTIONAL_SHEETS
 
 DATA = Path(__file__).parents[2] / "data"
 JSON = {"accept": "application/json"}
@@ -122,12 +125,18 @@ def test_a_check_keeps_nothing(client, service):
     assert kept() == before
 
 
-@pytest.mark.parametrize(("path", "filling"), [("/template", None), ("/example", study)])
+@pytest.mark.parametrize(
+    ("path", "filling"),
+    [("/template", Filling), ("/example", study), ("/template/all", partial(Filling, optional=OPTIONAL_SHEETS))],
+    ids=["template", "example", "all"],
+)
 def test_the_template_is_that_of_the_command(client, path, filling):
     """Template and example are the bytes that `flexlash template` writes, made by a worker once."""
     answer = client.get(path)
-    assert answer.content == template_bytes(filling() if filling else None)
-    assert re.search('filename="flexlash-(template|example).xlsx"', answer.headers["content-disposition"])
+    assert answer.content == template_bytes(filling())
+    assert re.search(
+        'filename="flexlash-(template|template-all-sheets|example).xlsx"', answer.headers["content-disposition"]
+    )
     began = time.monotonic()
     assert client.get(path).content == answer.content
     assert time.monotonic() - began < 0.5

@@ -6,7 +6,10 @@ __all__ = ["template_file"]
 
 
 def template_file(filling: bytes) -> bytes:
-    """Return the template, empty, or for `example` filled with the published study."""
-    from flexlash.feedback.template.template_workbook import study, template_bytes
+    """Return the template, empty, for `all` with the optional sheets, for `example` filled with the published study."""
+    from flexlash.feedback.template.filling import Filling, study
+    from flexlash.feedback.template.template_workbook import template_bytes
+    from flexlash.schema.columns import OPTIONAL_SHEETS
 
-    return template_bytes(study() if filling == b"example" else None)
+    made = {b"all": lambda: Filling(optional=OPTIONAL_SHEETS), b"example": study}
+    return template_bytes(made.get(filling, Filling)())

@@ -82,6 +82,7 @@ def _routes(site: Site, visitors: Visitors) -> list[Route]:
         Route("/rules", pages.rules),
         Route("/findings/{code}", pages.explained),
         Route("/template", pages.template),
+        Route("/template/all", pages.whole_template),
         Route("/example", pages.example),
         Route("/help", pages.help),
         Route("/static/{name}", _static()),

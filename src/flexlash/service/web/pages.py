@@ -124,6 +124,10 @@ class Pages:
         """Give the empty template away."""
         return attachment(await self._template(b""), "flexlash-template.xlsx")
 
+    async def whole_template(self, _: Request) -> Response:
+        """Give the empty template away with its optional sheets."""
+        return attachment(await self._template(b"all"), "flexlash-template-all-sheets.xlsx")
+
     async def example(self, _: Request) -> Response:
         """Give the template away, filled with the published study."""
         return attachment(await self._template(b"example"), "flexlash-example.xlsx")
