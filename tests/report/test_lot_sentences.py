@@ -60,8 +60,8 @@ def test_the_worst_is_told_in_full_and_the_next_by_their_lots(study):
     )
     assert "; practically every lot has more than 1,350 ppm over the limit (practically all units)." in told
     assert (
-        "More than 1,350 ppm over it: practically every lot of “B3-160 case 3” and 99.7 % of lots of “B3-160 case 4 "
-        "r_m 80”." in told
+        "More than 1,350 ppm over the limit: practically every lot of “B3-160 case 3” and 99.7 % of lots of "
+        "“B3-160 case 4 r_m 80”." in told
     )
     assert told.endswith("Verdicts and shares are about all units of many lots, not about one lot.")
 

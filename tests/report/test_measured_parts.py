@@ -145,7 +145,7 @@ def test_verdicts_left_open_come_first(told):
     doubtful = outcome.results.filter((pl.col(ends[0]) <= 0.00135) & (pl.col(ends[1]) > 0.00135))["variant"].to_list()
     named = re.findall(r"“(v\d)”", said)
     assert named == doubtful == ["v1"]
-    assert said.endswith("More lines or points do not narrow this, more measured parts do.")
+    assert said.endswith("More lines or points do not narrow this; more measured parts do.")
     assert len(list(how_left_open(outcome.results))) == 3
 
 

@@ -52,7 +52,7 @@ def test_sizes_called_deviations(told):
     """Values of the entered size are no deviations from it."""
     ((cell, _, message),) = told(scattered(30), use="deviation")
     assert cell == "C1"
-    assert "deviations of the size of the entered 1.6 mm itself" in message
+    assert "deviations as large as the entered 1.6 mm itself" in message
 
 
 @pytest.mark.parametrize(

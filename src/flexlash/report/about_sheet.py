@@ -178,12 +178,12 @@ def _lots(acceptable_ppm: float) -> Iterator[str]:
     )
     yield (
         "Within-lot sd: root of the mean over lots of the variance of their parts. Between-lots sd: standard deviation "
-        "of the means of lots. Their squares add up to that of the standard deviation. As ± in words: 1.96 of them."
+        "of the means of lots. Their squares add up to that of the standard deviation. In sentences: ± 1.96 of them."
     )
     yield (
         "The probability over the limit is the share of the units of all lots. A lot fails where more than "
         f"{acceptable_ppm:,g} ppm of its units are over the limit (Settings: acceptable_ppm). Where nothing scatters "
-        "between lots all of them fail or none; where nothing scatters within them as many lots fail as units."
+        "between lots all of them fail or none; where nothing scatters within them, as many lots fail as units."
     )
     yield (
         "A calibration is one unknown value for all lots. It counts as scattering between them, so that the share of "

@@ -648,8 +648,8 @@ CATALOGUE = _rules(
         "process far off its limits",
         "{place} {name} = {value}: {detail}.",
         "Check mean, standard deviation and sample of the row of Tolerances, their unit, and the limits.",
-        "Such a process has nothing to do with the limits of the drawing, so that an entry cannot be meant: a unit "
-        "mistaken by a thousand, deviations taken for values, the sample of another dimension. Parts that were made "
+        "Such a process has nothing to do with the limits of the drawing, so that an entry must be mistaken: a unit "
+        "off by a thousand, deviations taken for values, the sample of another dimension. Parts that were made "
         "wrong lie nearer to their limits; they are computed, with a warning.",
     ),
     (
@@ -712,8 +712,8 @@ CATALOGUE = _rules(
         "{place} {name} = {value} contradicts the other correlations of class {other}; the nearest admissible "
         "value{detail} is {suggestion}.",
         "Enter {suggestion}, or mend one of the others.",
-        "What is close to both of two dimensions cannot turn away from their likeness: with 0.9 to each of two, these "
-        "have at least 0.62. In the words of matrices, no eigenvalue may be negative.",
+        "Two dimensions that both follow a third closely follow one another: where each has 0.9 with it, they have at "
+        "least 0.62 with one another. In the words of matrices, no eigenvalue may be negative.",
     ),
     (
         "E349",
@@ -1072,8 +1072,8 @@ CATALOGUE = _rules(
         "W449",
         "measured correlation not as measured",
         "{place}: class {other} differs from sample {value}: {detail}.",
-        "Measure the same parts in all dimensions, let them scatter between lots or between parts alike, or enter the "
-        "correlations in Correlations.",
+        "Measure all dimensions on the same parts, let all of them scatter between lots or all between parts, or enter "
+        "their correlations in Correlations.",
         "Correlations of different parts can contradict one another; the nearest that do not are then used. A "
         "dimension that a whole lot shares cannot follow one that differs from part to part.",
     ),
@@ -1097,7 +1097,7 @@ CATALOGUE = _rules(
         "W454",
         "measured in another unit or way",
         "{place}: the values of {name} in sample {other} are {detail}.",
-        "Write the unit in which was measured into the header; under Use as, value for sizes, deviation for what was "
+        "Write the unit of the measurement into the header; under Use as, value for sizes, deviation for what was "
         "measured above the entered value.",
         "A column of micrometres under a header in millimetres, or sizes called deviations, put the whole process "
         "beside its drawing. The values are used as they stand.",

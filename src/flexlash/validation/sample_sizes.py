@@ -82,7 +82,7 @@ def _judged(sample: MeasuredDimension, entered: float, unit: float) -> tuple[str
     ratio = middle / entered
     shown = f"the entered {spelled_out(entered / column.si_unit.si, 6)} {column.unit}".rstrip(" -")
     if sample.are_deviations:
-        return (f"deviations of the size of {shown} itself", "") if _SAME < ratio < 1 / _SAME else ("", "")
+        return (f"deviations as large as {shown} itself", "") if _SAME < ratio < 1 / _SAME else ("", "")
     # Sizes below 0 have an error of their own.
     if min(sample.values) <= 0 or 1 / _OTHER < ratio < _OTHER:
         return "", ""

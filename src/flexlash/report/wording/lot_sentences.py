@@ -40,7 +40,7 @@ def lots_and_parts(facts: SummaryFacts) -> Iterator[str]:
     failing = [row for row in others if scatters_between_lots(row) and row["lots_failing"] is not None]
     if failing:
         told = [f"{lots_words(row, 'of', 'of')} {facts.named(row['variant'])}" for row in failing]
-        yield f"More than {_acceptable(facts)} over it: {listed(told, NAMED)}."
+        yield f"More than {_acceptable(facts)} over the limit: {listed(told, NAMED)}."
     yield from _shared(facts, worst)
     if facts.judged.height:
         lots = (facts.judged["between_lots_sd_arcmin"].fill_null(0.0) > 0).any()

@@ -41,13 +41,13 @@ def measured_parts(facts: SummaryFacts) -> Iterator[str]:
         yield f"{facts.named(row['variant'])}: {_interval(facts, row)}."
         yield from _verdict(row)
     yield from _others(rows.filter(low.is_not_null()).height, doubtful.height)
-    yield "More lines or points do not narrow this, more measured parts do."
+    yield "More lines or points do not narrow this; more measured parts do."
 
 
 def _others(judged: int, doubtful: int) -> Iterator[str]:
     """Yield how many verdicts measured parts leave open, where not all of them were told."""
     if doubtful > NAMED:
-        yield f"In all the verdicts of {grouped(doubtful)} of {counted(judged, 'variant')} are left open."
+        yield f"In all, the verdicts of {grouped(doubtful)} of {counted(judged, 'variant')} are left open."
     elif not doubtful and judged > 1:
         yield f"The same holds for all {counted(judged, 'variant')}: no verdict is left open."
 
@@ -77,9 +77,9 @@ def how_left_open(results: pl.DataFrame) -> Iterator[str]:
     )
     yield (
         "Mean by Student's t, standard deviation by chi-square; of a distribution taken as measured by Bonett's "
-        "interval, its skewness and tails by 1.5 of their standard errors; a measured correlation by Fisher's z. The "
-        "backlash is spread anew with each of them at either end; together they act as the fiducial distribution says, "
-        "which for one normal dimension is exact (noncentral t)."
+        "interval, its skewness and tails by 1.5 times the usual 1.96 of their standard errors; a measured correlation "
+        "by Fisher's z. The backlash is spread anew with each of them at either end; together they act as the fiducial "
+        "distribution says, which for one normal dimension is exact (noncentral t)."
     )
     yield (
         "It presumes independent parts of one process that stays as it was, and of a dimension taken as normal that "
