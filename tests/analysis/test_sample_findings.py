@@ -5,8 +5,14 @@ from __future__ import annotations
 import pytest
 from measured_parts import HEADERS, measured_rows, scattered
 
+from flexlash.analysis.examination import examined
+from flexlash.analysis.options import Options
+from flexlash.analysis.sample_findings import report_samples
 from flexlash.pipeline import check
+from flexlash.reading.read import Source
+from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.columns import columns_of
+from flexlash.validation.ledger import Ledger
 
 _HEADERS = [
     "Tolerance class",
@@ -84,3 +90,20 @@ def test_measured_rows_are_sound():
 
     walls = [row[3] for row in measured_rows()]
     assert (mean(walls), stdev(walls)) == (pytest.approx(1.607, abs=1e-12), pytest.approx(0.0041, rel=1e-12))
+
+
+def test_a_row_that_classes_take_over_is_told_once(book, sound):
+    """Few parts are told at the row that takes them, however many classes are based on its own."""
+    entered = {columns_of("Variants")[key].label: value for key, value in (sound | {"tolerance_class": "new"}).items()}
+    classes = [
+        [*_HEADERS, "Based on class"],
+        ["shop", "wall_thickness", -0.1, 0.1, "mm", None, "wall", None],
+        *([name, None, None, None, None, None, None, "shop"] for name in ("new", "newer")),
+    ]
+    rows = [["wall", number, None, value] for number, value in enumerate(scattered(10))]
+    sheets = {"Variants": [list(entered), list(entered.values())], "Tolerances": classes}
+    source = Source.at(book({**sheets, "Measurements": [HEADERS, *rows]}), ReadingLimits())
+    validated = examined(source, Options()).validated
+    ledger = Ledger.after(validated)
+    report_samples(validated, ledger)
+    assert [(found.code, found.cell) for found in ledger.findings] == [("W445", "G2")]

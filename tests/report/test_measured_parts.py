@@ -183,3 +183,10 @@ def test_the_terminal_and_the_page_tell_it_of_a_variant_that_fails(told):
     assert f"leave open {left_open_words(found)} (95 %)" in sentences[PARTS]
     assert {key for key in found if "_sample_" in key} <= {one["key"] for one in page["numbers"]}
     assert {one["topic"]: one["text"] for one in facts["sentences"]}[PARTS] == said_of(outcome)[PARTS]
+
+
+def test_the_only_variant_has_no_others(told):
+    """Of one variant it is not said that the same holds for all."""
+    said = said_of(told(60, 3.9))[PARTS]
+    assert "verdict is" in said
+    assert "The same holds" not in said

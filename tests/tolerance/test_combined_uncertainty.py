@@ -12,6 +12,8 @@ from scipy import stats
 from flexlash.tolerance.combined_uncertainty import (
     OutputNumbers,
     Parameter,
+    Product,
+    _beyond_sum,
     percentile_interval,
     probability_interval,
     standard_scores,
@@ -122,3 +124,25 @@ def test_sets_of_parameters_are_the_same_whenever_they_are_asked_for():
     standard_scores.cache_clear()
     standard_scores(6)
     assert (standard_scores(4) == first).all()
+
+
+@for_each("moves", [(0.4, -0.3, -0.2), (0.4, 0.3, 0.2), (-0.5, -0.5, 0.3), (0.0, 0.7, -0.9)])
+def test_a_covariance_adds_what_its_factors_do_together(moves):
+    """The variance of a sum with both sds and the correlation moved is that of each alone, and what a product adds."""
+    sds, estimate = (2.0, 3.0), 0.5
+
+    def variance(first, second, correlation):
+        cross = 2 * sds[0] * sds[1] * math.sqrt((1 + first) * (1 + second)) * (estimate + correlation)
+        return sds[0] ** 2 * (1 + first) + sds[1] ** 2 * (1 + second) + cross
+
+    def parameter(place, low, high):
+        at_low, at_high = (numbers(0.0, variance(*np.eye(3)[place] * end), 1.0) for end in (low, high))
+        ends = {"low": low, "high": high, "at_low": at_low, "at_high": at_high}
+        return Parameter(moves=np.array([moves[place]]), scatters=True, **ends)
+
+    first, second = (parameter(place, -0.5, 0.8) for place in (0, 1))
+    product = Product(first=first, second=second, correlation=parameter(2, -0.4, 0.3), estimate=estimate)
+    whole = variance(0, 0, 0)
+    alone = sum(variance(*np.eye(3)[place] * moves[place]) - whole for place in range(3))
+    together = variance(*moves) - whole - alone
+    assert _beyond_sum(numbers(0.0, whole, 1.0), product)[0] * whole == pytest.approx(together, abs=1e-12)

@@ -261,3 +261,12 @@ def test_tables_of_measuring_machines(table, tmp_path, sound, machine, encoding)
     assert [one.code for one in outcome.findings if one.code[0] in _TOLD and one.sheet == "Measurements"] == []
     measured = outcome.validated.measured["wall"]["wall_thickness"].values
     assert measured == pytest.approx([round(value, 4) * 1e-3 for value in values], rel=1e-12)
+
+
+def test_a_number_that_no_size_has(measured):
+    """What lies beyond a thousand million, in any unit, is an error at its cell and no part of the sample."""
+    rows = measured_rows(20)
+    rows[2][3], rows[4][3] = 2e9, -2e9
+    found = measured(rows)
+    assert [one for one in _told(found) if one[0] == "E208"] == [("E208", "D4"), ("E208", "D6")]
+    assert len(found.measured["wall"]["wall_thickness"].values) == 18

@@ -74,3 +74,10 @@ def test_deviations_may_be_many_times_each_other():
 def test_of_few_values_none_is_told(values):
     """Of fewer than five nobody can say which is odd."""
     assert odd_values(values, are_sizes=True) == {}
+
+
+def test_what_was_meant_may_lie_a_little_beyond_the_others():
+    """A slip of the greatest part leaves a value just above the rest: up to half of their width is near enough."""
+    values = [1.60, 1.61, 1.62, 1.63, 1.64, 1.62, 1.62, 16.58]
+    assert odd_values(values, are_sizes=True)[7].suggestion == "1.658"
+    assert odd_values([*values[:7], 16.62], are_sizes=True)[7].suggestion == ""

@@ -74,3 +74,8 @@ def test_the_middle_of_the_variants_counts(told):
     thin = {"wall_thickness_mm": 0.16, "tolerance_class": "standard"}
     assert told(scattered(30), variants=({}, thin, thin, thin)) == []
     assert len(told([1000 * value for value in scattered(30)], uses=(("base", "wall_thickness", "wall"),))) == 1
+
+
+def test_a_size_of_nothing_is_told_alone(told):
+    """A 0 among sizes has an error of its own, and says nothing of their unit."""
+    assert told([*(value * 1000 for value in scattered(30)), 0.0]) == []
