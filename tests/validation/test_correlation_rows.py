@@ -135,3 +135,19 @@ def test_a_class_with_faults_of_its_own_is_not_said_to_be_exact(tmp_path):
     sheets = {"variants": [CUP], "tolerances": broken, "correlations": correlations((LENGTH, WALL, 0.5))}
     outcome = check(entry_book(tmp_path / "study.xlsx", **sheets))
     assert _found(outcome) == [("E202", "Tolerances!C2")]
+
+
+@pytest.mark.parametrize("row", [(WALL, DISK, 2.0), (WALL, "torque", 0.5), (WALL, WALL, 0.5)])
+def test_what_is_based_on_a_class_with_a_faulty_pair_waits_too(tmp_path, row):
+    """A class takes over the pairs of its base: without the faulty one its spread would be that of others."""
+    based = [{"tolerance_class": "own", "based_on": "Mid"}, {"tolerance_class": "mid", "based_on": "SHOP"}]
+    torque = {"tolerance_class": "own", "dimension": "torque", "lower_deviation": -1, "upper_deviation": 1}
+    variants = [
+        CUP,
+        CUP | {"variant": "own", "tolerance_class": "own"},
+        CUP | {"variant": "f", "tolerance_class": "Fine"},
+    ]
+    sheets = {"variants": variants, "tolerances": [*UNIFORM_CUP, *FINE, *based, torque]}
+    outcome = check(entry_book(tmp_path / "study.xlsx", **sheets, correlations=correlations(row)))
+    assert outcome.results["status"].to_list() == ["error", "error", "ok"]
+    assert "Row 3 of Variants waits for class own." in " ".join(one.message for one in outcome.findings)

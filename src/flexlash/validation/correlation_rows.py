@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from flexlash.schema.columns import DIMENSIONS, columns_of
@@ -21,12 +21,17 @@ _NEEDED = ("tolerance_class", *_PAIR, "correlation")
 _ORDER = {name: place for place, name in enumerate(DIMENSIONS)}
 
 
-def correlation_rows_of(
-    table: Table, classes: Mapping[str, Sequence[ToleranceRow]], ledger: Ledger
-) -> tuple[CorrelationRow, ...]:
-    """Return the sound rows of a sheet, each pair in the order of `DIMENSIONS`; faulty ones spoil their class.
+_FAULTS = 10
+"""Faulty rows of a class that are told as those of each class based on it."""
 
-    `classes` are those of Tolerances by plain name.
+
+def correlation_rows_of(
+    table: Table, classes: Mapping[str, Sequence[ToleranceRow]], ledger: Ledger, tolerances: Table | None = None
+) -> tuple[CorrelationRow, ...]:
+    """Return the sound rows of a sheet, each pair in the order of `DIMENSIONS`.
+
+    Faulty ones spoil their class and those based on it, which would take them over. `classes` are those of Tolerances
+    by plain name, `tolerances` is their sheet.
     """
     known = {key: rows[0].tolerance_class if rows else key for key, rows in classes.items()}
     meant = MeantNames(list(known.values()), table.frame["tolerance_class"].drop_nulls().n_unique())
@@ -34,17 +39,20 @@ def correlation_rows_of(
     # Of a class with faulty rows of Tolerances it cannot be told which dimensions it leaves exact.
     whole = {key: _scattering(rows) for key, rows in classes.items() if key not in ledger.classes}
     found = []
+    spoilt: dict[str, list[int]] = defaultdict(list)
     for record in table.frame.iter_rows(named=True):
         row, name = record["row"], record["tolerance_class"]
         if name is None or (row, "tolerance_class") in table.faulty:
             ledger.everything = True
             continue
-        owner = _owner(table, ledger, record, known, meant)
+        owner, likely = _owner(table, ledger, record, known, meant)
         if owner is None:
+            if likely:
+                spoilt[likely].append(row)
             continue
         faulty = row in doubled or any((row, key) in table.faulty or record[key] is None for key in _NEEDED)
         if _reports_pair(table, ledger, record, whole.get(owner, set(DIMENSIONS))) or faulty:
-            ledger.spoil("class", owner, table.sheet, row)
+            spoilt[owner].append(row)
             continue
         first, second = sorted((record[key] for key in _PAIR), key=_ORDER.__getitem__)
         found.append(
@@ -52,25 +60,45 @@ def correlation_rows_of(
                 row=row, tolerance_class=known[owner], first=first, second=second, correlation=record["correlation"]
             )
         )
+    for key, rows in [*spoilt.items(), *_following(spoilt, tolerances)]:
+        for row in rows:
+            ledger.spoil("class", key, table.sheet, row)
     return tuple(found)
+
+
+def _following(spoilt: Mapping[str, Sequence[int]], tolerances: Table | None) -> Iterator[tuple[str, Sequence[int]]]:
+    """Yield once each class that is based on a spoilt one, by way of others too, with the rows of one that spoil it."""
+    if tolerances is None or not spoilt:
+        return
+    followers: dict[str, list[str]] = defaultdict(list)
+    for name, base in tolerances.frame.select("tolerance_class", "based_on").drop_nulls().iter_rows():
+        followers[plain(base)].append(plain(name))
+    seen = set(spoilt)
+    for key, rows in spoilt.items():
+        pending = [*followers[key]]
+        while pending:
+            one = pending.pop()
+            if one not in seen:
+                seen.add(one)
+                pending += followers[one]
+                yield one, rows[:_FAULTS]
 
 
 def _owner(
     table: Table, ledger: Ledger, record: Mapping[str, Any], known: Mapping[str, str], meant: MeantNames
-) -> str | None:
-    """Return the plain name of the class of a row; of one that there is not, None, after it spoilt what it may mean."""
+) -> tuple[str | None, str]:
+    """Return the plain name of the class of a row; of one that there is not, None and what it may mean, else ""."""
     row, name, column = record["row"], record["tolerance_class"], _COLUMNS["tolerance_class"]
     key = plain(name)
     if key in known:
         if name != known[key]:
             facts = {"suggestion": known[key], "certain_value": known[key]}
             ledger.add_in(table, "I504", row, column.key, value=name, **facts)
-        return key
+        return key, ""
     facts = meant.unknown("E309", column, name)
     ledger.add_in(table, row=row, key=column.key, value=name, **facts)
-    if (likely := plain(facts.get("suggestion") or "")) in known:
-        ledger.spoil("class", likely, table.sheet, row)
-    return None
+    likely = plain(facts.get("suggestion") or "")
+    return None, likely if likely in known else ""
 
 
 def _report_twice(table: Table, ledger: Ledger) -> set[int]:

@@ -165,7 +165,7 @@ def _used(
     report_used_samples(samples, classes, tables.get("Tolerances"), ledger)
     settings = settings_of(tables["Settings"], ledger) if "Settings" in tables else Settings()
     tied = tables.get("Correlations") if are_named else None
-    correlations = () if tied is None else correlation_rows_of(tied, classes, ledger)
+    correlations = () if tied is None else correlation_rows_of(tied, classes, ledger, tables.get("Tolerances"))
     names = class_names(tables["Tolerances"]) if "Tolerances" in tables else {}
     return _Used(materials=materials, classes=classes, class_names=names, settings=settings, correlations=correlations)
 
