@@ -42,19 +42,20 @@ def _table(sheet, first="Sample"):
 
 
 def test_the_issues_wall(samples):
-    """Sixty walls: n, mean, s, Cp, Cpk with its interval, p and the class; then the pair measured together."""
+    """Sixty walls: n, mean, s, Cp, Cpk with their intervals, p and the class; then the pair measured together."""
     sheet = samples(measured_rows())
     (wall, disk), (pair,) = _table(sheet)
     assert wall[:4] == ["wall", "Wall thickness", "mm", 60]
     assert wall[4] == pytest.approx(1.607, rel=1e-12)
     assert wall[7:10] == pytest.approx([0.0041, 0.0034753, 0.0050006], rel=1e-4)
     assert wall[12:14] == [1.58, 1.62]
-    assert [f"{value:.2f}" for value in wall[14:18]] == ["1.63", "1.06", "0.85", "1.27"]
-    assert wall[18] > 0.9
-    assert wall[19] == "class shop, as normal; 1 variant"
+    # Cp and its interval are as s and its own: 0.04/(6 s).
+    assert [f"{value:.2f}" for value in wall[14:20]] == ["1.63", "1.33", "1.92", "1.06", "0.85", "1.27"]
+    assert wall[20] > 0.9
+    assert wall[21] == "class shop, as normal; 1 variant"
     assert disk[1] == "Disk thickness"
-    assert disk[12:18] == [None] * 6
-    assert disk[19] == "no class"
+    assert disk[12:20] == [None] * 8
+    assert disk[21] == "no class"
     assert pair[:2] == ["wall", "Wall thickness"]
     assert pair[3] == 60
     assert pair[7] == "Disk thickness, of values"

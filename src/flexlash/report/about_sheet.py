@@ -90,7 +90,7 @@ LEFT_OUT = (
     "Hub bolts, wave generator bearing and teeth: the wind-up is a lower bound on the drive's total compliance.",
     "Tooth clearance, radial play, couplings and hysteresis: they come on top of this backlash.",
     "Plastic deformation: a von Mises stress above yield is flagged, the number stays elastic.",
-    "Correlation between dimensions, other than a blank cell being the same dimension as another.",
+    "What ties dimensions together beyond the correlations that are entered or measured; a process that drifts.",
 )
 ERRATA = (
     "The published B3-160 study prints G = 8.10769e10 Pa; its E and ν give 8.11538e10. Its U_cylinder 3.058e-4 rad "
@@ -143,8 +143,15 @@ _SAMPLING = {
 
 def _statistics(outcome: Outcome) -> Iterator[str]:
     """Yield how the spread was made and how good it is."""
-    yield "Each tolerance gives limits; parts scatter around the middle of the limits, not around the entry."
-    yield "normal: σ = (upper − lower)/(2k), unbounded; truncated normal: cut at the limits; others: between them."
+    yield (
+        "Each tolerance gives limits; parts scatter around the middle of the limits, not around the entry, unless a "
+        "mean shift, Cpk or a sample says where their mean lies."
+    )
+    yield (
+        "normal: σ = (upper − lower)/(2k), or that of the process (Standard deviation, Cp, Sample), unbounded; "
+        "truncated normal: the same, cut at the limits; measured: a curve through the values of the sample; others: "
+        "between the limits."
+    )
     yield from correlation_sentences(outcome.computed)
     yield from _SAMPLING[outcome.settings.method]
     yield "P99.865 of a normal is mean + 3 sd. A number ± 1.96 of its standard errors is its 95 % interval."

@@ -90,6 +90,8 @@ _COLUMNS = (
     _Column("Lower limit", lambda row: row.low),
     _Column("Upper limit", lambda row: row.high),
     _Column("Cp", lambda row: _index(row, "cp"), _index_code, 6.5),
+    _Column("from", lambda row: _index(row, "cp_low"), _index_code, 6.5),
+    _Column("to", lambda row: _index(row, "cp_high"), _index_code, 6.5),
     _Column("Cpk", lambda row: _index(row, "cpk"), _index_code, 6.5),
     _Column("from", lambda row: _index(row, "cpk_low"), _index_code, 6.5),
     _Column("to", lambda row: _index(row, "cpk_high"), _index_code, 6.5),

@@ -71,9 +71,10 @@ def how_left_open(results: pl.DataFrame) -> Iterator[str]:
     if "p99_865_sample_low_arcmin" not in results.columns or not results["p99_865_sample_low_arcmin"].count():
         return
     yield (
-        "By measured parts: where mean and standard deviation of a dimension come from measured parts, so few leave "
-        "both uncertain. The intervals of the probability over the limit and of P99.865 by measured parts hold the "
-        "true ones of the process in 95 of 100 samples; the interval beside the probability is the calculation's alone."
+        "By measured parts: where mean and standard deviation of a dimension come from measured parts, their "
+        "number leaves both uncertain. The intervals of the probability over the limit and of P99.865 by measured "
+        "parts hold the true ones of the process in 95 of 100 samples; the interval beside the probability is the "
+        "calculation's alone."
     )
     yield (
         "Mean by Student's t, standard deviation by chi-square; of a distribution taken as measured by Bonett's "
@@ -82,8 +83,8 @@ def how_left_open(results: pl.DataFrame) -> Iterator[str]:
         "distribution says, which for one normal dimension is exact (noncentral t)."
     )
     yield (
-        "It presumes independent parts of one process that stays as it was, and of a dimension taken as normal that "
-        "it is: where the sheet Samples doubts that, take it as measured."
+        "It presumes independent parts of one process that stays as it was, and that a dimension taken as normal is "
+        "so: where the sheet Samples doubts that, take it as measured."
     )
 
 
