@@ -44,3 +44,16 @@ def test_many_are_usual_where_one_is():
     assert [one for one, verdict in zip(usual, verdicts, strict=True) if one and verdict] == []
     assert usual[(abs(place) < 1) & (sigma > 1) & (sigma < 12)].all()
     assert not usual[(abs(place) > 1) | (sigma < 1) | (sigma > 12)].any()
+
+
+TRUNCATED = {"within": (0.9, None), "little beyond": (1.4, "W442"), "no part is kept": (1.6, "E339")}
+
+
+@for_each("case", TRUNCATED)
+def test_a_truncated_process_must_have_parts_within_its_limits(case):
+    """Beyond five standard deviations no part in a million is left; a normal process has all of its parts."""
+    mean, code = TRUNCATED[case]
+    verdict = process_verdict(-1.0, 1.0, mean, 0.1, is_entered=True, is_truncated=True)
+    assert (verdict and verdict.code) == code
+    of_all = process_verdict(-1.0, 1.0, mean, 0.1, is_entered=True)
+    assert (of_all and of_all.code) == (code and "W442")

@@ -48,7 +48,15 @@ def report_processes(
         if limit is None or not (limit.low < limit.high and row.has_process and row.waits_for_size):
             continue
         sd = limit.standard_deviation
-        verdict = process_verdict(limit.low, limit.high, limit.mean, sd, is_entered=row.sd is not None, cpk=row.cpk)
+        verdict = process_verdict(
+            limit.low,
+            limit.high,
+            limit.mean,
+            sd,
+            is_entered=row.sd is not None,
+            cpk=row.cpk,
+            is_truncated=row.distribution == "truncated normal",
+        )
         if verdict and (row.sample or validated.tolerances is None):
             _report_at_variant(ledger, variant, row, verdict)
         elif verdict and validated.tolerances:

@@ -27,6 +27,9 @@ _LEAST_FOUND = 0.1
 _FARTHEST = 2.0
 """Widths of the limits beyond them from which on a mean is that of another size; parts made wrong lie nearer."""
 
+_FARTHEST_CUT = 5.0
+"""Standard deviations from the limits to the mean of a truncated process, which keeps no part in a million there."""
+
 _HUNDREDTH = 0.0051
 """Difference of two Cpk from which on they are not one number in two decimals."""
 
@@ -42,12 +45,20 @@ class ProcessVerdict(NamedTuple):
 
 
 def process_verdict(
-    low: float, high: float, mean: float, sd: float, *, is_entered: bool, cpk: float | None = None
+    low: float,
+    high: float,
+    mean: float,
+    sd: float,
+    *,
+    is_entered: bool,
+    cpk: float | None = None,
+    is_truncated: bool = False,
 ) -> ProcessVerdict | None:
     """Return what is wrong with a process of this mean and sd between limits that differ, None where it can be meant.
 
     All four in one unit. A standard deviation that is itself entered must also be a usual one, since it may be in
-    another unit; `cpk` is one that is told beside the mean. Numbers may be too large or too small to divide.
+    another unit; `cpk` is one that is told beside the mean. A truncated process must have parts within the limits.
+    Numbers may be too large or too small to divide.
 
     >>> process_verdict(-2.0, 2.0, 12.0, 1.0, is_entered=True).words
     'the mean lies 2.5 times their width beyond the limits; 2 are possible'
@@ -57,17 +68,25 @@ def process_verdict(
     if not least * (1 - _ROUNDING) <= sigma <= most:
         words = f"{spelled_out(sigma)} standard deviations off their middle; {least:g} to 300 are possible"
         return ProcessVerdict("E339", "scatter", f"the limits lie {words}")
-    if beyond > _FARTHEST * (high - low) * (1 + _ROUNDING):
-        words = f"{spelled_out(beyond / (high - low))} times their width beyond the limits; {_FARTHEST:g} are possible"
-        return ProcessVerdict("E339", "mean", f"the mean lies {words}")
     if beyond > _ROUNDING * (high - low):
-        return ProcessVerdict("W442", "mean", "the mean lies")
+        return _outside(beyond, high - low, sd if is_truncated else math.inf)
     given = min(high - mean, mean - low) / (3 * sd)
     if cpk is not None and abs(given - cpk) > _HUNDREDTH:
         return ProcessVerdict("W443", "cpk", f"with this Mean shift Cpk is {spelled_out(given)}")
     if is_entered and not _FEWEST * (1 - _ROUNDING) <= sigma <= _MOST * (1 + _ROUNDING):
         return ProcessVerdict("W444", "scatter", f"it puts the limits at ± {spelled_out(sigma)}")
     return None
+
+
+def _outside(beyond: float, width: float, sd: float) -> ProcessVerdict:
+    """Return what is said of a mean so far beyond limits of this width; `sd` is that of a truncated process."""
+    if beyond > _FARTHEST * width * (1 + _ROUNDING):
+        words = f"{spelled_out(beyond / width)} times their width beyond the limits; {_FARTHEST:g} are possible"
+        return ProcessVerdict("E339", "mean", f"the mean lies {words}")
+    if beyond > _FARTHEST_CUT * sd:
+        words = f"{spelled_out(beyond / sd)} standard deviations beyond the limits, which keep no part in a million"
+        return ProcessVerdict("E339", "mean", f"the mean lies {words}")
+    return ProcessVerdict("W442", "mean", "the mean lies")
 
 
 def is_usual_process(low: Array, high: Array, mean: Array, sd: Array) -> npt.NDArray[np.bool_]:

@@ -149,15 +149,18 @@ def _beyond_bounds(limits: Mapping[str, Limits]) -> Iterator[LimitsProblem]:
             continue
         detail = "0" if least <= low + slack else "180°" if name == "disk_cone_angle" else "0.5"
         if limit.low > low + slack and limit.high <= high + slack:
-            detail += " with what its sample shows"
+            detail += " with what its sample shows" if limit.sample else " with the mean of its process"
         yield LimitsProblem(kind="impossible", dimension=name, detail=detail)
 
 
 def _ends_of(limits: Limits) -> tuple[float, float]:
-    """Smallest and largest value that must make a part: the limits, and what a measured process produces.
+    """Smallest and largest value that must make a part: the limits, the mean of a process, what a measured one makes.
 
-    A measured shape ends where its sample can tell nothing more, so that no far tail of it is cut.
+    Of a normal whose mean makes no part a cut would leave nothing. A measured shape ends where its sample can tell
+    nothing more, so that no far tail of it is cut.
     """
+    if limits.distribution == "normal":
+        return min(limits.low, limits.mean), max(limits.high, limits.mean)
     if limits.distribution != "measured" or limits.sample is None:
         return limits.low, limits.high
     first, last = measured_ends(limits.sample)
@@ -192,7 +195,8 @@ def _keep_open(variant: Variant, limits: dict[str, Limits], gap: Gap) -> Iterato
     for name, factor in gap.factors.items():
         limit = limits.get(name)
         if limit and limit.distribution == "normal":
-            tail = limit.reach[1] - limit.high if factor < 0 else limit.low - limit.reach[0]
+            low, high = _ends_of(limit)
+            tail = limit.reach[1] - high if factor < 0 else low - limit.reach[0]
             if tail > 0:
                 tails[name] = (tail, factor)
     total = sum(tail * abs(factor) for tail, factor in tails.values())
@@ -200,9 +204,9 @@ def _keep_open(variant: Variant, limits: dict[str, Limits], gap: Gap) -> Iterato
         return
     for name, (tail, factor) in tails.items():
         limit = limits[name]
-        low, high = limit.cut or bounds_of(name)
+        (low, high), (least, most) = limit.cut or bounds_of(name), _ends_of(limit)
         kept = tail * max(room, 0.0) / total
-        cut = (low, min(high, limit.high + kept)) if factor < 0 else (max(low, limit.low - kept), high)
+        cut = (low, min(high, most + kept)) if factor < 0 else (max(low, least - kept), high)
         limits[name] = replace(limit, cut=cut)
         yield LimitsProblem(kind="cut", dimension=name, detail=gap.reached.words)
 

@@ -93,7 +93,8 @@ def check_verdict(table: Table, ledger: Ledger, record: Mapping[str, Any], row: 
     mean = middle + row.mean_shift + row.harmful_shift * width
     if sample:
         mean, sd = sample.mean, sample.standard_deviation
-    verdict = process_verdict(row.lower, row.upper, mean, sd, is_entered=row.sd is not None, cpk=row.cpk)
+    is_cut, is_entered = row.distribution == "truncated normal", row.sd is not None
+    verdict = process_verdict(row.lower, row.upper, mean, sd, is_entered=is_entered, cpk=row.cpk, is_truncated=is_cut)
     if verdict is None:
         return True
     key = next((key for key in BLAMED[verdict.blamed] if record[key] is not None), "dimension")
