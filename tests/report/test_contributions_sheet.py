@@ -6,11 +6,11 @@ import pytest
 from report_charts import chart_titled, points_of
 from report_entries import opened
 
-from flexlash.analysis.run_summary import dimension_words
 from flexlash.pipeline import run
 from flexlash.report.compare.causes import cause_sentences, causes_of, ranked_dimensions
 from flexlash.report.compare.contributions_sheet import MAPPED
 from flexlash.report.report_data import drawn_variants
+from flexlash.schema.entry_words import dimension_words
 
 CHART = "Disk share of the wind-up against the length of the cylinder"
 

@@ -7,13 +7,14 @@ import xlsxwriter
 from libreoffice import convert_all, needs_libreoffice
 from report_entries import opened, typed
 
-from flexlash.analysis.run_summary import dimension_words, share_words
+from flexlash.analysis.run_summary import share_words
 from flexlash.pipeline import run
 from flexlash.report.compare.compared import COMPARED_NOTE, compared_variants
 from flexlash.report.compare.ranking_sheet import BASE_ROW, DIFFERENCES, FIRST_ROW, HEADER, write_ranking
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import drawn_variants
 from flexlash.report.wording.verdict import light
+from flexlash.schema.entry_words import dimension_words
 
 KEYS = {
     "P2.5 [arcmin]": "p2_5_arcmin", "P50 [arcmin]": "p50_arcmin", "P97.5 [arcmin]": "p97_5_arcmin",

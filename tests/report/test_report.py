@@ -10,12 +10,12 @@ import regenerate
 from libreoffice import needs_libreoffice
 from report_entries import opened
 
-from flexlash.analysis.run_summary import dimension_words
 from flexlash.pipeline import run
 from flexlash.report import report_data
 from flexlash.report.about_sheet import PROOF
 from flexlash.report.workbook import report_bytes
 from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.result_columns import CROSS_CHECK, FINDINGS, RESULTS, result_columns
 from flexlash.schema.stamps import stamped
 from flexlash.schema.units import ARCMIN

@@ -8,9 +8,9 @@ import zipfile
 import openpyxl
 import pytest
 
-from flexlash.analysis.run_summary import dimension_words
 from flexlash.pipeline import run
 from flexlash.report.sensitivity_sheet import _HEADER
+from flexlash.schema.entry_words import dimension_words
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ from libreoffice import convert_all, needs_pages
 from report_entries import opened
 from said import said_of
 
-from flexlash.analysis.run_summary import dimension_words, share_words
+from flexlash.analysis.run_summary import share_words
 from flexlash.pipeline import run
 from flexlash.report.explorer.curves_sheet import stored_curves
 from flexlash.report.layout.styles import PALETTE, Book
@@ -21,6 +21,7 @@ from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
 from flexlash.report.report_data import drawn_variants, report_data
 from flexlash.report.summary.summary_sheet import write_summary
 from flexlash.report.wording.verdict import RULES, light
+from flexlash.schema.entry_words import dimension_words
 
 _ASCENT_AND_DESCENT = 1.22
 """Height of a word's box over the size of its letters, in Calibri and Carlito."""

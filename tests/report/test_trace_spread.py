@@ -15,11 +15,11 @@ from report_entries import error_cells, typed, values_of
 from traced_rows import MATERIALS, ROWS, rows_of
 from traced_spreads import slope_audited, spread_traced
 
-from flexlash.analysis.run_summary import dimension_title
 from flexlash.feedback.template.template_workbook import Filling, template_bytes
 from flexlash.pipeline import check, run
 from flexlash.report.trace.spread_table import HEADER
 from flexlash.report.trace.trace_spread import AGREES, CHANGED
+from flexlash.schema.entry_words import dimension_title
 from flexlash.schema.units import ARCMIN
 
 CUP = {**SOUND, "disk_thickness_mm": 1.8, "hub_fillet_radius_mm": 3.0}

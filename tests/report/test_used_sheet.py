@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 from report_entries import opened
 
-from flexlash.analysis.run_summary import dimension_title
 from flexlash.analysis.used_tolerances import used_tolerances
 from flexlash.report import extent, report_data
 from flexlash.report.used_sheet import USED
 from flexlash.report.workbook import report_bytes
+from flexlash.schema.entry_words import dimension_title
 from flexlash.schema.used_columns import TOLERANCES_USED
 
 _HEADER = 5

@@ -14,8 +14,8 @@ from itertools import combinations
 from typing import Any
 
 from flexlash.analysis.contradicting_correlations import Pair, contradictions, without_contradiction
-from flexlash.analysis.run_summary import dimension_words
 from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.spellings import plain
 from flexlash.schema.variant import CorrelationRow, ToleranceRow
 from flexlash.tolerance.sample_statistics import MeasuredCorrelation, measured_correlation

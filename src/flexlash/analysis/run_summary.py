@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from flexlash.analysis.outcome import Outcome, Written
 from flexlash.analysis.whole_batch import worst_rows
 from flexlash.schema.cell_addresses import CellAddress, cell_ranges
-from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.finding_catalogue import Level
 from flexlash.schema.findings import CATALOGUE, Finding, shown
 from flexlash.schema.limit_verdict import BOUNDS, VERDICTS, misses_limit
@@ -32,8 +31,6 @@ __all__ = [
     "closing_lines",
     "counted",
     "detail_lines",
-    "dimension_title",
-    "dimension_words",
     "finding_lines",
     "group_lines",
     "grouped",
@@ -67,16 +64,6 @@ _NAME = 30
 _LEVELS = ("error", "warning", "info")
 
 
-def dimension_words(name: str) -> str:
-    """Return a dimension's name as a sentence uses it.
-
-    >>> dimension_words("wall_thickness"), dimension_words("youngs_modulus")
-    ('wall thickness', "Young's modulus")
-    """
-    text = DIMENSIONS[name].plain_name.replace("_", " ")
-    return text if text.startswith(("Young", "Poisson")) else text[0].lower() + text[1:]
-
-
 @dataclass(frozen=True, kw_only=True)
 class FindingGroup:
     """Findings of one rule in one sheet: how many, at how many cells, the addresses of these and the first of them.
@@ -97,16 +84,6 @@ class FindingGroup:
         """The cells, with runs in a column drawn together, as many as a line may hold."""
         ranges = cell_ranges(self.addresses)
         return f"{ranges.partition(' and ')[0]} and more" if len(self.addresses) < self.cells else ranges
-
-
-def dimension_title(name: str) -> str:
-    """Return a dimension's name as it begins a line of a table.
-
-    >>> dimension_title("wall_thickness"), dimension_title("disk_calibration")
-    ('Wall thickness', 'Disk calibration')
-    """
-    words = dimension_words(name)
-    return words[0].upper() + words[1:]
 
 
 def by_rule(findings: Iterable[Finding]) -> list[FindingGroup]:

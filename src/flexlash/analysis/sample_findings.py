@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from flexlash.schema.columns import DIMENSIONS
-from flexlash.schema.entry_words import inner_name
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.variant import ToleranceRow
 from flexlash.tolerance.sample_statistics import SampleStatistics, sample_statistics
 from flexlash.validation.ledger import Ledger
@@ -30,7 +29,7 @@ def report_samples(validated: Validated, ledger: Ledger) -> None:
     table = validated.tolerances
     for row, values in _used(validated) if table is not None else ():
         statistics = sample_statistics(values)
-        facts: dict[str, Any] = {"dimension": inner_name(DIMENSIONS[row.dimension]), "column": "sample"}
+        facts: dict[str, Any] = {"dimension": dimension_words(row.dimension), "column": "sample"}
         facts |= {"value": row.sample.sample if row.sample else "", "found": f"{statistics.count} values"}
         facts |= {"sheet": table.sheet, "cell": table.address(row.row, "sample")} if table else {}
         if statistics.count < FEW:

@@ -8,8 +8,8 @@ from typing import Any
 import polars as pl
 
 from flexlash.analysis.computed import Computed
-from flexlash.analysis.run_summary import dimension_title
 from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.entry_words import dimension_title
 from flexlash.schema.spellings import plain
 from flexlash.schema.units import as_entered
 from flexlash.schema.used_columns import TOLERANCES_USED

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.analysis.run_summary import dimension_words
 from flexlash.report.extent import extent_of
 from flexlash.report.layout.paper import SMALL, fits, print_readably
 from flexlash.report.layout.result_formats import SHARE_OF_VARIANCE_ERROR
@@ -15,6 +14,7 @@ from flexlash.report.report_data import Drawn
 from flexlash.report.results_sheet import SHARE_DECIMALS
 from flexlash.report.wording.correlation_words import shared_out
 from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import shown
 from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.spread_statistics import SpreadStatistics

@@ -8,7 +8,6 @@ from typing import Any
 import polars as pl
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.analysis.run_summary import dimension_title
 from flexlash.analysis.used_tolerances import used_tolerances
 from flexlash.report.extent import extent_of
 from flexlash.report.layout.paper import SMALL, print_readably
@@ -16,6 +15,7 @@ from flexlash.report.layout.result_formats import SHARE_OF_VARIANCE_ERROR
 from flexlash.report.layout.styles import Book, decimals_of, percent_of
 from flexlash.report.report_data import Drawn
 from flexlash.schema.column import Column
+from flexlash.schema.entry_words import dimension_title
 from flexlash.schema.used_columns import TOLERANCES_USED
 
 __all__ = ["USED", "write_used"]

@@ -1,10 +1,11 @@
-"""What a column's numbers are called and must be, as a line of the template's status or of Trace says it."""
+"""What a column's numbers are called and must be, as a sentence or a line of a table says it."""
 
 from __future__ import annotations
 
 from flexlash.schema.column import Column
+from flexlash.schema.columns import DIMENSIONS
 
-__all__ = ["inner_name", "wrong_number"]
+__all__ = ["dimension_title", "dimension_words", "inner_name", "wrong_number"]
 
 _CAPITALS = ("Young", "Poisson", "Cp")
 """What names begin with that keep their capital inside a sentence."""
@@ -14,6 +15,25 @@ def inner_name(column: Column) -> str:
     """Return a column's name inside a sentence: `disk cone angle`, `Young's modulus E`."""
     name = column.plain_name.replace("_", " ")
     return name if name.startswith(_CAPITALS) else name[0].lower() + name[1:]
+
+
+def dimension_words(name: str) -> str:
+    """Return a dimension's name as a sentence uses it.
+
+    >>> dimension_words("wall_thickness"), dimension_words("youngs_modulus")
+    ('wall thickness', "Young's modulus")
+    """
+    return inner_name(DIMENSIONS[name])
+
+
+def dimension_title(name: str) -> str:
+    """Return a dimension's name as it begins a line of a table.
+
+    >>> dimension_title("wall_thickness"), dimension_title("disk_calibration")
+    ('Wall thickness', 'Disk calibration')
+    """
+    words = dimension_words(name)
+    return words[0].upper() + words[1:]
 
 
 def wrong_number(column: Column) -> str:

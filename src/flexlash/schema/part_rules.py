@@ -6,8 +6,7 @@ the check at the tolerance limits and the elasticity check answer from the same 
 
 from __future__ import annotations
 
-from flexlash.schema.columns import DIMENSIONS
-from flexlash.schema.entry_words import inner_name
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.part_row import Operand, PartRow, PartRule, Reached
 
 __all__ = ["PART_RULES", "fillet_meets_rim", "fillets_overlap", "is_off_the_wall", "said_before"]
@@ -23,17 +22,12 @@ _THICK, _THICKEST = 0.1, 0.2
 """Wall over mean radius above which the thin-wall formula is noted, and warned of."""
 
 
-def _name(dimension: str) -> str:
-    """Return a dimension's name inside a sentence: `disk cone angle`."""
-    return inner_name(DIMENSIONS[dimension])
-
-
 def _foreign(dimension: str, *types: str) -> PartRule:
     """Return the rule that these flexspline types have no such dimension."""
     return PartRule(
         code="E310",
         dimension=dimension,
-        words=f"{'only a cup has a' if 'hat' in types else 'a cylinder has no'} {_name(dimension)}",
+        words=f"{'only a cup has a' if 'hat' in types else 'a cylinder has no'} {dimension_words(dimension)}",
         broken=lambda row: (row.is_type(*types), row.given(dimension)),
         facts=lambda row: {"other": row.type},
     )
@@ -44,7 +38,7 @@ def _foreign_fillet(dimension: str) -> PartRule:
     return PartRule(
         code="E310",
         dimension=dimension,
-        words=f"only a cup has a {_name(dimension)}",
+        words=f"only a cup has a {dimension_words(dimension)}",
         broken=lambda row: (row.is_type("cylinder", "hat"), row[dimension] > 0),
         facts=lambda row: {"other": row.type},
     )
@@ -55,7 +49,7 @@ def _missing(dimension: str, flexspline_type: str) -> PartRule:
     return PartRule(
         code="E311",
         dimension=dimension,
-        words=f"a {flexspline_type} without a {_name(dimension)}",
+        words=f"a {flexspline_type} without a {dimension_words(dimension)}",
         broken=lambda row: (row.is_type(flexspline_type), row.blank(dimension)),
         facts=lambda _: {"other": flexspline_type},
     )
@@ -76,7 +70,7 @@ def _fillet_on_a_cone(dimension: str) -> PartRule:
     return PartRule(
         code="E327",
         dimension=dimension,
-        words=f"a conical disk with a {_name(dimension)}",
+        words=f"a conical disk with a {dimension_words(dimension)}",
         broken=lambda row: (row.is_type("cup"), row["disk_cone_angle"] < row.flat, row[dimension] > 0),
         facts=lambda row: {"other": f"{row['disk_cone_angle']:g}"},
     )

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from flexlash.schema.columns import DIMENSIONS, columns_of
-from flexlash.schema.entry_words import inner_name
+from flexlash.schema.columns import columns_of
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.spellings import plain
 from flexlash.schema.variant import MeasuredDimension
 from flexlash.validation.ledger import Ledger
@@ -49,7 +49,7 @@ class NamedSamples:
             self._report("I504", record["row"], value=name, suggestion=meant, certain_value=meant)
         is_missing = dimension is not None and dimension not in found and (key, dimension) not in self.samples.faults
         if is_missing:
-            words = f"{inner_name(DIMENSIONS[dimension])} of this sample"
+            words = f"{dimension_words(dimension)} of this sample"
             self._report("E223", record["row"], value=name, detail=words)
         return found.get(dimension)
 

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 from flexlash.analysis.computed import Computed
 from flexlash.analysis.outcome import Outcome
-from flexlash.analysis.run_summary import dimension_words, listed
+from flexlash.analysis.run_summary import listed
 from flexlash.report.report_data import Drawn
 from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import shown
 
 __all__ = [

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.analysis.run_summary import dimension_words
 from flexlash.report.compare.causes import (
     Cause,
     cause_sentences,
@@ -24,6 +23,7 @@ from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.correlation_words import shared_out
 from flexlash.report.wording.labels import distinct_labels
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import shown
 
 __all__ = ["MAPPED", "write_contributions"]

@@ -8,7 +8,7 @@ from typing import Any
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.analysis.run_summary import dimension_words, share_words
+from flexlash.analysis.run_summary import share_words
 from flexlash.report.extent import extent_of
 from flexlash.report.formula.functions import IF, ISNUMBER, MAX, match_exactly
 from flexlash.report.formula.live import Live, fill, put
@@ -18,6 +18,7 @@ from flexlash.report.layout.styles import Book, decimals_of
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.verdict import COLOURS, RULES, light
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.lot_words import lots_words
 
 __all__ = ["BASE_ROW", "DIFFERENCES", "FIRST_ROW", "HEADER", "column_of", "write_ranking"]

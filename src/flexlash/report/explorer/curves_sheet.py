@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from flexlash.analysis.run_summary import dimension_words, share_words
+from flexlash.analysis.run_summary import share_words
 from flexlash.report.formula.stored import Stored
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.measured_parts import left_open_words
 from flexlash.schema.arrays import Array
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import polars as pl
 
-from flexlash.analysis.run_summary import dimension_words
 from flexlash.report.explorer.curves_sheet import CAUSES, SEGMENTS
 from flexlash.report.layout.result_formats import number_codes
 from flexlash.report.page.cards import finding_facts
@@ -31,6 +30,7 @@ from flexlash.report.wording.summary_facts import SummaryFacts, rough
 from flexlash.report.wording.verdict import light, straddled
 from flexlash.report.wording.verdict_sentences import extremes, judged
 from flexlash.schema.columns import DIMENSIONS, Column
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import Finding, shown
 from flexlash.schema.limit_verdict import misses_limit
 from flexlash.schema.result_columns import result_columns

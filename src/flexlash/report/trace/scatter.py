@@ -11,11 +11,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from flexlash.analysis.computed import Computed
-from flexlash.analysis.run_summary import dimension_title
 from flexlash.analysis.tolerance_spread import first_orders
 from flexlash.analysis.used_tolerances import used_rows
 from flexlash.report.formula.stored import Stored
 from flexlash.schema.columns import DIMENSIONS, Column
+from flexlash.schema.entry_words import dimension_title
 from flexlash.schema.units import ARCMIN
 from flexlash.schema.variant import Limits
 from flexlash.tolerance.row_batches import FirstOrder

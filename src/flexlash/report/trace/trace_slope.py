@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from flexlash.analysis.run_summary import dimension_title
 from flexlash.report.formula.functions import AND, IF, IFERROR, INDEX, ISNUMBER, MATCH, MAX, PI, on_sheet
 from flexlash.report.formula.live import Live, Range, live, put
 from flexlash.report.formula.stored import Stored
@@ -19,6 +18,7 @@ from flexlash.report.trace.trace_mechanics import write_integrals, write_shape, 
 from flexlash.report.trace.trace_page import LEFT_OUT, Lines, Words
 from flexlash.report.trace.trace_steps import Sums, set_widths
 from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.entry_words import dimension_title
 
 __all__ = ["SLOPE", "TRACE_SPREAD", "Moved", "write_slope"]
 

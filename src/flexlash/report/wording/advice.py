@@ -9,10 +9,11 @@ from typing import Any
 import polars as pl
 
 from flexlash.analysis.recommendations import Halving, Recommendation
-from flexlash.analysis.run_summary import counted, dimension_words
+from flexlash.analysis.run_summary import counted
 from flexlash.report.wording.summary_facts import Row, SummaryFacts
 from flexlash.report.wording.verdict import BOUNDS
 from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import spelled_out
 from flexlash.schema.number_words import angle_words, glance, rounded, share_error, share_words
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from flexlash.analysis.computed import Computed
-from flexlash.analysis.run_summary import dimension_title, dimension_words
+from flexlash.schema.entry_words import dimension_title, dimension_words
 from flexlash.schema.findings import shown
 from flexlash.schema.spellings import plain
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from flexlash.analysis.run_summary import dimension_words, listed
+from flexlash.analysis.run_summary import listed
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows
 from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.lot_words import (
     is_settled,
     lots_words,

@@ -8,9 +8,10 @@ from collections.abc import Iterator
 import polars as pl
 from scipy.special import ndtri
 
-from flexlash.analysis.run_summary import counted, dimension_words, grouped, listed
+from flexlash.analysis.run_summary import counted, grouped, listed
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows
 from flexlash.report.wording.verdict import BOUNDS, LIGHTS, firm, light
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.limit_verdict import limit_verdict
 from flexlash.schema.number_words import angle_words, brief_share, range_words
 

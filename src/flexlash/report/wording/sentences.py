@@ -10,7 +10,7 @@ import polars as pl
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.recommendations import Recommendation
-from flexlash.analysis.run_summary import counted, dimension_words, grouped, listed, points_range, spread_notes
+from flexlash.analysis.run_summary import counted, grouped, listed, points_range, spread_notes
 from flexlash.report.layout.links import rule_counts
 from flexlash.report.report_data import ROW
 from flexlash.report.wording.advice import stiffening, tightening
@@ -18,6 +18,7 @@ from flexlash.report.wording.lot_sentences import LOTS, lots_and_parts
 from flexlash.report.wording.measured_parts import PARTS, measured_parts
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows, rough, summary_facts
 from flexlash.report.wording.verdict_sentences import failing, sureness
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import CATALOGUE, spelled_out
 from flexlash.schema.number_words import INTERVAL, angle_words
 from flexlash.tolerance.spread_statistics import SpreadStatistics

@@ -13,12 +13,13 @@ import polars as pl
 from flexlash.analysis.computed import Computed
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.recommendations import Recommendation
-from flexlash.analysis.run_summary import dimension_words, listed, quoted
+from flexlash.analysis.run_summary import listed, quoted
 from flexlash.analysis.whole_batch import is_straddled, verdict_place
 from flexlash.report.extent import Extent, extent_of
 from flexlash.report.report_data import DRAWN, ROW, ranked
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.verdict import LIGHTS
+from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import shown
 from flexlash.schema.limit_verdict import VERDICTS
 
