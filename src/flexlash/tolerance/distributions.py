@@ -95,6 +95,16 @@ class AroundMean:
         """The standard deviation, before any cut."""
         return self.sd
 
+    @property
+    def expectation(self) -> float:
+        """The mean."""
+        return self.mean
+
+    @property
+    def standard_deviation(self) -> float:
+        """The standard deviation."""
+        return self.sd
+
 
 @dataclass(frozen=True)
 class Normal(AroundMean):
@@ -117,16 +127,6 @@ class Normal(AroundMean):
 
     shape = ("normal",)
     breaks = ()
-
-    @property
-    def expectation(self) -> float:
-        """The mean."""
-        return self.mean
-
-    @property
-    def standard_deviation(self) -> float:
-        """The standard deviation."""
-        return self.sd
 
     def standard(self, probability: Array) -> Array:
         """Return standard normal quantiles."""

@@ -43,16 +43,6 @@ class Placed(AroundMean):
         """Those of the other distribution."""
         return self.of.breaks
 
-    @property
-    def expectation(self) -> float:
-        """The mean."""
-        return self.mean
-
-    @property
-    def standard_deviation(self) -> float:
-        """The standard deviation."""
-        return self.sd
-
     def standard(self, probability: Array) -> Array:
         """Return quantiles of the shape."""
         return self.of.standard(probability)
