@@ -48,3 +48,16 @@ def test_the_engines_numbers_stand_beside_the_first_order(outcome):
     (one,) = outcome.computed.values()
     for label, key in (("All units", "sd"), ("Parts within one lot", "within_lot_sd")):
         assert one.spread.numbers[key] / ARCMIN == pytest.approx(labels[label][11], rel=1e-12)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_process_outside_its_limits_is_added_up_as_any_other(table, sound, tmp_path, side):
+    """Of a truncated normal whose mean lies outside the limits s after the cut is the program's at either side."""
+    tolerances = tmp_path / "classes.csv"
+    tolerances.write_text(
+        "tolerance_class,dimension,lower_deviation,upper_deviation,deviation_unit,distribution,mean_shift,"
+        f"standard_deviation\nstandard,wall_thickness,-0.02,0.02,mm,truncated normal,{side * 0.03},0.01\n",
+        encoding="utf-8",
+    )
+    variant = {key: value for key, value in sound.items() if key != "tolerance_class"}
+    assert spread_traced(run(table([variant]), samples=64, tolerances=tolerances))[0]["verdict"].value == AGREES

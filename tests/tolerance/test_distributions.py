@@ -10,6 +10,7 @@ from scipy import stats
 from scipy.special import ndtr, ndtri
 
 from flexlash.tolerance import Lognormal, Normal, Student, Triangular, TruncatedNormal, Uniform
+from flexlash.tolerance.placed import Placed
 
 thorough = settings(deadline=None, max_examples=80, derandomize=True)
 
@@ -350,6 +351,7 @@ def test_impossible_distributions_are_refused(make, message):
         (lambda: Triangular(0, 1, "0.5"), "mode = '0.5': a finite number is required"),
         (lambda: Lognormal(1, 1, None), "low = None: a finite number is required"),
         (lambda: Student(0, 1, "5"), "degrees = '5': a finite number is required"),
+        (lambda: Placed(Normal(0, 1), 0, "1"), "sd = '1': a finite number is required"),
     ],
 )
 def test_what_is_no_number_is_refused(make, message):

@@ -11,7 +11,7 @@ from toleranced import plan
 
 from flexlash.schema.variant import Limits
 from flexlash.tolerance.row_batches import RowBatch, TolerancedRow, batch_statistics
-from flexlash.tolerance.sensitivity import SIZE_STEP, first_order_slopes
+from flexlash.tolerance.sensitivity import first_order_slopes
 
 LIMITS = {
     "a": Limits(low=1.0, high=1.6),
@@ -68,4 +68,4 @@ def test_the_step_is_a_thousandth_of_the_standard_deviation():
     """Of x³ at 0 a central difference with the step h is h², which tells its step; it has a least one."""
     assert first_order_slopes(lambda a: a**3, {"a": 0.0}, {"a": 2.0})["a"] == pytest.approx(4e-6, rel=1e-9)
     cubic = first_order_slopes(lambda a: (a - 5.0) ** 3, {"a": 5.0}, {"a": 1e-9})["a"]
-    assert cubic == pytest.approx((5.0 * SIZE_STEP) ** 2, rel=1e-6)
+    assert cubic == pytest.approx((5.0 * 1e-6) ** 2, rel=1e-6)
