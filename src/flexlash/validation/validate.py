@@ -35,12 +35,12 @@ from flexlash.validation.materials_and_classes import (
 from flexlash.validation.meant_names import MeantNames
 from flexlash.validation.measured_samples import Samples, measured_samples
 from flexlash.validation.row_checks import check_cells, check_relations
+from flexlash.validation.sample_faults import report_sample_faults
 from flexlash.validation.sample_sizes import report_sample_sizes
 from flexlash.validation.settings_table import settings_of
 from flexlash.validation.template_versions import TEMPLATE_VERSION, check_version
 from flexlash.validation.typed_columns import tabulate
 from flexlash.validation.unused_classes import report_unused_classes
-from flexlash.validation.used_samples import report_used_samples
 from flexlash.validation.validated import Table, Validated
 from flexlash.validation.variant_rows import VariantRows
 
@@ -162,7 +162,7 @@ def _used(
         classes["standard"] = standard_class()
         if is_workbook:
             ledger.add("I505", value="rows for tolerance class standard", other="class")
-    report_used_samples(samples, classes, tables.get("Tolerances"), ledger)
+    report_sample_faults(samples, classes, tables.get("Tolerances"), ledger)
     settings = settings_of(tables["Settings"], ledger) if "Settings" in tables else Settings()
     tied = tables.get("Correlations") if are_named else None
     correlations = () if tied is None else correlation_rows_of(tied, classes, ledger, tables.get("Tolerances"))

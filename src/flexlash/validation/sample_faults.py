@@ -12,10 +12,10 @@ from flexlash.validation.ledger import Ledger
 from flexlash.validation.measured_samples import Samples
 from flexlash.validation.validated import Table
 
-__all__ = ["report_used_samples"]
+__all__ = ["report_sample_faults"]
 
 
-def report_used_samples(
+def report_sample_faults(
     samples: Samples, classes: Mapping[str, Sequence[ToleranceRow]], tolerances: Table | None, ledger: Ledger
 ) -> None:
     """Report what classes, by plain name and with inherited rows, use of the samples and cannot; and what is not used.
