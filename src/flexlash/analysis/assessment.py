@@ -184,12 +184,11 @@ def _by_owner(mistakes: Iterable[UnitMistake]) -> dict[int | str, list[UnitMista
 def _report_limits(ledger: Ledger, variant: Variant, problem: LimitsProblem) -> None:
     """Record what is wrong with a variant's limits at the cell of the dimension, else at its material."""
     column = DIMENSIONS[problem.dimension]
-    key = column.key if column.sheet == "Variants" else "material"
     value = variant.dimensions[problem.dimension] / column.si_unit.si
     ledger.add_at(
         _CODES[problem.kind],
         variant,
-        key,
+        column.variant_key,
         name=column.name,
         value=f"{value:.10g}",
         other=variant.tolerance_class,
@@ -219,7 +218,7 @@ def _judge_widths(
         ledger.add_at(
             code,
             variant,
-            column.key if column.sheet == "Variants" else "material",
+            column.variant_key,
             name=column.name,
             value=f"{nominal / column.si_unit.si:.10g}{column.unit_behind}",
             other=variant.tolerance_class,

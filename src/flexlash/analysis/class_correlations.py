@@ -153,14 +153,12 @@ class _Class:
                 by_sample[rows[0].sample.sample].append(pair)
                 numbers[rows[0].sample.sample] += own
         table = self.validated.tolerances
+        if table is None:
+            return
         for sample, some in by_sample.items():
             more = f"; {len(some) - _LISTED} more pairs" if len(some) > _LISTED else ""
-            detail = "; ".join(map(words, some[:_LISTED])) + more
-            place: dict[str, Any] = {}
-            if table is not None:
-                cell = table.address(min(numbers[sample]), "sample")
-                place = {"sheet": table.sheet, "cell": cell, "column": "sample"}
-            self.ledger.add(code, value=sample, other=self.name, detail=detail, **place)
+            facts = {"value": sample, "other": self.name, "detail": "; ".join(map(words, some[:_LISTED])) + more}
+            self.ledger.add_in(table, code, min(numbers[sample]), "sample", **facts)
 
     def judge(
         self,
@@ -193,8 +191,7 @@ class _Class:
         if table is None:
             raise LookupError("a correlation without its table")
         if not self.takes_over_all:
-            place: dict[str, Any] = {"sheet": table.sheet, "cell": table.address(row.row, key), "column": key}
-            self.ledger.add(code, name="Correlation", other=self.name, **place, **facts)
+            self.ledger.add_in(table, code, row.row, key, other=self.name, **facts)
         return table.sheet
 
 

@@ -65,10 +65,9 @@ def report_processes(
 
 def _report_at_variant(ledger: Ledger, variant: Variant, row: ToleranceRow, verdict: ProcessVerdict) -> None:
     column = DIMENSIONS[row.dimension]
-    key = column.key if column.sheet == "Variants" else "material"
     value = f"{variant.dimensions[row.dimension] / column.si_unit.si:.10g}"
     words = f"in class {variant.tolerance_class} {verdict.words}"
-    ledger.add_at(verdict.code, variant, key, name=column.name, value=value, detail=words)
+    ledger.add_at(verdict.code, variant, column.variant_key, name=column.name, value=value, detail=words)
 
 
 def _report_at_row(ledger: Ledger, variant: Variant, table: Table, row: ToleranceRow, verdict: ProcessVerdict) -> None:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 from flexlash.schema.entry_words import dimension_words
-from flexlash.schema.variant import ToleranceRow
+from flexlash.schema.variant import MeasuredDimension, ToleranceRow
 from flexlash.tolerance.sample_statistics import SampleStatistics, sample_statistics
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import Validated
@@ -27,26 +26,30 @@ _COARSE = 3
 def report_samples(validated: Validated, ledger: Ledger) -> None:
     """Warn of samples that classes without an error use, once at each row of Tolerances."""
     table = validated.tolerances
-    for row, values in _used(validated) if table is not None else ():
-        statistics = sample_statistics(values)
-        facts: dict[str, Any] = {"dimension": dimension_words(row.dimension), "column": "sample"}
-        facts |= {"value": row.sample.sample if row.sample else "", "found": f"{statistics.count} values"}
-        facts |= {"sheet": table.sheet, "cell": table.address(row.row, "sample")} if table else {}
+    if table is None:
+        return
+    for row, sample in _used(validated):
+        statistics = sample_statistics(sample.values)
+        facts = {
+            "value": sample.sample,
+            "dimension": dimension_words(row.dimension),
+            "found": f"{statistics.count} values",
+        }
         if statistics.count < FEW:
-            ledger.add("W445", detail=_widening(statistics), **facts)
+            ledger.add_in(table, "W445", row.row, "sample", detail=_widening(statistics), **facts)
         if "normal" in row.distribution and statistics.normality is not None and statistics.normality < NOT_NORMAL:
-            detail = f"{normality_words(statistics.normality)}{_steps(values)}"
-            ledger.add("W447", detail=detail, **facts)
+            detail = f"{normality_words(statistics.normality)}{_steps(sample.values)}"
+            ledger.add_in(table, "W447", row.row, "sample", detail=detail, **facts)
 
 
-def _used(validated: Validated) -> Iterator[tuple[ToleranceRow, tuple[float, ...]]]:
+def _used(validated: Validated) -> Iterator[tuple[ToleranceRow, MeasuredDimension]]:
     """Yield each row of a sound class that uses a sample, once however many classes take it over."""
     told: set[int] = set()
     for key, rows in validated.classes.items():
         for row in rows if key not in validated.blocked.classes else ():
             if row.sample is not None and row.row not in told:
                 told.add(row.row)
-                yield row, row.sample.values
+                yield row, row.sample
 
 
 def _widening(statistics: SampleStatistics) -> str:

@@ -168,6 +168,11 @@ class Column:
         return "" if self.unit in {"", "-"} else f" {self.unit}"
 
     @property
+    def variant_key(self) -> str:
+        """The key of the cell of Variants that its value comes from: its own, or that of the material."""
+        return self.key if self.sheet == "Variants" else "material"
+
+    @property
     def requirement(self) -> str:
         """What a cell must hold, in words: `a number in mm greater than 0`."""
         if self.choices:
