@@ -138,7 +138,7 @@ class _Class:
         lost = [pair for pair in measured if self.crossed(pair) and pair not in entered]
         changed = [pair for pair in used if abs(mended[pair] - values[pair]) > _SHARP]
         self._tell("I531", used, lambda pair: f"{_named(pair)} {_told(measured[pair])}")
-        self._tell("W449", lost, lambda pair: f"{_named(pair)} independent, since one scatters between lots")
+        self._tell("W449", lost, lambda pair: f"{_named(pair)} left out, since one scatters between lots")
         self._tell("W449", changed, lambda pair: f"{_named(pair)} {mended[pair]:.3g} instead of {values[pair]:.3g}")
         return {pair: mended[pair] for pair in used}
 

@@ -61,7 +61,7 @@ def process_verdict(
     Numbers may be too large or too small to divide.
 
     >>> process_verdict(-2.0, 2.0, 12.0, 1.0, is_entered=True).words
-    'the mean lies 2.5 times their width beyond the limits; 2 are possible'
+    'the mean lies 2.5 widths of the limits beyond them; 2 are possible'
     """
     sigma, beyond = (high - low) / 2 / sd if sd > 0 else math.inf, max(low - mean, mean - high)
     least, most = (_LEAST, _GREATEST) if is_entered else (_LEAST_FOUND, sys.float_info.max)
@@ -81,7 +81,7 @@ def process_verdict(
 def _outside(beyond: float, width: float, sd: float) -> ProcessVerdict:
     """Return what is said of a mean so far beyond limits of this width; `sd` is that of a truncated process."""
     if beyond > _FARTHEST * width * (1 + _ROUNDING):
-        words = f"{spelled_out(beyond / width)} times their width beyond the limits; {_FARTHEST:g} are possible"
+        words = f"{spelled_out(beyond / width)} widths of the limits beyond them; {_FARTHEST:g} are possible"
         return ProcessVerdict("E339", "mean", f"the mean lies {words}")
     if beyond > _FARTHEST_CUT * sd:
         words = f"{spelled_out(beyond / sd)} standard deviations beyond the limits, which keep no part in a million"
