@@ -186,3 +186,11 @@ def test_an_interval_up_to_all_is_told_by_its_lower_end():
     assert range_words(0.99912, 1.0) == "at least 99.912 %"
     assert range_words(3e-6, 1.0) == "at least 3 ppm"
     assert range_words(0.0, 1.0) == "anything from none to all"
+
+
+def test_the_ends_of_a_narrow_interval_are_told_apart():
+    """Many measured parts leave little open, but never an interval of one number."""
+    assert range_words(0.001782, 0.001817) == "0.178 to 0.182 %"
+    assert range_words(0.99712, 0.99714) == "99.712 to 99.714 %"
+    assert range_words(2.5001e-5, 2.5004e-5) == "25.001 to 25.004 ppm"
+    assert range_words(0.25, 0.25) == "25 to 25 %"

@@ -92,10 +92,14 @@ def brief_share(row: Mapping[str, Any]) -> str:
 
 
 def range_words(low: float, high: float) -> str:
-    """Return the interval of a share that is not known well, in two digits; an end that cannot be told is left out.
+    """Return the interval of a share that is not known well, in two digits, or as many as keep its ends apart.
+
+    An end that cannot be told is left out.
 
     >>> range_words(1.2e-5, 8.04e-4), range_words(0.0, 8.04e-4), range_words(0.4121, 0.99934)
     ('12 to 800 ppm', 'at most 800 ppm', '41 to 99.934 %')
+    >>> range_words(0.001782, 0.001817)
+    '0.178 to 0.182 %'
     """
     if high < LEAST_SHARE:
         return _NONE
@@ -104,19 +108,20 @@ def range_words(low: float, high: float) -> str:
     factor, unit = share_unit(high)
     is_open = high > 1 - LEAST_SHARE
     if low < LEAST_SHARE:
-        return "anything from none to all" if is_open else f"at most {_two_digits(high, factor)}{unit}"
+        return "anything from none to all" if is_open else f"at most {_in_digits(high, factor)}{unit}"
     own, its = share_unit(low) if low < _FAR_APART * high else (factor, unit)
-    least = _two_digits(low, own)
     if is_open:
-        return f"at least {least}{its}"
-    return f"{least}{its if its != unit else ''} to {_two_digits(high, factor)}{unit}"
+        return f"at least {_in_digits(low, own)}{its}"
+    pairs = ((_in_digits(low, own, digits), _in_digits(high, factor, digits)) for digits in range(2, _MOST_DIGITS))
+    least, most = next((pair for pair in pairs if pair[0] != pair[1]), (_in_digits(low, own), _in_digits(high, factor)))
+    return f"{least}{its if its != unit else ''} to {most}{unit}"
 
 
-def _two_digits(share: float, factor: float) -> str:
-    """Return a share times a factor in two digits of it or of what it leaves to 1."""
+def _in_digits(share: float, factor: float, digits: int = 2) -> str:
+    """Return a share times a factor in so many digits of it or of what it leaves to 1."""
     if share <= 1 / 2:
-        return spelled_out(share * factor, 2)
-    return rounded(share * factor, factor * 10.0 ** (math.floor(math.log10(1 - share)) - 1))
+        return spelled_out(share * factor, digits)
+    return rounded(share * factor, factor * 10.0 ** (math.floor(math.log10(1 - share)) + 1 - digits))
 
 
 _UNITS = ((1.0, 100.0, " %"), (1e-3, 1e6, " ppm"), (1e-6, 1e9, " ppb"))
@@ -136,6 +141,9 @@ LEAST_SHARE = 1e-9
 
 _ROUGH = 0.01
 """Width of an interval over its share beyond which three digits are not known."""
+
+_MOST_DIGITS = 7
+"""Digits from on which the ends of an interval are told alike."""
 
 _FAR_APART = 0.01
 """An end of an interval that is less than so much of the other is told in a unit of its own."""
