@@ -18,11 +18,12 @@ from flexlash.feedback.template.template_workbook import study
 
 ROOT = regenerate.ROOT
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-DOCUMENTS = [*ROOT.glob("*.md"), *(ROOT / "data").glob("*.md")]
+TOLERANCES = (ROOT / "docs" / "tolerances.md").read_text(encoding="utf-8")
+DOCUMENTS = [*ROOT.glob("*.md"), *(ROOT / "data").glob("*.md"), *(ROOT / "docs").glob("*.md")]
 
 
-def _blocks(language):
-    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+def _blocks(language, text=README):
+    return re.findall(rf"```{language}\n(.*?)```", text, flags=re.DOTALL)
 
 
 @pytest.fixture
@@ -37,11 +38,12 @@ def copy(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_shell_blocks_run(copy, monkeypatch, capsys):
-    """Every flexlash command of the README, in order, ends with 0, or with 3 where the faulty example is given.
+    """Every flexlash command of README and docs/tolerances.md ends with 0, or with 3 where the example is faulty.
 
     `serve`, which does not end, is in tests/service/test_service_commands.py.
     """
-    commands = [line for block in _blocks("sh") for line in block.replace(" && ", "\n").splitlines()]
+    blocks = [*_blocks("sh"), *_blocks("sh", TOLERANCES)]
+    commands = [line for block in blocks for line in block.replace(" && ", "\n").splitlines()]
     ours = [line for line in commands if line.startswith("flexlash ") and not line.startswith("flexlash serve")]
     assert len(ours) >= 7
     assert {line.split()[0] for line in commands} <= {"flexlash", "pip", "pytest"}
