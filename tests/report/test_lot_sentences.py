@@ -47,7 +47,7 @@ def test_the_study_in_the_words_of_lots(study):
     told, _ = page_of(outcome, drawn["B3-160 case 1"])
     assert told[LOTS] == (
         "Within one lot 95 % of parts lie within ± 0.0038′; lots differ by ± 0.058′; 115 lots in a million have more "
-        "than 1,350 ppm over the limit (50.62 ppm of all units). One value for a whole lot: Young's modulus and "
+        "than 1350 ppm over the limit (50.62 ppm of all units). One value for a whole lot: Young's modulus and "
         "Poisson's ratio. The verdict is about all units of many lots, not about one lot."
     )
 
@@ -58,9 +58,9 @@ def test_the_worst_is_told_in_full_and_the_next_by_their_lots(study):
     assert told.startswith(
         "“B3-160 case 5”: within one lot 95 % of parts lie within ± 0.0064′; lots differ by ± 0.097′"
     )
-    assert "; practically every lot has more than 1,350 ppm over the limit (practically all units)." in told
+    assert "; practically every lot has more than 1350 ppm over the limit (practically all units)." in told
     assert (
-        "More than 1,350 ppm over the limit: practically every lot of “B3-160 case 3” and 99.7 % of lots of "
+        "More than 1350 ppm over the limit: practically every lot of “B3-160 case 3” and 99.7 % of lots of "
         "“B3-160 case 4 r_m 80”." in told
     )
     assert told.endswith("Verdicts and shares are about all units of many lots, not about one lot.")
@@ -72,10 +72,10 @@ def test_where_parts_alone_scatter_every_lot_is_like_the_whole(computed):
         outcome = computed([WALL], {"backlash_limit_arcmin": limit})
         assert said_of(outcome)[LOTS] == (
             "Nothing scatters between lots: in every lot 95 % of parts lie within ± 0.03′. "
-            f"{words} than 1,350 ppm of them are over the limit. Verdicts and shares hold for every lot."
+            f"{words} than 1350 ppm of them are over the limit. Verdicts and shares hold for every lot."
         )
         told, _ = page_of(outcome)
-        assert told[LOTS].endswith(f"{words} than 1,350 ppm of them are over the limit.")
+        assert told[LOTS].endswith(f"{words} than 1350 ppm of them are over the limit.")
 
 
 def test_where_lots_alone_scatter_their_parts_are_alike(computed):

@@ -131,9 +131,9 @@ def test_differences_are_coloured_by_their_sign(study):
         for rule in found
     }
     assert rules == {
-        ("R8:W18", "AND(ISNUMBER(R8),R8>0)"): "FFFBE3B8",
-        ("R8:W18", "AND(ISNUMBER(R8),R8<0)"): "FFD3E7F5",
-        ("L8:L18", "AND(ISNUMBER(L8),L8<0)"): "FFFBE3B8",
+        ("S8:X18", "AND(ISNUMBER(S8),S8>0)"): "FFFBE3B8",
+        ("S8:X18", "AND(ISNUMBER(S8),S8<0)"): "FFD3E7F5",
+        ("M8:M18", "AND(ISNUMBER(M8),M8<0)"): "FFFBE3B8",
     }
 
 

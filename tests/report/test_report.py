@@ -14,7 +14,7 @@ from flexlash.pipeline import run
 from flexlash.report import report_data
 from flexlash.report.about_sheet import PROOF
 from flexlash.report.workbook import report_bytes
-from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.columns import DIMENSIONS, ENTRY_SHEETS
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.result_columns import CROSS_CHECK, FINDINGS, RESULTS, result_columns
 from flexlash.schema.stamps import stamped
@@ -290,7 +290,7 @@ def test_the_submission_stands_at_its_own_addresses(faulty):
     original = opened(regenerate.ROOT / "data" / "needs-fixing.xlsx", data_only=True)
     book = opened(faulty[1])
     for name, title in (("Variants", "Submission"), ("Materials", "Materials"), ("Tolerances", "Tolerances")):
-        for row in original[name].iter_rows(max_col=20):
+        for row in original[name].iter_rows(max_col=min(20, len(ENTRY_SHEETS[name]))):
             for cell in row:
                 if isinstance(cell.value, str | float | int) and not isinstance(cell.value, bool):
                     assert book[title][cell.coordinate].value == cell.value

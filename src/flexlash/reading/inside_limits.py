@@ -95,15 +95,16 @@ def _silence() -> None:
 def _warm_up() -> None:
     """Load the libraries, so that neither their memory nor their time counts against a file.
 
-    One row is validated, since pandera loads half of itself only then, some of which fails where the working folder
-    has been removed.
+    One row of a workbook is validated, since pandera and RapidFuzz load half of themselves only then, some of which
+    fails where the working folder has been removed.
     """
     from flexlash.reading import parquet, sheet_cells  # noqa: F401
     from flexlash.validation.validate import validate
 
     headers: dict[int, RawValue] = {**dict(enumerate(columns_of("Variants"), start=1))}
-    sheet = RawSheet(name="Variants", rows={1: headers, 2: {1: "warm-up"}})
-    validate(Submission(name="", sha256="", kind="csv", sheets={sheet.name: sheet}), ReadingLimits())
+    sheets = [RawSheet(name="Variants", rows={1: headers, 2: {1: "warm-up"}}), RawSheet(name="Notes", rows={})]
+    submission = Submission(name="", sha256="", kind="workbook", sheets={sheet.name: sheet for sheet in sheets})
+    validate(submission, ReadingLimits())
 
 
 def carried_out(task: Callable[..., Any], limits: ReadingLimits, arguments: tuple[Any, ...]) -> Any:

@@ -38,7 +38,8 @@ def unusual_words(column: Column, value: float) -> str:
     """Return what is usual for a column, in words, where a value is not; else an empty text.
 
     >>> from flexlash.schema.columns import SETTINGS
-    >>> unusual_words(SETTINGS[-1], 0.2), unusual_words(SETTINGS[-1], 0.9)
+    >>> factor = next(one for one in SETTINGS if one.key == "disk_calibration")
+    >>> unusual_words(factor, 0.2), unusual_words(factor, 0.9)
     ('0.5 to 2.5', '')
     """
     low, high = column.usual or (value, value)

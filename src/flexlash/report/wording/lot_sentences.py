@@ -85,7 +85,7 @@ def _sentence(words: str) -> str:
 
 def _acceptable(facts: SummaryFacts) -> str:
     """Return the share of units over the limit from which a lot fails."""
-    return f"{facts.outcome.settings.acceptable_ppm:,g} ppm"
+    return f"{facts.outcome.settings.acceptable_ppm:.10g} ppm"
 
 
 def _alike(row: Row, ppm: str) -> str:
