@@ -315,9 +315,10 @@ def test_the_summary_prints_whole_on_one_page_of_either_paper(study, table, soun
     for (paper, name), document in zip(asked, convert_all(paths, "pdf", tmp_path), strict=True):
         facts = subprocess.run(["pdfinfo", document], check=True, capture_output=True, text=True).stdout
         assert re.search(rf"Page size: +{papers[paper]}", facts)
-        page = _words(document)
+        # pdftotext drops a hyphen at which a line ends.
+        page = _words(document).replace("-", "")
         for topic, text in said_of(outcomes[name]).items():
-            assert "".join(text.split()) in page, topic
+            assert "".join(text.split()).replace("-", "") in page, topic
         assert "Maincontributor" in page
         assert "Methodandlimitsofthemodel:sheetAbout." in page
         assert "Reviewedby____" in page
