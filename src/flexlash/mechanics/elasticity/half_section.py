@@ -15,12 +15,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexlash.mechanics.elasticity.mesh_lines import across, graded, nodes_on, step_at
+from flexlash.mechanics.elasticity.mesh_lines import across, graded, nodes_on
 from flexlash.mechanics.elasticity.part import SLACK, Part, part_of, section_problem
 from flexlash.mechanics.elasticity.ribs import ARC, LONG, disk_stretches, fan, ribs_of, wall_stretches
 from flexlash.schema.arrays import Array
 
-__all__ = ["HalfSection", "half_section"]
+__all__ = ["HalfSection", "half_section", "section_of"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,8 +28,8 @@ class HalfSection:
     """Nodes of a half-section and what its edges are.
 
     `radius` and `height` [m] have shape (2 columns + 1, 2 rows + 1) and are NaN where no cell needs them; `cells`
-    (columns, rows) says which exist. `clamped`, `loaded`, `hub_fillet` and `junction_fillet` mark the nodes of these
-    edges.
+    (columns, rows) says which exist. `clamped`, `loaded`, `hub_fillet`, `junction_fillet` and `bore` mark the nodes of
+    these edges; what is loaded is the open end or, where it `has_face`, the outer face as far as the teeth reach.
     `details` are places worth a closer look: what is there, radius, height, and reach around them [m].
     """
 
@@ -40,6 +40,8 @@ class HalfSection:
     loaded: Array
     hub_fillet: Array
     junction_fillet: Array
+    bore: Array
+    has_face: bool = False
     details: tuple[tuple[str, float, float, float], ...] = ()
 
 
@@ -52,10 +54,26 @@ def half_section(flexspline_type: str, dimensions: Mapping[str, float], refineme
     problem = section_problem(flexspline_type, dimensions)
     if problem:
         raise ValueError(problem[1])
-    part = part_of(flexspline_type, dimensions)
+    return section_of(part_of(flexspline_type, dimensions), refinement)
+
+
+def section_of(part: Part, refinement: int = 0) -> HalfSection:
+    """Return the half-section of a part that has no `section_problem`."""
     turned = part.kind == "cylinder" or part.junction_fillet > 0
     section = _along_the_meridian(part, refinement) if turned else _around_the_corner(part, refinement)
-    return replace(section, details=tuple(_details(part)))
+    return replace(section, details=tuple(_details(part)), has_face=part.face_width > 0, **_wall_edges(part, section))
+
+
+def _wall_edges(part: Part, section: HalfSection) -> dict[str, Array]:
+    """Return the nodes on the bore of the wall, and those that the teeth load where they have a width."""
+    radius, height, slack = section.radius, section.height, SLACK * part.length
+    edges = {"bore": (np.abs(radius - part.bore) <= slack) & (height >= part.junction_fillet - slack)}
+    if part.face_width:
+        step = part.length - part.rim_length if part.has_step else part.length
+        on_wall = (np.abs(radius - part.outside) <= slack) & (height <= step + slack)
+        on_rim = (np.abs(radius - part.rim_outside) <= slack) & (height >= step - slack)
+        edges["loaded"] = (on_wall | on_rim) & (height >= part.length - part.face_width - slack)
+    return edges
 
 
 def _details(part: Part) -> Iterator[tuple[str, float, float, float]]:
@@ -82,7 +100,7 @@ def _along_the_meridian(part: Part, refinement: int) -> HalfSection:
     )
     outwards = _rim_nodes(part, refinement)[::-1]
     rim = len(outwards)
-    inwards = nodes_on(across(low_is_sharp=rim > 0, high_is_sharp=False), refinement)
+    inwards = nodes_on(across(part.grading, low_is_sharp=rim > 0, high_is_sharp=False), refinement)
     section = _blank(len(outer_radius), rim + len(inwards))
     section.radius[:, rim:] = outer_radius[:, None] + (inner_radius - outer_radius)[:, None] * inwards
     section.height[:, rim:] = outer_height[:, None] + (inner_height - outer_height)[:, None] * inwards
@@ -108,7 +126,7 @@ def _around_the_corner(part: Part, refinement: int) -> HalfSection:
     The columns under the wall rise into it. Beyond them stand those of a hat's flange, low, and of the rim, high.
     """
     low, bottom, top = _floor(part, refinement)
-    upwards = nodes_on(across(low_is_sharp=part.lean > 0, high_is_sharp=True), refinement)
+    upwards = nodes_on(across(part.grading, low_is_sharp=part.lean > 0, high_is_sharp=True), refinement)
     heights = ribs_of([*wall_stretches(part)], refinement)[1]
     rim = _rim_nodes(part, refinement)
     floor = len(upwards) - 1
@@ -135,7 +153,7 @@ def _around_the_corner(part: Part, refinement: int) -> HalfSection:
 
 def _floor(part: Part, refinement: int) -> tuple[Array, Array, Array]:
     """Return radius, lower and upper height of the columns through disk, corner and flange."""
-    lines = across(low_is_sharp=part.kind == "cup", high_is_sharp=part.kind == "hat" or part.has_step)
+    lines = across(part.grading, low_is_sharp=part.kind == "cup", high_is_sharp=part.kind == "hat" or part.has_step)
     low = part.bore + part.wall * nodes_on(lines, refinement)
     if part.kind == "cup":
         radius, lower, _, upper = ribs_of([*disk_stretches(part, part.bore)], refinement)
@@ -149,7 +167,7 @@ def _floor(part: Part, refinement: int) -> tuple[Array, Array, Array]:
         )
     width = part.clamp - part.outside
     thickness = float(part.thickness(np.array([part.outside]))[0])
-    first, last = (step_at(sharp=sharp, thickness=thickness) for sharp in (True, False))
+    first, last = (part.grading.step(sharp=sharp, thickness=thickness) for sharp in (True, False))
     flange = part.outside + width * nodes_on(graded(0.0, 1.0, first / width, last / width, LONG), refinement)
     low = np.concatenate([low, flange[1:]])
     top = -(low - part.outside) * part.lean * (low > part.outside)
@@ -160,8 +178,8 @@ def _rim_nodes(part: Part, refinement: int) -> Array:
     """Return the radii of nodes in the part of the rim that stands out from the wall, the wall's own left out."""
     if not part.has_step:
         return np.zeros(0)
-    first = step_at(sharp=True, thickness=min(part.wall, part.rim_outside - part.outside))
-    last = step_at(sharp=False, thickness=part.rim_outside - part.outside)
+    first = part.grading.step(sharp=True, thickness=min(part.wall, part.rim_outside - part.outside))
+    last = part.grading.step(sharp=False, thickness=part.rim_outside - part.outside)
     return nodes_on(graded(part.outside, part.rim_outside, first, last, 2), refinement)[1:]
 
 
@@ -186,4 +204,5 @@ def _blank(columns: int, rows: int) -> HalfSection:
         loaded=np.zeros(shape, dtype=bool),
         hub_fillet=np.zeros(shape, dtype=bool),
         junction_fillet=np.zeros(shape, dtype=bool),
+        bore=np.zeros(shape, dtype=bool),
     )

@@ -7,19 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexlash.mechanics.elasticity.part import SLACK
+from flexlash.mechanics.elasticity.part import SLACK, Grading
 from flexlash.schema.arrays import Array
 
-__all__ = ["Lines", "across", "graded", "nodes_on", "step_at"]
+__all__ = ["Lines", "across", "graded", "nodes_on"]
 
 _GROWTH = 2.5
 """Factor by which mesh steps grow from one to the next, away from a fine end."""
-
-_CORNER = 0.02
-"""Mesh step at a sharp corner over the thickness: there the twist goes as the two-thirds power of the distance."""
-
-_SMOOTH = 0.3
-"""Mesh step where no sharp corner is, over the thickness."""
 
 Lines = tuple[float, ...]
 """Mesh lines in rising order."""
@@ -53,11 +47,7 @@ def nodes_on(lines: Sequence[float], refinement: int) -> Array:
     return nodes
 
 
-def step_at(*, sharp: bool, thickness: float) -> float:
-    """Return the first mesh step at an end, from the thickness there."""
-    return thickness * (_CORNER if sharp else _SMOOTH)
-
-
-def across(*, low_is_sharp: bool, high_is_sharp: bool) -> Lines:
+def across(grading: Grading, *, low_is_sharp: bool, high_is_sharp: bool) -> Lines:
     """Return mesh lines across a thickness, from 0 to 1, fine at the faces that have a sharp corner."""
-    return graded(0.0, 1.0, step_at(sharp=low_is_sharp, thickness=1.0), step_at(sharp=high_is_sharp, thickness=1.0), 2)
+    low, high = (grading.step(sharp=is_sharp, thickness=1.0) for is_sharp in (low_is_sharp, high_is_sharp))
+    return graded(0.0, 1.0, low, high, 2)

@@ -13,7 +13,7 @@ from flexlash.schema.arrays import Array
 from flexlash.schema.part_row import NumberRow, first_broken
 from flexlash.schema.section_rules import SECTION_RULES
 
-__all__ = ["SLACK", "Part", "part_of", "section_problem"]
+__all__ = ["BENDING", "SLACK", "TORSION", "Grading", "Part", "part_of", "section_problem"]
 
 SLACK = 1e-9
 """Sums of decimals miss an edge by their last binary digit; relative to the radius."""
@@ -23,11 +23,36 @@ _FOIL = 1e-4
 
 
 @dataclass(frozen=True, kw_only=True)
+class Grading:
+    """How fine a mesh is: first steps over the thickness, longest step on the wall over √(r_m Δ).
+
+    First steps are those at a sharp corner, where none is, and at a stop.
+    """
+
+    corner: float
+    smooth: float
+    stop: float
+    longest: float
+
+    def step(self, *, sharp: bool, thickness: float) -> float:
+        """Return the first mesh step at an end, from the thickness there."""
+        return thickness * (self.corner if sharp else self.smooth)
+
+
+TORSION = Grading(corner=0.02, smooth=0.3, stop=0.3, longest=math.inf)
+"""For the twist alone, which goes as the two-thirds power of the distance from a sharp corner."""
+
+BENDING = Grading(corner=0.3, smooth=0.5, stop=0.2, longest=1.5)
+"""For two lobes, which bend the wall over lengths of √(r_m Δ) from where the bearing ends; its corners cost 2e-4."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Part:
     """The dimensions of one flexspline [m] as its half-section needs them; what it has not is 0.
 
     `clamp` is the radius where the disk is held; `lean` the fall of a conical disk per radius [-]; `thickness` the
-    height of the disk along the axis at radii of any shape.
+    height of the disk along the axis at radii of any shape. `stops` are heights on the wall where mesh lines must
+    stand, as where the teeth's load ends; `grading` says how fine the mesh is.
     """
 
     kind: str
@@ -39,8 +64,11 @@ class Part:
     junction_fillet: float
     rim_length: float
     rim_thickness: float
+    face_width: float
     lean: float
     thickness: Callable[[Array], Array]
+    stops: tuple[float, ...] = ()
+    grading: Grading = TORSION
 
     @property
     def bore(self) -> float:
@@ -67,6 +95,7 @@ def part_of(flexspline_type: str, dimensions: Mapping[str, float]) -> Part:
     """Return the dimensions of a half-section; blanks are the same dimension elsewhere."""
     mean = float(radius_of(dimensions))
     angle = dimensions.get("disk_cone_angle", math.pi / 2)
+    length, face_width = dimensions["cylinder_length"], dimensions.get("tooth_face_width", 0.0)
 
     def thickness(radius: Array) -> Array:
         # Under the wall the disk goes on as thick as it is where it ends.
@@ -78,14 +107,16 @@ def part_of(flexspline_type: str, dimensions: Mapping[str, float]) -> Part:
         kind=flexspline_type,
         mean=mean,
         wall=dimensions["wall_thickness"],
-        length=dimensions["cylinder_length"],
+        length=length,
         clamp=dimensions.get(clamp, mean),
         hub_fillet=dimensions.get("hub_fillet_radius", 0.0),
         junction_fillet=dimensions.get("junction_fillet_radius", 0.0),
         rim_length=dimensions.get("rim_length", 0.0),
         rim_thickness=dimensions.get("rim_thickness", 0.0),
+        face_width=face_width,
         lean=1 / math.tan(angle) if angle < math.pi / 2 - SLACK else 0.0,
         thickness=thickness,
+        stops=(length - face_width,) if face_width else (),
     )
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 
-from flexlash.mechanics.elasticity.mesh_lines import Lines, graded, nodes_on, step_at
+from flexlash.mechanics.elasticity.mesh_lines import Lines, graded, nodes_on
 from flexlash.mechanics.elasticity.part import SLACK, Part
 from flexlash.schema.arrays import Array
 
@@ -45,8 +46,8 @@ def disk_stretches(part: Part, end: float) -> Iterator[tuple[Lines, RibsAt]]:
             top = -(part.bore - radius) * part.lean
             return radius, top - part.thickness(radius), radius, top
 
-        first = step_at(sharp=part.lean > 0, thickness=at_hub) / (start * stretch)
-        last = step_at(sharp=not part.junction_fillet, thickness=at_end) / (end * stretch)
+        first = part.grading.step(sharp=part.lean > 0, thickness=at_hub) / (start * stretch)
+        last = part.grading.step(sharp=not part.junction_fillet, thickness=at_end) / (end * stretch)
         yield graded(0.0, 1.0, first, last, LONG), body
 
 
@@ -71,18 +72,31 @@ def fan(part: Part) -> Iterator[tuple[Lines, RibsAt]]:
 
 
 def wall_stretches(part: Part) -> Iterator[tuple[Lines, RibsAt]]:
-    """Yield the ribs of the wall from the junction to the open end: those of the plain wall, then those of the rim."""
-    start, step = part.junction_fillet, part.length - part.rim_length
-    corner = part.kind != "cylinder" and not part.junction_fillet
-    for low, high, sharp in ((start, step, (corner, part.has_step)), (step, part.length, (part.has_step, False))):
-        if high - low > SLACK * part.length:
+    """Yield the ribs of the wall from the junction to the open end, between its stops and the step of the rim."""
+    marks, longest = _wall_marks(part), part.grading.longest * math.sqrt(part.mean * part.wall)
+    for low, high in pairwise(marks):
 
-            def straight(fraction: Array, low: float = low, high: float = high) -> tuple[Array, Array, Array, Array]:
-                height = low + (high - low) * fraction
-                return np.full_like(fraction, part.outside), height, np.full_like(fraction, part.bore), height
+        def straight(fraction: Array, low: float = low, high: float = high) -> tuple[Array, Array, Array, Array]:
+            height = low + (high - low) * fraction
+            return np.full_like(fraction, part.outside), height, np.full_like(fraction, part.bore), height
 
-            first, last = (step_at(sharp=is_sharp, thickness=part.wall) / (high - low) for is_sharp in sharp)
-            yield graded(0.0, 1.0, first, last, LONG), straight
+        first, last = (marks[height] / (high - low) for height in (low, high))
+        least = max(LONG, math.ceil((high - low) / longest))
+        yield graded(0.0, 1.0, first, last, least), straight
+
+
+def _wall_marks(part: Part) -> dict[float, float]:
+    """Return the heights on the wall between which it is meshed, in rising order, and the first mesh step at each."""
+    start, step, end = part.junction_fillet, part.length - part.rim_length, part.length
+    has_corner = part.kind != "cylinder" and not part.junction_fillet
+    marks = dict.fromkeys((stop for stop in part.stops if start < stop < end), part.grading.stop * part.wall)
+    marks[end] = part.grading.step(sharp=False, thickness=part.wall)
+    marks[start] = part.grading.step(sharp=has_corner, thickness=part.wall)
+    if step < end:
+        marks[step] = part.grading.step(sharp=part.has_step, thickness=part.wall)
+    heights = sorted(marks)
+    near = {low for low, high in pairwise(heights) if high - low <= SLACK * part.length}
+    return {height: marks[height] for height in heights if height not in near}
 
 
 def ribs_of(stretches: Sequence[tuple[Lines, RibsAt]], refinement: int) -> tuple[Array, Array, Array, Array]:

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from flexlash.mechanics import windup
 from flexlash.mechanics.elasticity.half_section import HalfSection, half_section
+from flexlash.mechanics.elasticity.section_mesh import face_shares, section_mesh
 from flexlash.mechanics.flexspline import modulus_of
 from flexlash.schema.argument_checks import number, of_type, one_of
 from flexlash.schema.arrays import Array
@@ -147,11 +148,11 @@ def unit_twist(section: HalfSection) -> UnitTwist:
     from skfem import Basis, BilinearForm, ElementQuad2, condense, solve
     from skfem.helpers import dot, grad
 
-    mesh, number = _mesh(section)
+    mesh, number = section_mesh(section)
     basis = Basis(mesh, ElementQuad2(), intorder=6)
     stiffness = BilinearForm(lambda u, v, w: w.x[0] ** 3 * dot(grad(u), grad(v))).assemble(basis)
     load = np.zeros(basis.N)
-    load[number[section.loaded]] = _end_load(section.radius[section.loaded])
+    load[number[section.loaded]] = (_face_load if section.has_face else _end_load)(section)
     twist = solve(*condense(stiffness, load, D=number[section.clamped]))
     inner = np.stack(np.meshgrid(_POINTS, _POINTS, indexing="ij")).reshape(2, -1)
     stress = _stress(Basis(mesh, ElementQuad2(), quadrature=(inner, np.ones(9))), twist)
@@ -172,36 +173,15 @@ def unit_twist(section: HalfSection) -> UnitTwist:
     )
 
 
-def _mesh(section: HalfSection) -> tuple[Any, Any]:
-    """Return the mesh of a half-section, its cells in the lattice's order, and the number of each node, -1 for none."""
-    from skfem import ElementQuad2, MeshQuad1, MeshQuad2
-    from skfem.assembly import Dofs
-
-    columns, rows = np.nonzero(section.cells)
-    shape = section.radius.shape
-    turns = ((0, 0), (2, 0), (2, 2), (0, 2))
-    corners = np.stack([(2 * columns + right) * shape[1] + 2 * rows + up for right, up in turns])
-    lattice, cells = np.unique(corners, return_inverse=True)
-    straight = MeshQuad1(
-        np.stack([section.radius.ravel()[lattice], section.height.ravel()[lattice]]), cells.reshape(corners.shape)
-    )
-    node = np.stack(np.unravel_index(lattice, shape))
-    nodes = Dofs(straight, ElementQuad2())
-    positions = np.empty((2, nodes.N), dtype=np.int64)
-    positions[:, nodes.nodal_dofs[0]] = node
-    positions[:, nodes.facet_dofs[0]] = node[:, straight.facets].sum(axis=1) // 2
-    positions[:, nodes.interior_dofs[0]] = node[:, straight.t].sum(axis=1) // 4
-    columns, rows = positions
-    number = np.full(shape, -1)
-    number[columns, rows] = np.arange(nodes.N)
-    curved = replace(
-        MeshQuad2.from_mesh(straight), doflocs=np.stack([section.radius[columns, rows], section.height[columns, rows]])
-    )
-    return curved, number
+def _face_load(section: HalfSection) -> Array:
+    """Return the nodal loads of unit torque over 2π on the face that the teeth load, the traction even."""
+    moments = (face_shares(section) * section.radius * section.radius)[section.loaded]
+    return np.asarray(moments / moments.sum())
 
 
-def _end_load(radius: Array) -> Array:
+def _end_load(section: HalfSection) -> Array:
     """Return the nodal loads of unit torque over 2π on the open end's nodes, the traction growing with the radius."""
+    radius = section.radius[section.loaded]
     low, high = radius[:-2:2, None], radius[2::2, None]
     point = low + (high - low) * _POINTS
     share = (high - low) * _SHARES * point**3 * 4 / (radius[-1] ** 4 - radius[0] ** 4)
