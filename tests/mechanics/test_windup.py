@@ -38,6 +38,8 @@ SEGMENTS = {
     tapered_hub_fillet: (0.04, 0.0035, 0.0016, -0.02),
     fillets.junction_fillet_integral: (0.0808, 0.0016, 0.0035),
     windup.rim_integral: (0.02, 0.0808, 0.0016, 0.0032),
+    windup.face_on_rim: (0.03, 0.02),
+    windup.tooth_band_integral: (0.03, 0.02, 0.0808, 0.0016, 0.0032),
 }
 each_segment = pytest.mark.parametrize(
     ("function", "arguments"), SEGMENTS.items(), ids=[function.__name__ for function in SEGMENTS]

@@ -21,9 +21,7 @@ SOURCE = Path(flexlash.__file__).parent
 REQUIREMENT = (
     """    _requirement("peak_torque_Nm", "Peak torque [N·m]", "Greatest torque that may occur.", **TORQUE),\n"""
 )
-DIMENSION = (
-    """    _dimension("tooth_face_width_mm", "Tooth face width [mm]", "Width of the tooth face.", **LENGTH),\n"""
-)
+DIMENSION = """    _dimension("boss_width_mm", "Boss width [mm]", "Width of the boss behind the disk.", **LENGTH),\n"""
 SOUND = {
     "variant": "A",
     "material": "20Cr2Ni4",
@@ -140,21 +138,21 @@ def test_a_requirement_reaches_neither_mechanics_nor_tolerances(requirement):
 @pytest.mark.slow
 def test_a_dimension_is_read_checked_toleranced_and_shown(dimension):
     """One more dimension stands in the template, is checked, may have a tolerance, and reaches the report."""
-    assert "tooth_face_width_mm" in _texts(dimension.template)["Dictionary"]
-    assert "tooth_face_width" in _texts(dimension.template)["Lists"]
-    assert "tooth_face_width" in dimension.dictionary["Tolerances"]["dimension"]["choices"]
-    narrow = dimension.submission("narrow.xlsx", tooth_face_width_mm=0)
-    assert dimension.errors(narrow) == [("E207", "tooth_face_width_mm")]
-    deviations = ("tooth_face_width", -0.1, 0.1), ("wall_thickness", -0.01, 0.01)
-    report = dimension.report(dimension.submission("right.xlsx", *deviations, tooth_face_width_mm=30))
-    assert {"Tooth face width [mm]", 30} <= report["Submission"]
-    assert "Variants: Tooth face width [mm]" in report["About"]
+    assert "boss_width_mm" in _texts(dimension.template)["Dictionary"]
+    assert "boss_width" in _texts(dimension.template)["Lists"]
+    assert "boss_width" in dimension.dictionary["Tolerances"]["dimension"]["choices"]
+    narrow = dimension.submission("narrow.xlsx", boss_width_mm=0)
+    assert dimension.errors(narrow) == [("E207", "boss_width_mm")]
+    deviations = ("boss_width", -0.1, 0.1), ("wall_thickness", -0.01, 0.01)
+    report = dimension.report(dimension.submission("right.xlsx", *deviations, boss_width_mm=30))
+    assert {"Boss width [mm]", 30} <= report["Submission"]
+    assert "Variants: Boss width [mm]" in report["About"]
 
 
 def test_the_entry_is_all_that_differs(requirement, dimension):
     """The dictionary of each copy has one object more than ours, and every other one is ours."""
     ours = {column.key: column.as_dictionary() for column in VARIANTS}
-    for copy, key in ((requirement, "peak_torque_Nm"), (dimension, "tooth_face_width_mm")):
+    for copy, key in ((requirement, "peak_torque_Nm"), (dimension, "boss_width_mm")):
         theirs = dict(copy.dictionary["Variants"])
         assert theirs.pop(key)["role"] == copy.folder.name.removesuffix("0")
         assert theirs == ours

@@ -58,17 +58,25 @@ def _cylinder(dimensions):
     rim = dimensions.get("rim_thickness", wall)
     rim_start = length - dimensions.get("rim_length", 0.0)
 
+    face = dimensions.get("tooth_face_width", 0.0)
+
+    def transmitted(height):
+        # What a place passes on of the torque, and of the work of the teeth there.
+        return min(1.0, (length - height) / face) ** 2 if face else 1.0
+
     def in_wall(_, back):
         added = _arc(fillet, back)
         return 1 / ((mean - added / 2) ** 3 * (wall + added))
 
-    def in_rim(_):
+    def in_rim():
         return 1 / ((mean - wall / 2 + rim / 2) ** 3 * rim)
 
-    return (
-        _fillet_integral(in_wall, fillet)
-        + _integral(lambda height: in_wall(height, 0.0), fillet, rim_start)
-        + _integral(in_rim, rim_start, length)
+    def loaded(height):
+        return transmitted(height) * (in_rim() if height > rim_start else in_wall(height, 0.0))
+
+    places = sorted({fillet, rim_start, length - face, length})
+    return _fillet_integral(in_wall, fillet) + sum(
+        _integral(loaded, start, end) for start, end in pairwise(places) if start >= fillet
     )
 
 

@@ -15,7 +15,7 @@ from scipy.special import boxcox, expm1, sindg, xlogy
 
 from flexlash.schema.arrays import Array, Condition, Quantity
 
-__all__ = ["absolute", "box_cox", "exp", "log", "maximum", "power", "sin", "sqrt", "where"]
+__all__ = ["absolute", "box_cox", "exp", "log", "maximum", "minimum", "power", "sin", "sqrt", "where"]
 
 
 @singledispatch
@@ -64,6 +64,12 @@ def sin(angle: Quantity) -> Array:
 def maximum(first: Quantity, second: Quantity) -> Array:
     """Greater of two numbers."""
     return np.asarray(np.maximum(first, second))
+
+
+@singledispatch
+def minimum(first: Quantity, second: Quantity) -> Array:
+    """Lesser of two numbers."""
+    return np.asarray(np.minimum(first, second))
 
 
 @singledispatch

@@ -25,7 +25,7 @@ __all__ = [
     "windups",
 ]
 
-CYLINDER_SEGMENTS = ("rim", "wall", "junction_fillet")
+CYLINDER_SEGMENTS = ("tooth_band", "rim", "wall", "junction_fillet")
 DISK_SEGMENTS = ("disk_body", "hub_fillet")
 
 Dimensions = Mapping[str, Quantity]
@@ -152,13 +152,20 @@ def power_law_thickness(radius: Quantity, inner_radius: Quantity, hub: Quantity,
 
 
 def _cylinder_integrals(dimensions: Dimensions, mean_radius: Quantity) -> dict[str, Quantity]:
-    """Integrals of rim, plain wall and junction fillet [1/m³]."""
+    """Integrals of tooth band, rim, plain wall and junction fillet [1/m³]."""
     thickness = dimensions["wall_thickness"]
     plain = dimensions["cylinder_length"]
+    rim_length, rim_thickness = dimensions.get("rim_length", 0.0), dimensions.get("rim_thickness", thickness)
+    on_rim: Quantity = 0.0
     integrals = {}
+    if "tooth_face_width" in dimensions:
+        face_width = dimensions["tooth_face_width"]
+        on_rim = windup.face_on_rim(face_width, rim_length)
+        band = (face_width, on_rim, mean_radius, thickness, rim_thickness)
+        integrals["tooth_band"] = windup.tooth_band_integral(*band)
+        plain = plain - (face_width - on_rim)
     if "rim_length" in dimensions:
-        rim_length = dimensions["rim_length"]
-        integrals["rim"] = windup.rim_integral(rim_length, mean_radius, thickness, dimensions["rim_thickness"])
+        integrals["rim"] = windup.rim_integral(rim_length - on_rim, mean_radius, thickness, rim_thickness)
         plain = plain - rim_length
     if "junction_fillet_radius" in dimensions:
         fillet = dimensions["junction_fillet_radius"]
@@ -197,7 +204,8 @@ def windups(flexspline_type: str, dimensions: Dimensions) -> dict[str, Quantity]
     Arguments: flexspline_type `cup`, `hat` or `cylinder`; dimensions in SI by name, of any one shape
         (variants,) or (variants, draws). A blank disk thickness is the wall's, a blank disk radius the mean
         radius: the same array, so the same random variable.
-    Valid: axisymmetric load; hub fillet within the disk, rim and junction fillet within the cylinder.
+    Valid: axisymmetric load, at the open end or, with a tooth face width, over that; hub fillet within the disk, rim,
+        tooth face and junction fillet within the cylinder.
     Source: the meridian integral; without refinements it is the two-term formula of the B3-160 article.
 
     >>> b3_160 = {"torque": 800.0, "cylinder_length": 0.16, "mean_radius": 0.08, "wall_thickness": 0.0016,

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import polars as pl
 
-from flexlash.mechanics import flexspline, strength, windup
+from flexlash.mechanics import bending, flexspline, strength, windup
 from flexlash.mechanics.nominal_record import WORDS, NominalNumbers
 from flexlash.mechanics.stiffness import (
     catalogue_stiffness,
@@ -158,10 +158,36 @@ def _beside(flexspline_type: str, sizes: Mapping[str, Array], numbers: _Columns,
         "resonance_speed": resonance_speed(frequency),
         "resonance_speed_low": resonance_speed(slowest),
     }
-    return beside | {name: _where_given(values, inertia) for name, values in of_load.items()}
+    beside |= {name: _where_given(values, inertia) for name, values in of_load.items()}
+    return beside | _bending(sizes, numbers)
 
 
 _BESIDE = ("yield_strength", "youngs_modulus", "poisson_ratio", "rated_torque", "load_inertia")
+
+
+def _bending(sizes: Mapping[str, Array], numbers: _Columns) -> _Columns:
+    """Return the stresses of a wall, and of its rim, that the wave generator bends, beside those of torsion."""
+    radius, wall = numbers["mean_radius"], sizes["wall_thickness"]
+    given = [sizes.get(name, np.full(len(radius), np.nan)) for name in _BENT]
+    young, poisson, deflection = given
+    elastic = {"youngs_modulus": young, "poisson_ratio": poisson, "deflection": deflection}
+    rings = {"": (radius, wall, numbers["wall_von_mises"])}
+    if "rim_length" in sizes:
+        rim = sizes["rim_thickness"]
+        rings["rim_"] = windup.rim_radius(radius, wall, rim), rim, numbers["rim_von_mises"]
+    found: _Columns = {}
+    alternating: list[Any] = []
+    combined: list[Any] = []
+    for section, (middle, thickness, torsional) in rings.items():
+        bent = bending.bending_stress(radius=middle, thickness=thickness, **elastic)
+        found[f"{section}bending_stress"] = bent
+        alternating.append(bending.alternating_stress(bent, poisson))
+        combined.append(bending.combined_stress(alternating[-1], torsional))
+    found |= {"alternating_stress": np.max(alternating, axis=0), "combined_stress": np.max(combined, axis=0)}
+    return {name: _where_given(values, *given) for name, values in found.items()}
+
+
+_BENT = ("youngs_modulus", "poisson_ratio", "radial_deflection")
 
 
 def _where_given(values: Quantity, *asked: Array) -> Any:

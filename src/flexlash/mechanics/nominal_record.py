@@ -17,13 +17,14 @@ class NominalNumbers:
     Wind-ups and backlash [rad], the former also by segment; stiffness [N·m/rad]; stresses [Pa] by section: wall, tooth
     rim, hub of the disk; torques [N·m]; natural frequency [Hz]; resonance speed [rad/s], the lower one that of the
     whole drive; catalogue size [-]. The elastic limit needs a yield strength, buckling E and ν, lost motion a rated
-    torque, resonance a load inertia, the catalogue a listed size.
+    torque, resonance a load inertia, the catalogue a listed size, bending E, ν and a radial deflection.
     """
 
     backlash: float
     windup: float
     cylinder_windup: float
     disk_windup: float
+    tooth_band_windup: float | None = None
     rim_windup: float | None = None
     wall_windup: float | None = None
     junction_fillet_windup: float | None = None
@@ -56,3 +57,7 @@ class NominalNumbers:
     natural_frequency: float | None = None
     resonance_speed: float | None = None
     resonance_speed_low: float | None = None
+    bending_stress: float | None = None
+    rim_bending_stress: float | None = None
+    alternating_stress: float | None = None
+    combined_stress: float | None = None

@@ -16,6 +16,7 @@ __all__ = ["write_sections"]
 _NAME = 30
 _CHARTED = 30
 _SEGMENTS = (
+    ("tooth_band", "Tooth face", PALETTE["ink"]),
     ("rim", "Tooth rim", PALETTE["pale"]),
     ("wall", "Wall", PALETTE["blue"]),
     ("junction_fillet", "Junction fillet", PALETTE["sky"]),

@@ -723,6 +723,13 @@ CATALOGUE = _rules(
         "A dimension that all parts of a lot share cannot follow one that each of them has for itself.",
     ),
     (
+        "E351",
+        "tooth face too wide",
+        "{place} {name} = {value} mm: at most {other} mm is required, the cylinder length without the junction fillet.",
+        "Check tooth face width, cylinder length and fillet, and their units.",
+        "The tooth face lies on the cylinder, from the open end on; it may be as wide as the cylinder is long.",
+    ),
+    (
         "W401",
         "disk does not meet the wall",
         "{place} {name} = {value} mm differs from the mean radius {other} mm.",

@@ -202,6 +202,19 @@ PART_RULES = (
         reached=Reached(kind="overlap", words="the cylinder length"),
     ),
     PartRule(
+        code="E351",
+        dimension="tooth_face_width",
+        words="tooth face and junction fillet exceed the length",
+        broken=lambda row: (
+            row.given("tooth_face_width"),
+            row["tooth_face_width"] + row["junction_fillet_radius"] > row["cylinder_length"] + row.edge,
+        ),
+        facts=lambda row: {"other": row["cylinder_length"] - row["junction_fillet_radius"]},
+        after=("E313",),
+        compares_lengths=True,
+        reached=Reached(kind="overlap", words="the cylinder length"),
+    ),
+    PartRule(
         code="E328",
         dimension="junction_fillet_radius",
         words="junction fillet is wider than the bore",

@@ -224,6 +224,32 @@ RESULTS = (
         "Lower end of the 95 % interval of P99.865 that the number of measured parts leaves.",
     ),
     _angle("p99_865_sample_high", "P99.865 by measured parts high", "Upper end of that interval."),
+    _angle("tooth_band_windup", "Tooth face wind-up", "Part of the wind-up where the teeth load the cylinder.", "rad"),
+    _result(
+        "bending_stress_MPa",
+        "Bending stress",
+        "Amplitude of the hoop stress at the wall by the wave generator: 1.5 E Δ w₀/(r_m² (1 − ν²)), twice a turn.",
+        "MPa",
+        "stress",
+    ),
+    _result(
+        "rim_bending_stress_MPa", "Rim bending stress", "The same at the tooth rim, without notches.", "MPa", "stress"
+    ),
+    _result(
+        "alternating_stress_MPa",
+        "Alternating stress",
+        "Equivalent amplitude of the bending stress, the greater of wall and rim: √(1 − ν + ν²) of it.",
+        "MPa",
+        "stress",
+    ),
+    _result(
+        "combined_stress_MPa",
+        "Combined stress",
+        "Greatest equivalent stress of a turn: root of the squares of alternating stress and von Mises stress of torsion "
+        "at the same place, the greater of wall and rim.",
+        "MPa",
+        "stress",
+    ),
     _result("notes", "Notes", "Notes as submitted.", type="text", role="remark"),
     _result(
         "findings", "Findings", "Codes and cells of the errors and warnings of this row.", type="text", role="remark"

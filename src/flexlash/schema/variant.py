@@ -59,6 +59,9 @@ class Variant:
     rated_torque: float | None = None
     load_inertia: float | None = None
     backlash_limit: float | None = None
+    bearing_width: float | None = None
+    engaged_teeth: float | None = None
+    radial_deflection: float | None = None
     yield_strength: float | None = None
     youngs_modulus: float | None = None
     poisson_ratio: float | None = None

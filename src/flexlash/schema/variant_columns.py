@@ -179,6 +179,48 @@ VARIANTS = (
         **LENGTH,
         group="Refinements",
     ),
+    _dimension(
+        "tooth_face_width_mm",
+        "Tooth face width [mm]",
+        "Length over which the teeth take up the torque, from the open end on. Blank: at the open end itself, which "
+        "gives 2 to 18 % more wind-up.",
+        **LENGTH,
+        group="Refinements",
+        since=5,
+        also_called="facewidth toothwidth teethwidth zahnbreite verzahnungsbreite largeurdedenture larghezzadentatura",
+    ),
+    _requirement(
+        "bearing_width_mm",
+        "Wave generator bearing width [mm]",
+        "Length over which the wave generator holds the bore round, in the middle of the tooth face. For the option "
+        "--elasticity. Blank: 0.7 times the tooth face width.",
+        **LENGTH,
+        group="Wave generator",
+        since=5,
+        also_called="bearingwidth wavegeneratorwidth wälzlagerbreite lagerbreite",
+    ),
+    _requirement(
+        "engaged_teeth_percent",
+        "Engaged teeth [%]",
+        "Share of all teeth that carry torque, in two opposite arcs. For the option --elasticity. Blank: 30.",
+        quantity="ratio",
+        **POSITIVE,
+        maximum=100,
+        default=30,
+        group="Wave generator",
+        since=5,
+        usual=(5, 60),
+    ),
+    _requirement(
+        "radial_deflection_mm",
+        "Radial deflection w₀ [mm]",
+        "How far the wave generator presses the wall out of round: w = w₀ cos 2θ. About the module of the teeth where "
+        "flexspline and circular spline differ by two of them. Gives the cyclic bending stress.",
+        **LENGTH,
+        group="Wave generator",
+        since=5,
+        also_called="radialdeflection deflection radialdeformation w0",
+    ),
     _requirement(
         "rated_torque_Nm",
         "Rated torque [N·m]",

@@ -33,6 +33,7 @@ SHARES = {
     "junction_fillet_radius_mm": (0.002, 0.2),
     "rim_length_mm": (0.03, 5.0),
     "rim_thickness_mm": (0.01, 1.0),
+    "tooth_face_width_mm": (0.03, 5.0),
 }
 """What a length can be in mean radii. A length is mistaken when it lies outside, and inside if shifted by 1000; each
 span is at most 250-fold, so that between the two there is room where nothing is said."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -64,7 +65,7 @@ def section_of(part: Part, refinement: int = 0) -> HalfSection:
     return replace(section, details=tuple(_details(part)), has_face=part.face_width > 0, **_wall_edges(part, section))
 
 
-def _wall_edges(part: Part, section: HalfSection) -> dict[str, Array]:
+def _wall_edges(part: Part, section: HalfSection) -> dict[str, Any]:
     """Return the nodes on the bore of the wall, and those that the teeth load where they have a width."""
     radius, height, slack = section.radius, section.height, SLACK * part.length
     edges = {"bore": (np.abs(radius - part.bore) <= slack) & (height >= part.junction_fillet - slack)}

@@ -119,7 +119,9 @@ def _stiffness(mesh: Any, poisson_ratio: float) -> tuple[Any, Any, Any]:
 
     mixed = product(even, lobed_stress)
     numbers = (3 * basis.element_dofs.T[:, :, None] + np.arange(3)).reshape(cells, count)
-    rows, columns = (np.broadcast_to(side, (cells, count, count)).ravel() for side in (numbers[:, :, None], numbers[:, None]))
+    rows, columns = (
+        np.broadcast_to(side, (cells, count, count)).ravel() for side in (numbers[:, :, None], numbers[:, None])
+    )
 
     def whole(blocks: Array) -> Any:
         return csr_matrix((blocks.ravel(), (rows, columns)), shape=(3 * basis.N, 3 * basis.N))
@@ -132,9 +134,9 @@ def _stiffness(mesh: Any, poisson_ratio: float) -> tuple[Any, Any, Any]:
 
 
 def _strains(basis: Any) -> tuple[Array, Array]:
-    """Return the strains rr, zz, θθ, rz, rθ, zθ of each shape function (cells, points, 6, numbers), for n = 0 and per n.
+    """Return the strains rr, zz, θθ, rz, rθ, zθ of each shape function for n = 0, and what each n adds n times.
 
-    The harmonic n adds n times the second to the first.
+    Both have the shape (cells, points, 6, numbers).
     """
     shapes = [function[0] for function in basis.basis]
     values = np.stack([np.broadcast_to(shape.value, basis.dx.shape) for shape in shapes], axis=-1)

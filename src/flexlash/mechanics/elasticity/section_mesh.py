@@ -19,7 +19,7 @@ def face_shares(section: HalfSection) -> Array:
     low, middle, high = slice(None, -2, 2), slice(1, -1, 2), slice(2, None, 2)
     for axis in (0, 1):
         along, height, loaded = (np.moveaxis(nodes, axis, 0) for nodes in (shares, section.height, section.loaded))
-        is_edge = loaded[low] & loaded[middle] & loaded[high]
+        is_edge = np.logical_and.reduce([loaded[nodes] for nodes in (low, middle, high)])
         length = np.where(is_edge, np.abs(height[high] - height[low]), 0.0)
         for nodes, share in ((low, 1 / 6), (middle, 4 / 6), (high, 1 / 6)):
             along[nodes] += share * length

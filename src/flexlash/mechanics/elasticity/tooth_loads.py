@@ -1,8 +1,8 @@
 """How the teeth share the torque around the axis, and what their shares do to the wind-up.
 
-A flexspline on a wave generator is loaded in two opposite arcs, so that only even harmonics count. Each load is known by
-its ratios q_n/q₀; the face gives way to the harmonic n by ρ_n of what it does to the even load, and the wind-up grows
-to 1 + ½ Σ ρ_n (q_n/q₀)² of it.
+A flexspline on a wave generator is loaded in two opposite arcs, so that only even harmonics n count. A load is known
+by their ratios q_n/q₀, a flexspline by its compliances ρ_n, how much more the face gives way to the load cos nθ than to
+the even one. The wind-up is then 1 + ½ Σ ρ_n (q_n/q₀)² times that of the even load.
 """
 
 from __future__ import annotations

@@ -24,6 +24,7 @@ CAUSES = 8
 """Most dimensions of a tornado."""
 
 SEGMENTS = {
+    "tooth_band": "Tooth face",
     "rim": "Tooth rim",
     "wall": "Wall",
     "junction_fillet": "Junction fillet",

@@ -23,7 +23,7 @@ _DRAWN_SCORE = 3.41
 
 _BINS_PER_LABEL = 5
 _FIRST_CHART, _CHART_ROWS = 18, 21
-_COLOURS = ("grey", "blue", "sky", "orange", "red")
+_COLOURS = ("ink", "grey", "blue", "sky", "orange", "red")
 _WIDTHS, _HEIGHT = (560, 440), 410
 _RIGHT = 3
 

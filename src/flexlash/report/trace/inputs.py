@@ -28,6 +28,7 @@ PROGRAM: dict[str, tuple[str, float]] = {
     **{
         f"{name}_windup": (f"{words} wind-up, program [rad]", 1.0)
         for name, words in (
+            ("tooth_band", "Tooth face"),
             ("rim", "Rim"),
             ("wall", "Wall"),
             ("junction_fillet", "Junction fillet"),

@@ -54,18 +54,28 @@ def write_shape(page: Lines) -> None:
     words = ("Disk thickness there", "t_s", "mm", equation)
     page.line("start_thickness", thickness_at(page["disk_start"], *shape), words)
     page.line("outer_thickness", thickness_at(outer, *shape), ("Disk thickness at r_co", "t_o", "mm", "t(r) at r_co"))
-    plain = page["cylinder_length"] - page["rim_length"] - page["junction_fillet_radius"]
-    page.line("plain_length", plain, ("Plain wall", "l_w", "mm", "l − b − R_j"))
+    face_width, rim_length = page["tooth_face_width"], page["rim_length"]
+    words = ("Tooth face on the rim", "c", "mm", "least of b_f and b")
+    on_rim = page.line("face_on_rim", worked(windup.face_on_rim, face_width, rim_length), words, "size")
+    plain = page["cylinder_length"] - rim_length - page["junction_fillet_radius"] - (face_width - on_rim)
+    page.line("plain_length", plain, ("Plain wall", "l_w", "mm", "l − b − R_j − (b_f − c)"))
     rim = worked(windup.rim_radius, page["mean_radius"], page["wall_thickness"], page["rim_thickness"])
     words = ("Mean radius of the rim", "r_b", "mm", "r_m − Δ/2 + t_b/2")
-    page.line("rim_radius", only(page["rim_length"] > 0, rim), words)
+    page.line("rim_radius", only(rim_length > 0, rim), words)
 
 
 def write_integrals(page: Lines, steps: Sums) -> None:
     """Write the integral of each segment."""
     page.section("3  Wind-up of each segment: U = c T/(2πG) · I,  I = ∫ ds/(r³ t) along the meridian")
-    rim = worked(windup.wall_integral, page["rim_length"], page["rim_radius"], page["rim_thickness"])
-    _integral(page, "rim", only(page["rim_length"] > 0, rim), ("Tooth rim: integral", "I_b", "b / (r_b³ t_b)"))
+    has_rim = page["rim_length"] > 0
+    face_width, on_rim, wall = page["tooth_face_width"], page["face_on_rim"], page["wall_thickness"]
+    thickness = IF(has_rim, page["rim_thickness"], wall)
+    band = worked(windup.tooth_band_integral, face_width, on_rim, page["mean_radius"], wall, thickness)
+    words = ("Tooth face: integral", "I_f", "b_f/3 · (s³/(r_b³ t_b) + (1 − s³)/(r_m³ Δ)), s = c/b_f")
+    _integral(page, "tooth_band", only(face_width > 0, band), words)
+    beyond = page["rim_length"] - on_rim
+    rim = worked(windup.wall_integral, beyond, page["rim_radius"], page["rim_thickness"])
+    _integral(page, "rim", only(has_rim, rim), ("Tooth rim: integral", "I_b", "(b − c) / (r_b³ t_b)"))
     plain = worked(windup.wall_integral, page["plain_length"], page["mean_radius"], page["wall_thickness"])
     _integral(page, "wall", plain, ("Wall: integral", "I_w", "l_w / (r_m³ Δ)"))
     points = "sum over points, see Trace steps"
@@ -96,6 +106,7 @@ def _integral(page: Lines, segment: str, value: Live, words: tuple[str, str, str
 
 
 _SEGMENTS = (
+    ("tooth_band", "Tooth face", "f", "cylinder_calibration", "c_c"),
     ("rim", "Tooth rim", "b", "cylinder_calibration", "c_c"),
     ("wall", "Wall", "w", "cylinder_calibration", "c_c"),
     ("junction_fillet", "Junction fillet", "j", "cylinder_calibration", "c_c"),
@@ -115,8 +126,9 @@ def write_windups(page: Lines) -> None:
 def write_sums(page: Lines) -> None:
     """Write wind-up, backlash, stiffness and the formulas that leave something out."""
     page.section("4  Sum")
-    cylinder = page["rim_windup"] + page["wall_windup"] + page["junction_fillet_windup"]
-    page.line("cylinder_windup", cylinder, ("Cylinder wind-up", "U_cyl", "", "U_b + U_w + U_j"), "angle")
+    of_teeth = page["tooth_band_windup"] + page["rim_windup"]
+    cylinder = of_teeth + page["wall_windup"] + page["junction_fillet_windup"]
+    page.line("cylinder_windup", cylinder, ("Cylinder wind-up", "U_cyl", "", "U_f + U_b + U_w + U_j"), "angle")
     of_disk = page["disk_body_windup"] + page["hub_fillet_windup"]
     page.line("disk_windup", of_disk, ("Disk wind-up", "U_disk", "", "U_d + U_h"), "angle")
     total = page["cylinder_windup"] + page["disk_windup"]
