@@ -245,8 +245,7 @@ RESULTS = (
     _result(
         "combined_stress_MPa",
         "Combined stress",
-        "Greatest equivalent stress of a turn: root of the squares of alternating stress and von Mises stress of torsion "
-        "at the same place, the greater of wall and rim.",
+        "Greatest equivalent stress of a turn: √(alternating² + von Mises² of torsion), the greater of wall and rim.",
         "MPa",
         "stress",
     ),

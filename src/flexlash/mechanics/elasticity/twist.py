@@ -22,7 +22,7 @@ from flexlash.schema.argument_checks import number, of_type, one_of
 from flexlash.schema.arrays import Array
 from flexlash.schema.columns import DIMENSIONS
 
-__all__ = ["ElasticityCheck", "UnitTwist", "elasticity_check", "unit_twist"]
+__all__ = ["ElasticityCheck", "UnitTwist", "elasticity_check", "require_dimensions", "unit_twist"]
 
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 _POINTS, _SHARES = (_GAUSS + 1) / 2, _WEIGHTS / 2
@@ -78,7 +78,7 @@ _CLAMPS = {"cup": ("disk_inner_radius",), "hat": ("disk_outer_radius",), "cylind
 """What each type needs besides torque, cylinder_length, wall_thickness and one of each of these."""
 
 
-def _require_dimensions(flexspline_type: str, dimensions: Mapping[str, float]) -> None:
+def require_dimensions(flexspline_type: str, dimensions: Mapping[str, float]) -> None:
     """Raise TypeError or ValueError for a type or dimension that is none, with its name."""
     one_of("flexspline_type", flexspline_type, _CLAMPS)
     for name, value in of_type("dimensions", dimensions, Mapping, "a mapping of names to numbers").items():
@@ -109,7 +109,7 @@ def elasticity_check(flexspline_type: str, dimensions: Mapping[str, float]) -> E
     >>> f"{elasticity_check('cup', plain).windup:.3e}" if is_available() else "5.294e-04"
     '5.294e-04'
     """
-    _require_dimensions(flexspline_type, dimensions)
+    require_dimensions(flexspline_type, dimensions)
     section = half_section(flexspline_type, dimensions)
     before = twist = unit_twist(section)
     error = math.inf
