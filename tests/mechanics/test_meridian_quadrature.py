@@ -18,7 +18,14 @@ brief = settings(deadline=None, max_examples=60, derandomize=True)
 AGREEMENT = 1e-6
 """Relative difference of the total wind-up that the slow quadrature is allowed to find."""
 
-REFINEMENTS = ("disk_hub_thickness", "hub_fillet_radius", "junction_fillet_radius", "rim_length", "rim_thickness")
+REFINEMENTS = (
+    "disk_hub_thickness",
+    "hub_fillet_radius",
+    "junction_fillet_radius",
+    "rim_length",
+    "rim_thickness",
+    "tooth_face_width",
+)
 
 B3_160 = {
     "torque": 800.0,
@@ -52,7 +59,7 @@ def maybe(draw, **strategies):
 
 @st.composite
 def cylinders(draw):
-    """Draw a cylinder: mean radius 10 to 200 mm or its bore, wall 0.3 to 10 % of it, perhaps a rim."""
+    """Draw a cylinder: mean radius 10 to 200 mm or its bore, wall 0.3 to 10 % of it, perhaps a rim or a tooth face."""
     mean = draw(st.floats(0.010, 0.200))
     wall = mean * draw(st.floats(0.003, 0.1))
     length = mean * draw(multiples(0.2, 5.0))
@@ -64,6 +71,7 @@ def cylinders(draw):
         cylinder |= {"youngs_modulus": draw(st.floats(1e10, 2.5e11)), "poisson_ratio": draw(st.floats(0.0, 0.5))}
     if draw(st.booleans()):
         cylinder |= {"rim_length": length * draw(st.floats(0.01, 0.99)), "rim_thickness": wall * draw(st.floats(1, 5))}
+    cylinder |= maybe(draw, tooth_face_width=st.floats(0.01, 1.0).map(lambda share: length * share))
     return cylinder | maybe(draw, cylinder_calibration=st.floats(0.5, 2.0))
 
 
@@ -95,9 +103,10 @@ def disk_width(cup):
 
 
 def with_junction_fillet(draw, cup):
-    """Return a cup with a fillet in the corner, 0.01 to 20 walls, that fits beside the rim and in the bore."""
+    """Return a cup with a fillet in the corner, 0.01 to 20 walls, that fits beside rim, teeth and in the bore."""
     wall = cup["wall_thickness"]
-    room = min(cup["cylinder_length"] - cup.get("rim_length", 0.0), mean_radius(cup) - wall / 2)
+    taken = max(cup.get("rim_length", 0.0), cup.get("tooth_face_width", 0.0))
+    room = min(cup["cylinder_length"] - taken, mean_radius(cup) - wall / 2)
     return cup | {"junction_fillet_radius": min(wall * draw(multiples(0.01, 20.0)), room)}
 
 
@@ -332,7 +341,7 @@ def test_junction_fillets_in_the_corners_of_the_range(wall, multiple):
 @given(cup=plain_cups(), multiple=multiples(1.0, 20.0))
 def test_large_junction_fillets_by_quadrature(cup, multiple):
     """A short cup whose junction fillet is 1 to 20 walls agrees, up to a fillet as large as the bore."""
-    cup = without(cup, "rim_length", "rim_thickness")
+    cup = without(cup, "rim_length", "rim_thickness", "tooth_face_width")
     fillet = min(multiple * cup["wall_thickness"], mean_radius(cup) - cup["wall_thickness"] / 2)
     assert_agrees("cup", cup | {"junction_fillet_radius": fillet, "cylinder_length": 1.01 * fillet})
 
@@ -363,7 +372,7 @@ def test_longer_winds_up_more(shape, factor):
 def test_thicker_wall_winds_up_less(shape, factor):
     """A thicker wall at the same mean radius always winds up less; the rim keeps the wall's bore and goes first."""
     kind, dimensions = shape
-    dimensions = without(dimensions, "rim_length", "rim_thickness", "bore_diameter") | {
+    dimensions = without(dimensions, "rim_length", "rim_thickness", "tooth_face_width", "bore_diameter") | {
         "mean_radius": mean_radius(dimensions)
     }
     thicker = dimensions | {"wall_thickness": factor * dimensions["wall_thickness"]}
@@ -394,7 +403,9 @@ def test_narrow_hat_approaches_the_cylinder(hat, flange):
     wall = hat["cylinder_length"] / (mean**3 * hat["wall_thickness"])
     scale = (
         hat.get("disk_calibration", 1.0)
-        * slow_windup("cylinder", without(hat, "rim_length", "rim_thickness", "cylinder_calibration"))["total"]
+        * slow_windup(
+            "cylinder", without(hat, "rim_length", "rim_thickness", "tooth_face_width", "cylinder_calibration")
+        )["total"]
         / wall
     )
     assert tube < narrow <= tube + scale * ring * (1 + 1e-6) + 1e-15 * tube
@@ -407,7 +418,7 @@ def test_narrow_hat_approaches_the_cylinder(hat, flange):
 def test_rim_as_thick_as_the_wall_changes_nothing(shape, part):
     """A rim as thick as the wall leaves the wind-up as it is."""
     kind, dimensions = shape
-    plain = without(dimensions, "rim_length", "rim_thickness")
+    plain = without(dimensions, "rim_length", "rim_thickness", "tooth_face_width")
     room = plain["cylinder_length"] - plain.get("junction_fillet_radius", 0.0)
     rim = {"rim_length": part * room, "rim_thickness": plain["wall_thickness"]}
     assert windup(kind, plain | rim) == pytest.approx(windup(kind, plain), rel=1e-12)
@@ -467,7 +478,7 @@ def test_power_law_cups_by_quadrature(cup):
 def test_wall_has_no_part_in_a_power_law_disk(cup, factor):
     """The wall's thickness leaves the wind-up of a power-law disk as it is."""
     cup |= {"mean_radius": mean_radius(cup)}
-    cup = without(cup, "bore_diameter", "rim_length", "rim_thickness")
+    cup = without(cup, "bore_diameter", "rim_length", "rim_thickness", "tooth_face_width")
     thicker = windups("cup", cup | {"wall_thickness": factor * cup["wall_thickness"]})
     for segment, angle in windups("cup", cup).items():
         if segment not in CYLINDER_SEGMENTS:

@@ -97,6 +97,7 @@ def _volume(section):
     return float((basis.dx * np.asarray(basis.global_coordinates())[0]).sum())
 
 
+@pytest.mark.slow
 @each_shape
 def test_even_load_winds_up_as_the_torsion_check(size):
     """The harmonic 0 is the torsion of the elasticity check, to what the coarser corners leave."""
@@ -111,6 +112,7 @@ def test_even_load_is_that_of_the_torsion_check_on_one_mesh():
     assert windup == pytest.approx(unit_twist(section).integral * 2 * 1.3 / (2 * math.pi), rel=2e-4)
 
 
+@pytest.mark.slow
 @each_shape
 def test_bounds_order(size):
     """Even ≤ low ≤ uniform load on the held bore ≤ single teeth on it ≤ high, and compliances fall with n."""
@@ -129,6 +131,7 @@ def test_bounds_order(size):
     assert bracket.face_factor < 1
 
 
+@pytest.mark.slow
 def test_more_support_never_raises_a_compliance():
     """A wider bearing makes every harmonic stiffer, and none stiffer than the even load's own shear."""
     narrow, middle, wide = (factors(CUP | RIM, bearing_width=width).held for width in (0.002, 0.005, 0.009))
@@ -136,6 +139,7 @@ def test_more_support_never_raises_a_compliance():
     assert (middle < narrow).all()
 
 
+@pytest.mark.slow
 def test_more_engaged_teeth_lower_the_low_bound_alone():
     """Rigid contact on more teeth winds up less; single teeth do not know how many others there are."""
     few, many = (two_lobe_bracket("cup", CUP, engaged_share=share) for share in (0.2, 0.5))
@@ -143,6 +147,7 @@ def test_more_engaged_teeth_lower_the_low_bound_alone():
     assert many.high == few.high
 
 
+@pytest.mark.slow
 @fewer
 @given(
     length=st.floats(0.5, 20.0),
@@ -225,6 +230,7 @@ def test_refusals(kind, change, arguments, words):
         two_lobe_bracket(kind, size, **arguments)
 
 
+@pytest.mark.slow
 def test_poisson_ratio_beside_a_shear_modulus():
     """A material with its shear modulus alone needs Poisson's ratio beside it; with it the factors are the same."""
     by_shear = {name: value for name, value in CUP.items() if name not in ("youngs_modulus", "poisson_ratio")}
@@ -249,6 +255,7 @@ def test_arguments_that_are_none(arguments, words):
         two_lobe_bracket("cup", CUP, **arguments)
 
 
+@pytest.mark.slow
 def test_parts_of_one_shape_are_solved_once():
     """Another torque and modulus of the same shape take the factors that are there."""
     first = two_lobe_bracket("cup", CUP)

@@ -65,7 +65,9 @@ AGAINST_THE_END = {
     "B3-160, rim 30": (1.019, 1.033, 1.004),
     "public": (0.975, 1.018, 0.925),
 }
-each_cup = pytest.mark.parametrize("name", CUPS)
+each_cup = pytest.mark.parametrize(
+    "name", ["public", *(pytest.param(name, marks=pytest.mark.slow) for name in CUPS if name != "public")]
+)
 
 
 def factors(name):
