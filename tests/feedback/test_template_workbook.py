@@ -89,6 +89,13 @@ STATUS_ROWS = [
     ({"hub_fillet_radius_mm": 40.001}, "hub fillet is wider than the disk"),
     ({"hub_fillet_radius_mm": 40.0}, "complete"),
     (RIM | {"junction_fillet_radius_mm": 140.001}, "junction fillet and tooth rim exceed the length"),
+    ({"tooth_face_width_mm": 160.0}, "complete"),
+    ({"tooth_face_width_mm": 160.001}, "tooth face and junction fillet exceed the length"),
+    (
+        {"tooth_face_width_mm": 158.0, "junction_fillet_radius_mm": 3.0},
+        "tooth face and junction fillet exceed the length",
+    ),
+    ({"engaged_teeth_percent": 101.0}, "engaged teeth is not a number above 0, at most 100 %"),
     ({"junction_fillet_radius_mm": 79.201}, "junction fillet is wider than the bore"),
     ({"junction_fillet_radius_mm": 79.2}, "complete"),
     ({"tolerance_class": "mine"}, "tolerance class not in Tolerances"),
@@ -236,7 +243,7 @@ def test_variants_is_not_protected_and_the_header_is_guarded(empty):
     sheet = empty["Variants"]
     assert not sheet.protection.sheet
     guards = [rule for rule in sheet.data_validations.dataValidation if rule.formula1 == "FALSE"]
-    assert [str(rule.sqref) for rule in guards] == [f"A{HEADER_ROW + 1}:X{HEADER_ROW + 1}"]
+    assert [str(rule.sqref) for rule in guards] == [f"A{HEADER_ROW + 1}:AB{HEADER_ROW + 1}"]
     assert sheet.freeze_panes == f"B{FIRST_ROW + 1}"
 
 

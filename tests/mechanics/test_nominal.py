@@ -30,7 +30,7 @@ def variant(row, kind="cup", dimensions=B3_160, **rest):
 
 def _numbers(variants, share):
     """Return those nominal numbers that each variant has, by name."""
-    beside = ("rated_torque", "load_inertia", "yield_strength", "youngs_modulus", "poisson_ratio")
+    beside = ("rated_torque", "load_inertia", "radial_deflection", "yield_strength", "youngs_modulus", "poisson_ratio")
     arrays = VariantArrays(
         flexspline_types=[one.flexspline_type for one in variants],
         dimensions={name: _column(one.dimensions.get(name) for one in variants) for name in DIMENSIONS},
@@ -248,6 +248,48 @@ def test_vibration_only_with_an_inertia():
     assert numbers_of(load_inertia=4.0)["natural_frequency"] == numbers["natural_frequency"] / 2
 
 
+BENDING = {"bending_stress", "rim_bending_stress", "alternating_stress", "combined_stress"}
+
+
+def test_bending_only_with_a_deflection_and_elastic_constants():
+    """A wall of 1.6 mm at 80 mm that is pressed out by 0.5 mm is bent to 43.5 MPa; without w₀, E or ν nothing is said."""
+    assert not BENDING & set(numbers_of(**STEEL))
+    assert not BENDING & set(numbers_of(radial_deflection=5e-4))
+    numbers = numbers_of(radial_deflection=5e-4, **STEEL)
+    bent = 1.5 * 211e9 * 0.0016 * 5e-4 / (0.08**2 * 0.91)
+    assert numbers["bending_stress"] == pytest.approx(bent, rel=1e-14)
+    assert numbers["alternating_stress"] == pytest.approx(bent * math.sqrt(0.79), rel=1e-14)
+    whole = math.hypot(numbers["alternating_stress"], numbers["wall_von_mises"])
+    assert numbers["combined_stress"] == pytest.approx(whole, rel=1e-14)
+    assert "rim_bending_stress" not in numbers
+
+
+def test_bending_of_a_rim_beside_its_wall():
+    """A rim twice as thick is bent nearly twice as much, and carries less torsion: each is combined with its own."""
+    numbers = numbers_of(dimensions=REFINED, radial_deflection=5e-4, **STEEL)
+    bent = numbers["bending_stress"], numbers["rim_bending_stress"]
+    assert bent[1] == pytest.approx(bent[0] * 2 * (0.0808 / 0.0816) ** 2, rel=1e-12)
+    alternating = [stress * math.sqrt(0.79) for stress in bent]
+    assert numbers["alternating_stress"] == pytest.approx(max(alternating), rel=1e-14)
+    torsion = numbers["wall_von_mises"], numbers["rim_von_mises"]
+    whole = max(map(math.hypot, alternating, torsion))
+    assert numbers["combined_stress"] == pytest.approx(whole, rel=1e-14)
+    twisted = numbers_of(dimensions=REFINED | {"torque": 1e5}, radial_deflection=5e-4, **STEEL)
+    wall = math.hypot(alternating[0], twisted["wall_von_mises"])
+    assert twisted["combined_stress"] == pytest.approx(wall, rel=1e-14)
+
+
+def test_tooth_face_in_the_nominal_numbers():
+    """A tooth face takes off the wind-up and is told as a segment; two-term and cylinder-only formula know none."""
+    plain, faced = numbers_of(), numbers_of(dimensions=B3_160 | {"tooth_face_width": 0.03})
+    assert "tooth_band_windup" not in plain
+    third = plain["wall_windup"] * 0.03 / 0.16 / 3
+    assert faced["tooth_band_windup"] == pytest.approx(third, rel=1e-12)
+    assert faced["cylinder_windup"] == pytest.approx(plain["cylinder_windup"] - 2 * third, rel=1e-12)
+    for name in ("two_term_backlash", "cylinder_only_backlash", "disk_windup", "von_mises"):
+        assert faced[name] == plain[name]
+
+
 @pytest.mark.parametrize(
     ("kind", "dimensions", "expected"),
     [
@@ -298,8 +340,9 @@ def test_material_load_and_requirements_do_not_mix_between_rows():
         variant(3, rated_torque=1600.0),
         variant(4, load_inertia=2.0, yield_strength=900e6),
         variant(5, **STEEL | {"youngs_modulus": 100e9}, load_inertia=1.0),
+        variant(6, **STEEL, radial_deflection=5e-4),
     ]
     together = _numbers(rows, 0.04)
     assert [_numbers([row], 0.04)[0] for row in rows] == together
     assert _numbers(rows[::-1], 0.04) == together[::-1]
-    assert len({frozenset(numbers) for numbers in together}) == 4
+    assert len({frozenset(numbers) for numbers in together}) == 5

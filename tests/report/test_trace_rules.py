@@ -35,6 +35,8 @@ REFUSED = {
     "rim without a thickness": ("refined", {"rim_thickness_mm": None}, "E304"),
     "rim without a length": ("cup", {"rim_thickness_mm": 3.0}, "E304"),
     "fillet and rim longer than the cup": ("refined", {"rim_length_mm": 158.0}, "E313"),
+    "teeth wider than the cup": ("cup", {"tooth_face_width_mm": 161.0}, "E351"),
+    "teeth in the fillet": ("refined", {"tooth_face_width_mm": 158.0}, "E351"),
     "cone with fillets": ("refined", {"disk_cone_angle_deg": 45.0}, "E327"),
     "cone with a junction fillet": ("cone", {"junction_fillet_radius_mm": 2.0}, "E327"),
     "cup with a hub fillet made a hat": ("refined", {"flexspline_type": "hat"}, "E310"),
@@ -77,6 +79,9 @@ SOUND = {
     "rim left out": ("refined", {"rim_length_mm": None, "rim_thickness_mm": None}),
     "rim as thick as the wall": ("refined", {"rim_thickness_mm": 1.6}),
     "rim and fillet fill the cup": ("refined", {"rim_length_mm": 157.0}),
+    "teeth on the rim": ("refined", {"tooth_face_width_mm": 12.0}),
+    "teeth beyond the rim": ("refined", {"tooth_face_width_mm": 40.0}),
+    "teeth on a plain cup": ("cup", {"tooth_face_width_mm": 160.0}),
     "cone without fillets": (
         "refined", {"disk_cone_angle_deg": 45.0, "hub_fillet_radius_mm": None, "junction_fillet_radius_mm": 0.0},
     ),

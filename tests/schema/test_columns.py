@@ -40,6 +40,10 @@ VARIANT_LABELS = {
     "junction_fillet_radius_mm": "Junction fillet radius [mm]",
     "rim_length_mm": "Tooth rim length [mm]",
     "rim_thickness_mm": "Tooth rim thickness [mm]",
+    "tooth_face_width_mm": "Tooth face width [mm]",
+    "bearing_width_mm": "Wave generator bearing width [mm]",
+    "engaged_teeth_percent": "Engaged teeth [%]",
+    "radial_deflection_mm": "Radial deflection w₀ [mm]",
     "rated_torque_Nm": "Rated torque [N·m]",
     "load_inertia_kg_m2": "Load inertia J [kg·m²]",
     "backlash_limit_arcmin": "Backlash limit [arcmin]",
@@ -98,6 +102,7 @@ DIMENSION_NAMES = [
     "junction_fillet_radius",
     "rim_length",
     "rim_thickness",
+    "tooth_face_width",
     "youngs_modulus",
     "poisson_ratio",
     "shear_modulus",
@@ -191,6 +196,11 @@ FURTHER_KEYS = [
     ),
     *(f"probability_over_limit_sample_{end}" for end in ("low", "high")),
     *(f"p99_865_sample_{end}_arcmin" for end in ("low", "high")),
+    "tooth_band_windup_rad",
+    "bending_stress_MPa",
+    "rim_bending_stress_MPa",
+    "alternating_stress_MPa",
+    "combined_stress_MPa",
     "ppm_over_limit_low",
     "ppm_over_limit_high",
     "ppk_normal",
@@ -341,7 +351,7 @@ def test_findings_keep_their_order():
 
 
 def test_dimensions():
-    """Every dimension may have a tolerance, elastic constants too, but not the three requirements on a variant."""
+    """Every dimension may have a tolerance, elastic constants too, but not the requirements on a variant."""
     assert list(DIMENSIONS) == DIMENSION_NAMES
     assert columns_of("Tolerances")["dimension"].choices == tuple(DIMENSION_NAMES)
 

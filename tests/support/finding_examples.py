@@ -122,6 +122,7 @@ def _variants(folder: Path) -> Made:
         {"wall_thickness_mm": "TBD"},
         {"notes": "n" * 1001},
         {"rated_torque_Nm": 1e9},
+        {"tooth_face_width_mm": 165},
         {"notes": "moved by a comma"},
     )
     rows[0]["Customer"] = "Example Ltd"

@@ -40,6 +40,7 @@ def _row(draw: random.Random) -> dict[str, str | float | None]:
         "junction_fillet_radius_mm": (0.35, fillets),
         "rim_length_mm": (0.3, [rim]),
         "rim_thickness_mm": (0.3, [1.0, wall, 3.2]),
+        "tooth_face_width_mm": (0.2, [rim, length / 3, length, 1.1 * length]),
     }
     kind = draw.choice(["cup", "cup", "cup", "hat", "hat", "cylinder", None])
     return {"flexspline_type": kind} | {
