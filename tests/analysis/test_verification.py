@@ -279,3 +279,73 @@ def test_a_run_without_the_check_does_not_need_its_libraries():
         "assert not {'skfem', 'matplotlib'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+
+
+SMALL = {
+    "torque_Nm": 60.0, "cylinder_length_mm": 25.0, "mean_radius_mm": 25.0, "wall_thickness_mm": 0.55,
+    "disk_thickness_mm": 0.8, "disk_inner_radius_mm": 13.0, "rim_length_mm": 10.0, "rim_thickness_mm": 1.1,
+}  # fmt: skip
+FACE = SMALL | {"tooth_face_width_mm": 10.0}
+
+
+@pytest.fixture(scope="module")
+def lobed(tmp_path_factory):
+    """Return the outcome of a cup without and with a tooth face, and of parts that have no bounds."""
+    rows = [
+        {"variant": "open end", **SMALL},
+        {"variant": "face", **FACE},
+        {"variant": "more teeth", **FACE, "engaged_teeth_percent": 50.0},
+        {"variant": "narrow bearing", **FACE, "bearing_width_mm": 3.0},
+        {"variant": "usual bearing", **FACE, "bearing_width_mm": 7.0, "engaged_teeth_percent": 30.0},
+        {"variant": "hat", **SHORT_HAT, "torque_Nm": 60.0, "tooth_face_width_mm": 10.0},
+        {"variant": "wide bearing", **FACE, "bearing_width_mm": 45.0},
+    ]
+    path = tmp_path_factory.mktemp("lobed") / "lobed.csv"
+    pl.DataFrame([{"material": "20Cr2Ni4", **row} for row in rows]).write_csv(path)
+    return run(path, path.with_name("report.xlsx"), elasticity=True, **QUICK), path.with_name("report.xlsx")
+
+
+def test_bounds_stand_beside_the_backlash(lobed):
+    """A cup with a tooth face has bounds above its backlash; blank cells are the usual bearing and share of teeth."""
+    rows = _rows(lobed[0])
+    face = rows["face"]
+    assert face["backlash_arcmin"] < face["two_lobe_low_arcmin"] < face["two_lobe_high_arcmin"]
+    change = 100 * (face["backlash_rad"] / rows["open end"]["backlash_rad"] - 1)
+    assert face["face_width_change_percent"] == pytest.approx(change, rel=1e-9)
+    keys = ("two_lobe_low_arcmin", "two_lobe_high_arcmin", "face_width_change_percent")
+    assert [rows["usual bearing"][key] for key in keys] == [face[key] for key in keys]
+    assert rows["more teeth"]["two_lobe_low_arcmin"] < face["two_lobe_low_arcmin"]
+    assert rows["narrow bearing"]["two_lobe_high_arcmin"] > face["two_lobe_high_arcmin"]
+    assert rows["open end"]["two_lobe_low_arcmin"] is None
+
+
+def test_elasticity_loads_the_tooth_face_too(lobed):
+    """With a tooth face both formula and elasticity load it, so that they part no further than at the open end."""
+    rows = _rows(lobed[0])
+    for name in ("open end", "face"):
+        assert abs(rows[name]["elasticity_difference_percent"]) < 1.0
+    ratio = rows["face"]["elasticity_windup_rad"] / rows["open end"]["elasticity_windup_rad"]
+    assert ratio == pytest.approx(1 + rows["face"]["face_width_change_percent"] / 100, abs=2e-3)
+
+
+def test_parts_without_bounds_say_why(lobed):
+    """A hat, and a cup whose bearing reaches into the disk, are checked, and told why they have no bounds."""
+    outcome, rows = lobed[0], _rows(lobed[0])
+    told = {found.variant: found.message for found in outcome.findings if found.code == "I533"}
+    assert set(told) == {"hat", "wide bearing"}
+    assert "a hat is held at its bolt circle" in told["hat"]
+    assert "bearing of the wave generator reaches into the disk" in told["wide bearing"]
+    for name in told:
+        assert rows[name]["two_lobe_low_arcmin"] is None
+        assert rows[name]["elasticity_windup_rad"] is not None
+
+
+def test_the_sheet_shows_bounds_where_there_are_any(lobed, proof):
+    """The sheet Elasticity has the columns of two lobes where a variant has bounds, and says what they leave out."""
+    import openpyxl
+
+    with_bounds, without = (openpyxl.load_workbook(made[1])["Elasticity"] for made in (lobed, proof))
+    texts = [[str(cell.value) for row in sheet.iter_rows() for cell in row] for sheet in (with_bounds, without)]
+    assert "Two lobes, high [arcmin]" in texts[0]
+    assert any("The wave generator's fit is not included" in text for text in texts[0])
+    assert not any("wo lobes" in text for text in texts[1])

@@ -326,6 +326,7 @@ def _elastic(folder: Path) -> Made:
         "disk_inner_radius_mm": "", "disk_outer_radius_mm": 90, "disk_thickness_mm": 5,
         "rim_length_mm": 10, "rim_thickness_mm": 3.6,
     }  # fmt: skip
+    hat |= {"tooth_face_width_mm": 10}
     rows = _numbered({"disk_outer_radius_mm": 90}, hat, {"torque_Nm": 9800, "hub_fillet_radius_mm": 1})
     return _file(folder, _text(rows), elasticity=True)
 

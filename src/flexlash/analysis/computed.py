@@ -28,7 +28,8 @@ class Elasticity:
     """What the elasticity check of one variant found.
 
     `windup` [rad], its `error` as a share of it, the `difference` of the formula without calibration as a share of it,
-    and the peak stresses at the fillets [Pa], None without a fillet or where the stress has not settled.
+    and the peak stresses at the fillets [Pa], None without a fillet or where the stress has not settled. With a tooth
+    face width, of cups: the bounds of the backlash under two lobes [rad], and what the face width changes, as a share.
     """
 
     windup: float
@@ -36,6 +37,9 @@ class Elasticity:
     error: float
     hub_fillet_shear: float | None
     junction_fillet_shear: float | None
+    two_lobe_low: float | None = None
+    two_lobe_high: float | None = None
+    face_width_change: float | None = None
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 
 from flexlash.analysis.computed import Computed, Elasticity, Verified
 from flexlash.analysis.examination import Examined
@@ -10,6 +10,7 @@ from flexlash.analysis.options import Options
 from flexlash.mechanics.elasticity import require_libraries
 from flexlash.mechanics.elasticity.part import section_problem
 from flexlash.mechanics.elasticity.twist import ElasticityCheck, elasticity_check
+from flexlash.mechanics.elasticity.two_lobes import ENGAGED_SHARE, TwoLobeBracket, bracket_problem, two_lobe_bracket
 from flexlash.mechanics.strength import von_mises_stress
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import spelled_out
@@ -30,8 +31,8 @@ _MEGAPASCAL = 1e6
 _UNSOLVED = 0.01
 """Error of the elasticity check, as a share, above which it says nothing."""
 
-_Task = tuple[str, Mapping[str, float], float]
-"""A variant's flexspline type, its dimensions and its wind-up by the formula without calibration."""
+_Task = tuple[Variant, float]
+"""A variant and its wind-up by the formula without calibration."""
 
 
 def verified_by_elasticity(examined: Examined, options: Options) -> Verified:
@@ -43,7 +44,7 @@ def verified_by_elasticity(examined: Examined, options: Options) -> Verified:
     require_libraries()
     computed, ledger = examined.nominal.computed, Ledger.after(examined.validated)
     rows = list(_closed(computed.values(), ledger))
-    tasks = [(one.variant.flexspline_type, one.variant.dimensions, _uncalibrated(one)) for one in rows]
+    tasks = [(one.variant, _uncalibrated(one)) for one in rows]
     checks: dict[int, Elasticity] = {}
     found = mapped(_checked, tasks, min(options.jobs, len(tasks) // WORTH_A_WORKER))
     for done, (one, check) in enumerate(zip(rows, found, strict=True), start=1):
@@ -52,6 +53,7 @@ def verified_by_elasticity(examined: Examined, options: Options) -> Verified:
         else:
             checks[one.variant.row] = check
             _compare(ledger, one.variant, check)
+            _report_no_bounds(ledger, one.variant)
         if options.progress:
             options.progress(len(computed) + done, len(computed) + len(rows))
     return Verified(checks=checks, findings=tuple(ledger.findings))
@@ -74,6 +76,26 @@ def _report_unsolved(ledger: Ledger, variant: Variant, dimension: str, clause: s
     ledger.add_at("W413", variant, column.key, name=column.name, value=value, detail=clause)
 
 
+def _report_no_bounds(ledger: Ledger, variant: Variant) -> None:
+    """Record why a variant whose teeth have a width has no bounds for two lobes."""
+    width = variant.dimensions.get("tooth_face_width")
+    problem = _bracket_problem(variant) if width else None
+    if width and problem:
+        column = DIMENSIONS["tooth_face_width"]
+        value = f"{width / column.si_unit.si:.10g}"
+        ledger.add_at("I533", variant, column.key, name=column.name, value=value, detail=problem)
+
+
+def _bracket_problem(variant: Variant) -> str | None:
+    """Return why a variant has no bounds for two lobes, as a clause."""
+    return bracket_problem(
+        variant.flexspline_type,
+        variant.dimensions,
+        poisson_ratio=variant.poisson_ratio,
+        bearing_width=variant.bearing_width,
+    )
+
+
 def _compare(ledger: Ledger, variant: Variant, elasticity: Elasticity) -> None:
     """Record that a row's formula is far from elasticity, or that its fillet yields."""
     difference, limit = elasticity.difference, variant.yield_strength
@@ -93,9 +115,10 @@ def _compare(ledger: Ledger, variant: Variant, elasticity: Elasticity) -> None:
 
 def _checked(task: _Task) -> Elasticity | None:
     """Return the check of one variant in numbers alone, None where its equations cannot be solved."""
-    flexspline_type, dimensions, uncalibrated = task
+    variant, uncalibrated = task
     try:
-        found = elasticity_check(flexspline_type, dimensions)
+        found = elasticity_check(variant.flexspline_type, variant.dimensions)
+        bracket = None if _bracket_problem(variant) else _bracket(variant)
     except (ArithmeticError, RuntimeError):
         return None
     if not (found.windup > 0 and found.error < _UNSOLVED):
@@ -106,6 +129,21 @@ def _checked(task: _Task) -> Elasticity | None:
         error=found.error,
         hub_fillet_shear=found.hub_fillet_shear,
         junction_fillet_shear=found.junction_fillet_shear,
+        two_lobe_low=2 * bracket.low if bracket else None,
+        two_lobe_high=2 * bracket.high if bracket else None,
+        face_width_change=bracket.face_factor - 1 if bracket else None,
+    )
+
+
+def _bracket(variant: Variant) -> TwoLobeBracket:
+    """Return the bounds of a variant under two lobes."""
+    engaged = ENGAGED_SHARE if variant.engaged_teeth is None else variant.engaged_teeth
+    return two_lobe_bracket(
+        variant.flexspline_type,
+        variant.dimensions,
+        poisson_ratio=variant.poisson_ratio,
+        bearing_width=variant.bearing_width,
+        engaged_share=engaged,
     )
 
 

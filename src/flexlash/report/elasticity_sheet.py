@@ -17,7 +17,8 @@ __all__ = ["NOTES", "write_elasticity", "write_stress"]
 
 NOTES = (
     "Torsion of a body of revolution, ∇·(G r³ ∇φ) = 0 on the half-section with fillets, taper, cone and rim; the hub "
-    "bore (hat: bolt circle) is held, the torque enters at the open end. Second-order finite elements.",
+    "bore (hat: bolt circle) is held, the torque enters at the open end, or evenly over the tooth face width where it "
+    "is given. Second-order finite elements.",
     "The error is the change from the mesh before, which is greater than what remains. Formula and elasticity are "
     "compared without calibration. The spread keeps the formula: scale it by the difference where that matters.",
     "The hub is held rigidly, so that a sharp corner there shows no notch, though a real one is a notch. Sharp corners "
@@ -33,7 +34,19 @@ _COLUMNS = (
     ("elasticity_hub_fillet_shear_MPa", "Peak at hub fillet [MPa]", "stress"),
     ("elasticity_junction_fillet_shear_MPa", "Peak at junction fillet [MPa]", "stress"),
 )
-_HEADER = len(NOTES) + 2
+_LOBE_NOTE = (
+    "Two lobes, of cups with a tooth face width, on a rigid, tightly fitting wave generator. Low: all engaged teeth "
+    "turn alike, the bearing holds the bore over its width. High: two single teeth carry everything, the bearing holds "
+    "the bore in its middle alone. The wave generator's fit is not included: a few µm of play can add 20 to 130 %, most "
+    "where no tooth rim is thicker than the wall."
+)
+_LOBE_COLUMNS = (
+    ("face_width_change_percent", "Change by the tooth face [%]", "0.00"),
+    ("two_lobe_low_arcmin", "Two lobes, low [arcmin]", "arcmin"),
+    ("two_lobe_high_arcmin", "Two lobes, high [arcmin]", "arcmin"),
+)
+"""What stands there where a variant has bounds for two lobes."""
+
 _NAME = 30
 _OVER = 1.25
 """Where the colours of a picture end, over the greatest stress by formula."""
@@ -49,16 +62,19 @@ def write_elasticity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> No
     sheet = book.sheet("Elasticity", landscape=False)
     sheet.write_string(0, 0, "Check by two-dimensional elasticity", book.format("title"))
     sheet.set_row(0, 28)
+    has_lobes = outcome.results["two_lobe_low_arcmin"].count() > 0
+    columns = (*_COLUMNS, *(_LOBE_COLUMNS if has_lobes else ()))
+    notes = (*NOTES, *((_LOBE_NOTE,) if has_lobes else ()))
     sheet.set_column(0, 0, 26)
-    sheet.set_column(1, len(_COLUMNS), 13)
-    for row, note in enumerate(NOTES, start=1):
-        sheet.merge_range(row, 0, row, len(_COLUMNS), note, book.format("wrap"))
+    sheet.set_column(1, len(columns), 13)
+    for row, note in enumerate(notes, start=1):
+        sheet.merge_range(row, 0, row, len(columns), note, book.format("wrap"))
         sheet.set_row(row, 32)
-    sheet.write_row(_HEADER, 0, ("Variant", *(heading for _, heading, _ in _COLUMNS)), book.format("header"))
-    sheet.set_row(_HEADER, 48)
+    header = row = len(notes) + 2
+    sheet.write_row(header, 0, ("Variant", *(heading for _, heading, _ in columns)), book.format("header"))
+    sheet.set_row(header, 48)
     if extent.large and extent.note:
-        sheet.write_string(_HEADER - 1, 0, extent.note, book.format("quiet"))
-    row = _HEADER
+        sheet.write_string(header - 1, 0, extent.note, book.format("quiet"))
     for record in (variant.row for variant in drawn) if extent.large else outcome.results.iter_rows(named=True):
         if record["windup_rad"] is None:
             continue
@@ -70,11 +86,11 @@ def write_elasticity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> No
         elastic = 2 * record["elasticity_windup_rad"] / ARCMIN
         meridian = elastic * (1 + record["elasticity_difference_percent"] / 100)
         values = {**record, "meridian": meridian, "elasticity": elastic}
-        for column, (key, _, number) in enumerate(_COLUMNS, start=1):
+        for column, (key, _, number) in enumerate(columns, start=1):
             if values[key] is not None:
                 sheet.write_number(row, column, values[key], book.format("text", number))
-    sheet.freeze_panes(_HEADER + 1, 1)
-    sheet.repeat_rows(_HEADER)
+    sheet.freeze_panes(header + 1, 1)
+    sheet.repeat_rows(header)
 
 
 def write_stress(book: Book, data: ReportData) -> None:

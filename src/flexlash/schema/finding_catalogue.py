@@ -1270,4 +1270,12 @@ CATALOGUE = _rules(
         "Nothing to do where a class of Tolerances names that sample; else add the column Sample.",
         "A measuring machine writes the parts of one sample into one file. A column Sample lets a file hold several.",
     ),
+    (
+        "I533",
+        "no bounds for two lobes",
+        "{place} {name} = {value} mm: without bounds for two lobes, since {detail}.",
+        "Nothing to do; the backlash counts the face width, its load even around the axis.",
+        "What two opposite arcs of engaged teeth change was checked against solid elasticity for cups on a rigid, "
+        "tightly fitting wave generator. For other parts flexlash gives no bounds instead of doubtful ones.",
+    ),
 )

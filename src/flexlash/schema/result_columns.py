@@ -311,6 +311,20 @@ ELASTICITY = (
         "MPa",
         "stress",
     ),
+    _angle(
+        "two_lobe_low",
+        "Two-lobe backlash low",
+        "Of cups with a tooth face width, on a rigid, tightly fitting wave generator: all engaged teeth turn alike. "
+        "What the wave generator's fit adds is not in it.",
+    ),
+    _angle("two_lobe_high", "Two-lobe backlash high", "The same where two single teeth carry the whole torque."),
+    _result(
+        "face_width_change_percent",
+        "Change by the tooth face",
+        "Backlash with the torque over the tooth face width, over that with the torque at the open end, minus one.",
+        "%",
+        "ratio",
+    ),
 )
 """Further columns of a run with --elasticity."""
 

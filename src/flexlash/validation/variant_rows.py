@@ -25,7 +25,7 @@ _REQUIREMENTS = {
     "load_inertia": "load_inertia_kg_m2",
     "backlash_limit": "backlash_limit",
     "bearing_width": "bearing_width",
-    "engaged_teeth": "engaged_teeth",
+    "engaged_teeth": "engaged_teeth_percent",
     "radial_deflection": "radial_deflection",
 }
 """What is asked of a variant: its name in the record, and that of its column without unit."""
