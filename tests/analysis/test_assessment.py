@@ -12,7 +12,7 @@ BORE = {"mean_radius_mm": "", "bore_diameter_mm": 128}
 PLAUSIBILITY = {f"W{number}" for number in (*range(418, 425), 440, 441)}
 """What `test_plausibility` looks at; odd rows that serve other rules have such findings as well."""
 
-ALONE = PLAUSIBILITY | {"E314", "E315", "W402", "W403", "W405", "W407", "W411", "W412", "W415", "I506"}
+ALONE = PLAUSIBILITY | {"E314", "E315", "W402", "W403", "W405", "W407", "W411", "W412", "W415", "W454", "I506"}
 
 
 @pytest.fixture
@@ -138,6 +138,18 @@ def test_resonance_within_usual_speeds(judge, inertia, told):
         low = 30 * (780_000 * (160 / 165.1) ** 3 / inertia) ** 0.5 / (2 * 3.141592653589793)
         span = [f"{float(f'{speed:.2g}'):.0f}" for speed in (low, row["resonance_speed_rpm"])]
         assert f"at {' to '.join(span)} rpm" in outcome.findings[0].message
+
+
+@pytest.mark.parametrize(("deflection", "told"), [(5.55, False), (5.65, True)])
+def test_bending_that_may_tire_the_part(judge, deflection, told):
+    """20Cr2Ni4 yields at 1080 MPa: a wall of 1.6 mm at 80 mm may tire from 432 MPa on, a deflection of 5.59 mm."""
+    outcome = judge({"radial_deflection_mm": deflection})
+    row = outcome.results.row(0, named=True)
+    bent = 1.5 * 211e3 * 1.6 * deflection / (80**2 * 0.91)
+    assert row["bending_stress_MPa"] == pytest.approx(bent, rel=1e-12)
+    assert row["alternating_stress_MPa"] == pytest.approx(bent * 0.79**0.5, rel=1e-12)
+    assert (row["alternating_stress_MPa"] > 0.4 * 1080) is told
+    assert _found(outcome) == [("W454", "radial_deflection_mm")][:told]
 
 
 def test_resonance_beyond_the_catalogue(judge):

@@ -123,6 +123,7 @@ def _variants(folder: Path) -> Made:
         {"notes": "n" * 1001},
         {"rated_torque_Nm": 1e9},
         {"tooth_face_width_mm": 165},
+        {"radial_deflection_mm": 6},
         {"notes": "moved by a comma"},
     )
     rows[0]["Customer"] = "Example Ltd"

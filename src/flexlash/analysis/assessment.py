@@ -40,6 +40,9 @@ _LEAST, _GREATEST = 1e-12, 10.0
 _USUAL_SPEED = 3000 * RPM
 """Input speed [rad/s] that usual motors reach."""
 
+_ENDURANCE = 0.4
+"""Alternating stress over yield strength from which a steel may tire: half the tensile strength, less a ground face."""
+
 _WIDE, _COARSE = 0.1, 0.02
 """Half the width of the limits as a share of the value: unusual for any dimension, too much for a thin part."""
 
@@ -123,6 +126,7 @@ def _numbers_are_fine(arrays: VariantArrays, numbers: pl.DataFrame) -> npt.NDArr
         ~((of["backlash"] > _LEAST) & (of["backlash"] < _GREATEST))
         | (refined & ((sizes["cylinder_calibration"] != 1) | (sizes["disk_calibration"] != 1)))
         | (of["von_mises"] > asked["yield_strength"])
+        | (of["alternating_stress"] > _ENDURANCE * asked["yield_strength"])
         | (of["wall_shear"] > of["buckling_shear"])
         | (sizes["torque"] > most)
         | (of["least_stiffness"] > of["stiffness"])
@@ -132,6 +136,7 @@ def _numbers_are_fine(arrays: VariantArrays, numbers: pl.DataFrame) -> npt.NDArr
 
 
 _LOOKED_AT = (
+    "alternating_stress",
     "backlash",
     "buckling_shear",
     "least_stiffness",
@@ -277,7 +282,7 @@ def _report_backlash(
 
 
 def _report_strength(ledger: Ledger, variant: Variant, nominal: NominalNumbers) -> None:
-    """Warn when the part yields or buckles, or else when its torque is above what drives of its size may bear."""
+    """Warn when the part yields, buckles or tires, or else where its torque is above that of drives of its size."""
     stress, strength = nominal.von_mises, variant.yield_strength
     shear, buckling = nominal.wall_shear, nominal.buckling_shear
     yields, buckles = strength is not None and stress > strength, buckling is not None and shear > buckling
@@ -286,6 +291,10 @@ def _report_strength(ledger: Ledger, variant: Variant, nominal: NominalNumbers) 
         ledger.add_at("W402", variant, "torque_Nm", **facts)
     if buckling is not None and buckles:
         ledger.add_at("W411", variant, "torque_Nm", value=_megapascals(shear), other=_megapascals(buckling))
+    alternating, key = nominal.alternating_stress, "radial_deflection_mm"
+    if strength is not None and alternating is not None and alternating > _ENDURANCE * strength:
+        facts = {"value": _megapascals(alternating), "other": strength / 1e6, "detail": f"{_ENDURANCE:g}"}
+        ledger.add_at("W454", variant, key, name=_name(key), **facts)
     listed, torque = catalogue_torque(nominal.mean_radius), variant.dimensions["torque"]
     if listed and torque > listed.torque and not (yields or buckles):
         facts = {"value": f"{torque:.10g}", "other": listed.torque, "detail": listed.size}
