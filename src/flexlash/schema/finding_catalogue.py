@@ -1115,7 +1115,7 @@ CATALOGUE = _rules(
         "{place} {name}: alternating stress {value} MPa exceeds {detail} of the yield strength {other} MPa.",
         "Take a thinner wall or rim, a smaller deflection or a stronger material; a thicker wall is bent harder.",
         "Twice a turn the wave generator bends wall and rim, which no torsion shows. Polished steels endure half of "
-        "their tensile strength, ground ones about 0.4 of their yield strength; tooth roots are notches and endure less.",
+        "their tensile strength, ground ones about 0.4 of the yield strength; tooth roots are notches and endure less.",
     ),
     (
         "I501",
