@@ -331,7 +331,7 @@ def test_elasticity_loads_the_tooth_face_too(lobed):
 def test_parts_without_bounds_say_why(lobed):
     """A hat, and a cup whose bearing reaches into the disk, are checked, and told why they have no bounds."""
     outcome, rows = lobed[0], _rows(lobed[0])
-    told = {found.variant: found.message for found in outcome.findings if found.code == "I533"}
+    told = {found.variant: found.message for found in outcome.findings if found.code == "I540"}
     assert set(told) == {"hat", "wide bearing"}
     assert "a hat is held at its bolt circle" in told["hat"]
     assert "bearing of the wave generator reaches into the disk" in told["wide bearing"]

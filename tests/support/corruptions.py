@@ -466,7 +466,7 @@ KINDS: tuple[Kind, ...] = (
     _relation("E311", "disk_outer_radius_mm", _HAT, lambda _: {"disk_outer_radius_mm": None}),
     _relation("E312", "hub_fillet_radius_mm", _has(hub_fillet_radius_mm=True),
               lambda _: {"hub_fillet_radius_mm": 40.0}),
-    _relation("E351", "tooth_face_width_mm", lambda _: True,
+    _relation("E360", "tooth_face_width_mm", lambda _: True,
               lambda row: {"tooth_face_width_mm": 1.2 * row["cylinder_length_mm"]}),
     _relation("E313", "junction_fillet_radius_mm", _has(hub_fillet_radius_mm=True),
               lambda _: {"junction_fillet_radius_mm": 110.0}),

@@ -294,7 +294,7 @@ def _report_strength(ledger: Ledger, variant: Variant, nominal: NominalNumbers) 
     alternating, key = nominal.alternating_stress, "radial_deflection_mm"
     if strength is not None and alternating is not None and alternating > _ENDURANCE * strength:
         facts = {"value": _megapascals(alternating), "other": strength / 1e6, "detail": f"{_ENDURANCE:g}"}
-        ledger.add_at("W454", variant, key, name=_name(key), **facts)
+        ledger.add_at("W460", variant, key, name=_name(key), **facts)
     listed, torque = catalogue_torque(nominal.mean_radius), variant.dimensions["torque"]
     if listed and torque > listed.torque and not (yields or buckles):
         facts = {"value": f"{torque:.10g}", "other": listed.torque, "detail": listed.size}

@@ -83,7 +83,7 @@ def _report_no_bounds(ledger: Ledger, variant: Variant) -> None:
     if width and problem:
         column = DIMENSIONS["tooth_face_width"]
         value = f"{width / column.si_unit.si:.10g}"
-        ledger.add_at("I533", variant, column.key, name=column.name, value=value, detail=problem)
+        ledger.add_at("I540", variant, column.key, name=column.name, value=value, detail=problem)
 
 
 def _bracket_problem(variant: Variant) -> str | None:

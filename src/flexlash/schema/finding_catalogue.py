@@ -723,7 +723,7 @@ CATALOGUE = _rules(
         "A dimension that all parts of a lot share cannot follow one that each of them has for itself.",
     ),
     (
-        "E351",
+        "E360",
         "tooth face too wide",
         "{place} {name} = {value} mm: at most {other} mm is required, the cylinder length without the junction fillet.",
         "Check tooth face width, cylinder length and fillet, and their units.",
@@ -1279,7 +1279,7 @@ CATALOGUE = _rules(
         "A measuring machine writes the parts of one sample into one file. A column Sample lets a file hold several.",
     ),
     (
-        "I533",
+        "I540",
         "no bounds for two lobes",
         "{place} {name} = {value} mm: without bounds for two lobes, since {detail}.",
         "Nothing to do; the backlash counts the face width, its load even around the axis.",

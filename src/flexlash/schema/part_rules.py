@@ -202,7 +202,7 @@ PART_RULES = (
         reached=Reached(kind="overlap", words="the cylinder length"),
     ),
     PartRule(
-        code="E351",
+        code="E360",
         dimension="tooth_face_width",
         words="tooth face and junction fillet exceed the length",
         broken=lambda row: (
