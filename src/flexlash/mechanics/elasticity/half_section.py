@@ -18,7 +18,7 @@ import numpy as np
 
 from flexlash.mechanics.elasticity.mesh_lines import across, graded, nodes_on
 from flexlash.mechanics.elasticity.part import SLACK, Part, part_of, section_problem
-from flexlash.mechanics.elasticity.ribs import ARC, LONG, disk_stretches, fan, ribs_of, wall_stretches
+from flexlash.mechanics.elasticity.ribs import ARC, disk_stretches, fan, ribs_of, wall_stretches
 from flexlash.schema.arrays import Array
 
 __all__ = ["HalfSection", "half_section", "section_of"]
@@ -169,7 +169,9 @@ def _floor(part: Part, refinement: int) -> tuple[Array, Array, Array]:
     width = part.clamp - part.outside
     thickness = float(part.thickness(np.array([part.outside]))[0])
     first, last = (part.grading.step(sharp=sharp, thickness=thickness) for sharp in (True, False))
-    flange = part.outside + width * nodes_on(graded(0.0, 1.0, first / width, last / width, LONG), refinement)
+    flange = part.outside + width * nodes_on(
+        graded(0.0, 1.0, first / width, last / width, part.grading.cells), refinement
+    )
     low = np.concatenate([low, flange[1:]])
     top = -(low - part.outside) * part.lean * (low > part.outside)
     return low, top - part.thickness(low), top

@@ -24,26 +24,28 @@ _FOIL = 1e-4
 
 @dataclass(frozen=True, kw_only=True)
 class Grading:
-    """How fine a mesh is: first steps over the thickness, longest step on the wall over √(r_m Δ).
+    """How fine a mesh is.
 
-    First steps are those at a sharp corner, where none is, and at a stop.
+    `corner`, `smooth` and `stop` are first steps over the thickness: at a sharp corner, where none is, and at a stop;
+    `longest` is the longest step on the wall over √(r_m Δ), `cells` the least number of cells along a stretch.
     """
 
     corner: float
     smooth: float
     stop: float
     longest: float
+    cells: int
 
     def step(self, *, sharp: bool, thickness: float) -> float:
         """Return the first mesh step at an end, from the thickness there."""
         return thickness * (self.corner if sharp else self.smooth)
 
 
-TORSION = Grading(corner=0.02, smooth=0.3, stop=0.3, longest=math.inf)
+TORSION = Grading(corner=0.02, smooth=0.3, stop=0.3, longest=math.inf, cells=6)
 """For the twist alone, which goes as the two-thirds power of the distance from a sharp corner."""
 
-BENDING = Grading(corner=0.3, smooth=0.5, stop=0.2, longest=1.5)
-"""For two lobes, which bend the wall over lengths of √(r_m Δ) from where the bearing ends; its corners cost 2e-4."""
+BENDING = Grading(corner=0.5, smooth=0.5, stop=0.2, longest=1.0, cells=2)
+"""For two lobes, which bend the wall over lengths of √(r_m Δ) from where the bearing ends; its corners cost 5e-4."""
 
 
 @dataclass(frozen=True, kw_only=True)

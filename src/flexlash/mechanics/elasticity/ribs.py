@@ -12,13 +12,10 @@ from flexlash.mechanics.elasticity.mesh_lines import Lines, graded, nodes_on
 from flexlash.mechanics.elasticity.part import SLACK, Part
 from flexlash.schema.arrays import Array
 
-__all__ = ["ARC", "LONG", "disk_stretches", "fan", "ribs_of", "wall_stretches"]
+__all__ = ["ARC", "disk_stretches", "fan", "ribs_of", "wall_stretches"]
 
 ARC = 6
 """Cells along a fillet."""
-
-LONG = 6
-"""Least number of cells along a stretch of the meridian."""
 
 RibsAt = Callable[[Array], tuple[Array, Array, Array, Array]]
 """Outer radius and height, inner radius and height of ribs at fractions from 0 to 1 of a stretch."""
@@ -48,7 +45,7 @@ def disk_stretches(part: Part, end: float) -> Iterator[tuple[Lines, RibsAt]]:
 
         first = part.grading.step(sharp=part.lean > 0, thickness=at_hub) / (start * stretch)
         last = part.grading.step(sharp=not part.junction_fillet, thickness=at_end) / (end * stretch)
-        yield graded(0.0, 1.0, first, last, LONG), body
+        yield graded(0.0, 1.0, first, last, part.grading.cells), body
 
 
 def fan(part: Part) -> Iterator[tuple[Lines, RibsAt]]:
@@ -81,7 +78,7 @@ def wall_stretches(part: Part) -> Iterator[tuple[Lines, RibsAt]]:
             return np.full_like(fraction, part.outside), height, np.full_like(fraction, part.bore), height
 
         first, last = (marks[height] / (high - low) for height in (low, high))
-        least = max(LONG, math.ceil((high - low) / longest))
+        least = max(part.grading.cells, math.ceil((high - low) / longest - SLACK))
         yield graded(0.0, 1.0, first, last, least), straight
 
 
