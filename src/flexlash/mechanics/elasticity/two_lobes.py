@@ -141,8 +141,8 @@ def two_lobe_bracket(
         width unless given, about the middle of the tooth face; engaged_share of all teeth [-].
     Valid: linear elasticity, cups, small lobes; raises ValueError where `bracket_problem` names a problem, TypeError or
         ValueError, with its name, for an argument that is none. With every cell of the mesh halved the low bound
-        changes by less than 6e-4, the high one by less than 4e-3. The play between bore and bearing is in neither: a few
-        µm of it can add 20 to 130 %.
+        changes by less than 6e-4, the high one by less than 4e-3. The play between bore and bearing is in neither: a
+        few µm of it can add 20 to 130 %.
     Source: elasticity of bodies of revolution in Fourier series; checked against a solid finite-element model.
 
     >>> from flexlash.mechanics.elasticity import is_available
