@@ -18,6 +18,7 @@ from flexlash.mechanics.elasticity.tooth_loads import (
     engaged_arc,
     half_sine_ratios,
     lobe_factor,
+    rigid_contact_factor,
     uniform_ratios,
 )
 from flexlash.mechanics.elasticity.twist import elasticity_check, unit_twist
@@ -129,6 +130,15 @@ def test_bounds_order(size):
     assert (bracket.low, bracket.high) == (bracket.even * found.low, bracket.even * found.high)
     assert bracket.even == pytest.approx(sum(windups("cup", size).values()), rel=1e-14)
     assert bracket.face_factor < 1
+
+
+def test_what_the_bounds_are_made_of():
+    """High is two single teeth, 1 + 2 Σ ρ_n, on a bearing a twentieth as wide; low is rigid contact on the whole one."""
+    found, narrow = factors(CUP, bearing_width=0.006), factors(CUP, bearing_width=0.0003)
+    assert found.on_mid_line == pytest.approx(narrow.held, rel=1e-2)
+    assert found.high == pytest.approx(1 + 2 * all_compliances(SOLVED, found.on_mid_line).sum(), rel=1e-12)
+    rigid = rigid_contact_factor(HARMONICS, all_compliances(SOLVED, found.held), math.radians(27))
+    assert found.low == pytest.approx(rigid, rel=1e-9)
 
 
 @pytest.mark.slow
