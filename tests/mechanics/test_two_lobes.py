@@ -133,7 +133,7 @@ def test_bounds_order(size):
 
 
 def test_what_the_bounds_are_made_of():
-    """High is two single teeth, 1 + 2 Σ ρ_n, on a bearing a twentieth as wide; low is rigid contact on the whole one."""
+    """High is two single teeth, 1 + 2 Σ ρ_n, on a twentieth of the bearing; low is rigid contact on the whole of it."""
     found, narrow = factors(CUP, bearing_width=0.006), factors(CUP, bearing_width=0.0003)
     assert found.on_mid_line == pytest.approx(narrow.held, rel=1e-2)
     assert found.high == pytest.approx(1 + 2 * all_compliances(SOLVED, found.on_mid_line).sum(), rel=1e-12)
