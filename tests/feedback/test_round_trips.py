@@ -155,7 +155,7 @@ def _columns(sheet):
 def _notes(sheet):
     return {
         cell.coordinate: cell.comment.text.strip()
-        for row in sheet["A1:Z60"]
+        for row in sheet["A1:AD60"]
         for cell in row
         if cell.comment is not None
     }
@@ -206,7 +206,7 @@ def test_rules_of_cells_are_kept(books):
     _, before, after = books
     for sheet in before:
         assert _rules(after[sheet.title]) == _rules(sheet)
-    assert sum(len(_rules(sheet)) for sheet in before) == (82 if "Measurements" in before.sheetnames else 57)
+    assert sum(len(_rules(sheet)) for sheet in before) == (87 if "Measurements" in before.sheetnames else 61)
 
 
 def test_lists_are_kept(books):
@@ -227,8 +227,8 @@ def test_colours_by_rule_are_kept(books):
 def test_no_colour_depends_on_another_being_skipped(books):
     """The two colours of the status never apply to the same cell, since programs forget which rule stops the next."""
     _, _, after = books
-    status = [rule for rule in _colours(after["Variants"]) if rule[0].startswith("X5")]
-    assert {rule[2][0] for rule in status} == {'$X5="complete"', 'AND(LEN($X5)>0,$X5<>"complete")'}
+    status = [rule for rule in _colours(after["Variants"]) if rule[0].startswith("AB5")]
+    assert {rule[2][0] for rule in status} == {'$AB5="complete"', 'AND(LEN($AB5)>0,$AB5<>"complete")'}
 
 
 def test_locks_are_kept(books):
@@ -254,7 +254,7 @@ def test_notes_are_kept(books):
     _, before, after = books
     for sheet in before:
         assert _notes(after[sheet.title]) == _notes(sheet)
-    assert len(_notes(after["Variants"])) == 24
+    assert len(_notes(after["Variants"])) == 28
 
 
 def test_pages_are_kept(books):

@@ -221,8 +221,8 @@ def test_without_a_bearing_the_cup_is_far_softer():
 
 
 REFUSED = {
-    "hat": ("hat", {"disk_outer_radius": 0.04}, {}, "cups alone; a hat is held at its bolt circle"),
-    "cylinder": ("cylinder", {}, {}, "cups alone; a cylinder is held at the end of its wall"),
+    "hat": ("hat", {"disk_outer_radius": 0.04}, {}, "only cups have been checked; a hat is held at its bolt circle"),
+    "cylinder": ("cylinder", {}, {}, "only cups have been checked; a cylinder is held at the end of its wall"),
     "no face width": ("cup", {"tooth_face_width": 0.0}, {}, "the tooth face width is not given"),
     "rubber": ("cup", {"poisson_ratio": 0.499}, {}, "so incompressible a material cannot be solved"),
     "wide bearing": ("cup", {}, {"bearing_width": 0.055}, "bearing of the wave generator reaches into the disk"),

@@ -1281,7 +1281,7 @@ CATALOGUE = _rules(
     (
         "I540",
         "no bounds for two lobes",
-        "{place} {name} = {value} mm: without bounds for two lobes, since {detail}.",
+        "{place} {name} = {value} mm: no bounds for two lobes, since {detail}.",
         "Nothing to do; the backlash counts the face width, its load even around the axis.",
         "What two opposite arcs of engaged teeth change was checked against solid elasticity for cups on a rigid, "
         "tightly fitting wave generator. For other parts flexlash gives no bounds instead of doubtful ones.",

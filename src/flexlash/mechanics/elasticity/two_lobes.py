@@ -106,7 +106,7 @@ def _problems(
     """Yield why there are no bounds; each reason needs that there is none before it."""
     if flexspline_type != "cup":
         held = "at its bolt circle" if flexspline_type == "hat" else "at the end of its wall"
-        yield f"two lobes have been checked for cups alone; a {flexspline_type} is held {held}"
+        yield f"only cups have been checked; a {flexspline_type} is held {held}"
     if not dimensions.get("tooth_face_width"):
         yield "the tooth face width is not given"
     if poisson is None:
