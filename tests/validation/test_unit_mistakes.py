@@ -387,9 +387,9 @@ def test_yield_outweighs_the_catalogue(judge):
     ("name", "expected"),
     [
         ("b3-160-calibrated", []),
-        ("b3-160-proof", ["W423 U5", "W423 U6", "W423 U7"]),
-        ("b3-160-study", ["W423 U7", "W423 U9", "W423 U10"]),
-        ("catalogue-sizes", ["W423 U17"]),
+        ("b3-160-proof", ["W423 Y5", "W423 Y6", "W423 Y7"]),
+        ("b3-160-study", ["W423 Y7", "W423 Y9", "W423 Y10"]),
+        ("catalogue-sizes", ["W423 Y17"]),
         ("needs-fixing", []),
     ],
 )

@@ -197,6 +197,7 @@ VARIANTS = (
         **LENGTH,
         group="Wave generator",
         since=5,
+        usual=(0.5, 200),
         also_called="bearingwidth wavegeneratorwidth wälzlagerbreite lagerbreite",
     ),
     _requirement(
@@ -219,6 +220,7 @@ VARIANTS = (
         **LENGTH,
         group="Wave generator",
         since=5,
+        usual=(0.01, 10),
         also_called="radialdeflection deflection radialdeformation w0",
     ),
     _requirement(
