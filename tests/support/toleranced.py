@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flexlash.schema.columns import DIMENSIONS
+from flexlash.analysis.tolerance_spread import FIRST_INPUTS, LATER_INPUTS
 from flexlash.tolerance.dimension_limits import Limits
 from flexlash.tolerance.row_batches import TolerancedRow, batch_statistics
 from flexlash.tolerance.sampling import SamplingPlan
@@ -12,7 +12,8 @@ __all__ = ["SUM", "SUM_LIMITS", "SUM_NAMES", "every_number", "plan", "row", "sta
 
 def plan(method="line", samples=None, seed=0, **rest):
     """Return a plan for rows of any dimensions."""
-    return SamplingPlan(method=method, inputs=tuple(DIMENSIONS), samples=samples, seed=seed, **rest)
+    drawn = {"inputs": FIRST_INPUTS, "later_inputs": LATER_INPUTS}
+    return SamplingPlan(method=method, samples=samples, seed=seed, **drawn, **rest)
 
 
 def row(model, nominal, limits, upper_limit=None):

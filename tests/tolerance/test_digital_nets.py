@@ -119,3 +119,13 @@ def test_coordinates_beyond_the_direction_numbers_are_independent_points():
     assert kstest(beyond.ravel(), "uniform").pvalue > 1e-4
     correlation = np.corrcoef(beyond) - np.eye(6)
     assert np.abs(correlation).max() < 5 / np.sqrt(beyond.shape[1])
+
+
+def test_later_coordinates_leave_the_others_alone():
+    """Coordinates that are drawn later are part of one net with the others, which have the same points without them."""
+    alone = scrambled_net(3, 2, 64, np.random.default_rng(5))
+    points = scrambled_net(3, 2, 64, np.random.default_rng(5), later=2)
+    assert np.array_equal(points[:3], alone)
+    for pair in ((0, 3), (2, 4), (3, 4)):
+        cells = np.floor(points[list(pair), 0] * 4)
+        assert np.bincount((4 * cells[0] + cells[1]).astype(int), minlength=16).tolist() == [4] * 16, pair

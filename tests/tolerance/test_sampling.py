@@ -156,3 +156,16 @@ def test_a_number_of_points_below_one_is_refused(method):
     """At least one point must be asked for."""
     with pytest.raises(ValueError, match="at least 1"):
         points_of(method, samples=0)
+
+
+@pytest.mark.parametrize("method", ["sobol", "random"])
+def test_names_that_came_later_leave_the_others_alone(method):
+    """A dimension that a later version brings changes no point of those that there were."""
+    alone = UnitPoints(["a", "b"], method=method, samples=1024, seed=3)
+    more = UnitPoints(["a", "b"], method=method, samples=1024, seed=3, later=["c"])
+    inputs = {"a": Uniform(0, 1), "b": Uniform(0, 1)}
+    for points in ("all", "leading", "second"):
+        ours, theirs = alone.standards(inputs, points=points), more.standards(inputs, points=points)
+        assert all(np.array_equal(ours[name], theirs[name]) for name in inputs), points
+    first, second = (more.standard("c", Uniform(0, 1), points) for points in ("leading", "second"))
+    assert abs(np.corrcoef(first.ravel(), second.ravel())[0, 1]) < 0.2

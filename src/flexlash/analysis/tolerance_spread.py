@@ -20,7 +20,23 @@ from flexlash.tolerance.sampling import SamplingPlan
 from flexlash.tolerance.spread_statistics import SpreadStatistics
 from flexlash.workers import mapped
 
-__all__ = ["drawn_curves", "first_orders", "row_curves", "row_statistics", "spread_again", "spread_of"]
+__all__ = [
+    "FIRST_INPUTS",
+    "LATER_INPUTS",
+    "drawn_curves",
+    "first_orders",
+    "row_curves",
+    "row_statistics",
+    "spread_again",
+    "spread_of",
+]
+
+_FIRST_VERSIONS = 4
+"""Template versions whose dimensions draw their points first: those of later ones leave the points of these alone."""
+
+FIRST_INPUTS = tuple(name for name, column in DIMENSIONS.items() if column.since <= _FIRST_VERSIONS)
+LATER_INPUTS = tuple(name for name in DIMENSIONS if name not in FIRST_INPUTS)
+"""The dimensions in the order in which their points are drawn."""
 
 Found: TypeAlias = tuple[int, SpreadStatistics]
 """A row's index, or its number, with its statistics."""
@@ -135,7 +151,8 @@ def _curves(rows: Sequence[tuple[TolerancedRow, SpreadStatistics]], plan: Sampli
 def _plan(settings: Settings, options: Options) -> SamplingPlan:
     return SamplingPlan(
         method=settings.method,
-        inputs=tuple(DIMENSIONS),
+        inputs=FIRST_INPUTS,
+        later_inputs=LATER_INPUTS,
         samples=settings.samples,
         seed=settings.seed,
         coverage=settings.coverage_percent / 100,

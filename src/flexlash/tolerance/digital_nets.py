@@ -55,11 +55,12 @@ def _strata(count: int) -> npt.NDArray[np.intp]:
     return (words >> np.uint32(_BITS - bits) if bits else words).astype(np.intp)
 
 
-def scrambled_net(width: int, replicates: int, count: int, generator: np.random.Generator) -> Array:
-    """Return points inside the unit cube, (width, replicates, count).
+def scrambled_net(width: int, replicates: int, count: int, generator: np.random.Generator, *, later: int = 0) -> Array:
+    """Return points inside the unit cube, (width + later, replicates, count).
 
     Equation: the digital net of Joe and Kuo's direction numbers, its binary digits permuted nestedly at random
-    Arguments: coordinates, independent replicates, points in each, a power of two; the source of randomness.
+    Arguments: coordinates, independent replicates, points in each, a power of two; the source of randomness; `later`
+        coordinates, drawn after the others, which have the same points with and without them.
     Valid: the first 64 coordinates are a net; beyond them points are independent.
     Source: Joe and Kuo 2008; Owen 1995.
 
@@ -67,9 +68,12 @@ def scrambled_net(width: int, replicates: int, count: int, generator: np.random.
     >>> np.sort(points * 4, axis=2).astype(int).tolist()
     [[[0, 1, 2, 3], [0, 1, 2, 3]]]
     """
-    known = min(width, COORDINATES)
-    flips = generator.integers(2, size=(known, replicates, count), dtype=np.int32)
-    points = generator.random((width, replicates, count))
+    flips, points = _drawn(width, replicates, count, generator)
+    if later:
+        others = _drawn(later, replicates, count, generator)
+        flips, points = np.concatenate([flips, others[0]]), np.concatenate([points, others[1]])
+    known = min(width + later, COORDINATES)
+    flips = flips[:known]
     strata = np.zeros((known, replicates, 1), dtype=np.int32)
     while (filled := strata.shape[2]) < count:
         # Each stratum is halved, and its halves are exchanged or not by a coin of its own.
@@ -82,3 +86,11 @@ def scrambled_net(width: int, replicates: int, count: int, generator: np.random.
         points[coordinate] += strata[coordinate].take(order[coordinate], axis=1)
     points[:known] /= count
     return np.clip(points, 2.0**-53, 1 - 2.0**-53)
+
+
+def _drawn(
+    width: int, replicates: int, count: int, generator: np.random.Generator
+) -> tuple[npt.NDArray[np.int32], Array]:
+    """Return a coin for every half of a stratum, and where in its last stratum each point lies."""
+    flips = generator.integers(2, size=(min(width, COORDINATES), replicates, count), dtype=np.int32)
+    return flips, generator.random((width, replicates, count))

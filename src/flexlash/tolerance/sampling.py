@@ -54,14 +54,16 @@ _CACHED_SHAPES = 256
 class SamplingPlan:
     """How the spread of rows is sampled; two equal plans give every row the same numbers.
 
-    `inputs` names all that may vary in any row; `samples` counts the lines or points in all, None for as many as the
-    method needs. `coverage` is the probability of the coverage interval, `acceptable` the share of parts over the limit
+    `inputs` names all that may vary in any row, `later_inputs` those that were added since: their points are drawn
+    after the others', which keep theirs; `samples` counts the lines or points in all, None for as many as the method
+    needs. `coverage` is the probability of the coverage interval, `acceptable` the share of parts over the limit
     from which a lot fails. `cross_check` puts plain Monte Carlo beside the method. Without `shares` nobody asks which
     input causes how much, which takes about as long as all else where inputs are correlated.
     """
 
     method: Method
     inputs: tuple[str, ...]
+    later_inputs: tuple[str, ...] = ()
     samples: int | None = None
     seed: int = 0
     coverage: float = 0.95
@@ -72,13 +74,15 @@ class SamplingPlan:
     def points(self, method: PointMethod) -> UnitPoints:
         """Return the points of a method, drawn once a process; another method than the plan's takes its default."""
         samples = self.samples if method == self.method else None
-        return _drawn(self.inputs, method=method, samples=samples, seed=self.seed)
+        return _drawn(self.inputs, self.later_inputs, method=method, samples=samples, seed=self.seed)
 
 
 @lru_cache(maxsize=2)
-def _drawn(names: tuple[str, ...], *, method: PointMethod, samples: int | None, seed: int) -> UnitPoints:
+def _drawn(
+    names: tuple[str, ...], later: tuple[str, ...], *, method: PointMethod, samples: int | None, seed: int
+) -> UnitPoints:
     """Return points; those of one plan's two methods are kept."""
-    return UnitPoints(names, method=method, samples=samples, seed=seed)
+    return UnitPoints(names, method=method, samples=samples, seed=seed, later=later)
 
 
 def standard_error(replicates: Array) -> Array:
@@ -128,10 +132,19 @@ class UnitPoints:
     """Points in the unit cube, one coordinate per name, as arrays of shape (replicates, points).
 
     `all` of them make the spread. The shares of variance cross their leading part, `leading`, with a second
-    independent set of the same length, `second`. Raises ValueError for less than one sample.
+    independent set of the same length, `second`. `later` names have points drawn after those of the others. Raises
+    ValueError for less than one sample.
     """
 
-    def __init__(self, names: Sequence[str], *, method: PointMethod, samples: int | None, seed: int) -> None:
+    def __init__(
+        self,
+        names: Sequence[str],
+        *,
+        method: PointMethod,
+        samples: int | None,
+        seed: int,
+        later: Sequence[str] = (),
+    ) -> None:
         total = DEFAULT_SAMPLES[method] if samples is None else samples
         if total < 1:
             raise ValueError(f"samples = {total} must be at least 1")
@@ -139,13 +152,15 @@ class UnitPoints:
         self.count = 1 << max(0, -(-total // REPLICATES) - 1).bit_length()
         self.share_count = min(self.count, _SHARE_POINTS)
         draw = _sobol if method == "sobol" else _random
-        width = len(names)
-        points = draw(2 * width, self.count, np.random.default_rng(seed))
+        points = draw(2 * len(names), self.count, np.random.default_rng(seed), 2 * len(later))
+        every = [*names, *names, *later, *later]
+        first = {name: points[every.index(name)] for name in (*names, *later)}
+        last = {name: points[len(every) - 1 - every[::-1].index(name)] for name in first}
         leading = slice(self.share_count)
         self._sets: dict[PointSet, dict[str, Array]] = {
-            "all": dict(zip(names, points[:width], strict=True)),
-            "leading": _contiguous(names, points[:width, :, leading]),
-            "second": _contiguous(names, points[width:, :, leading]),
+            "all": first,
+            "leading": {name: np.ascontiguousarray(values[:, leading]) for name, values in first.items()},
+            "second": {name: np.ascontiguousarray(values[:, leading]) for name, values in last.items()},
         }
         self._standard: dict[tuple[PointSet, str, tuple[str | float, ...]], Array] = {}
 
@@ -185,16 +200,11 @@ class UnitPoints:
         return values
 
 
-def _contiguous(names: Sequence[str], points: Array) -> dict[str, Array]:
-    """Return points by name, each in memory of its own."""
-    return {name: np.ascontiguousarray(values) for name, values in zip(names, points, strict=True)}
+def _sobol(width: int, count: int, generator: np.random.Generator, later: int) -> Array:
+    """Return scrambled Sobol' points (width + later, replicates, count)."""
+    return scrambled_net(width, REPLICATES, count, generator, later=later)
 
 
-def _sobol(width: int, count: int, generator: np.random.Generator) -> Array:
-    """Return scrambled Sobol' points (width, replicates, count)."""
-    return scrambled_net(width, REPLICATES, count, generator)
-
-
-def _random(width: int, count: int, generator: np.random.Generator) -> Array:
-    """Return independent uniform points (width, replicates, count), none of them on a face of the cube."""
-    return np.clip(generator.random((width, REPLICATES, count)), 2.0**-53, 1 - 2.0**-53)
+def _random(width: int, count: int, generator: np.random.Generator, later: int) -> Array:
+    """Return independent uniform points (width + later, replicates, count), none of them on a face of the cube."""
+    return np.clip(generator.random((width + later, REPLICATES, count)), 2.0**-53, 1 - 2.0**-53)
