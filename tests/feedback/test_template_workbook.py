@@ -18,6 +18,7 @@ from flexlash.feedback.template.variant_status import VARIANT_STATUS
 from flexlash.reading.raw import ErrorCell
 from flexlash.schema.columns import ENTRY_SHEETS, OPTIONAL_SHEETS, VARIANTS
 from flexlash.schema.part_rules import PART_RULES
+from flexlash.validation.template_versions import TEMPLATE_VERSION
 
 HAT = {"flexspline_type": "hat", "disk_inner_radius_mm": None, "disk_outer_radius_mm": 120.0}
 TUBE = {"flexspline_type": "cylinder", "disk_inner_radius_mm": None}
@@ -255,7 +256,7 @@ def test_nothing_is_merged_in_entry_tables(empty):
 def test_the_version_is_stamped_twice(empty):
     """The template's version stands in a visible cell and in a document property."""
     texts = [cell.value for row in empty["Variants"]["A1:W2"] for cell in row]
-    assert "Template version 4" in texts
+    assert f"Template version {TEMPLATE_VERSION}" in texts
     properties = {one.name: one.value for one in empty.custom_doc_props.props}
     assert properties == {"flexlash": "template", "flexlash_template_version": "4"}
 

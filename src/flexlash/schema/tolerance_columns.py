@@ -14,9 +14,12 @@ from flexlash.schema.variant_columns import VARIANTS
 
 __all__ = ["CORRELATIONS", "MEASUREMENTS", "TOLERANCES"]
 
+_FIRST = 4
+"""Template version that brought the optional sheets."""
+
 _tolerance: Callable[..., Column] = partial(Column.entry, "Tolerances")
-_measurement: Callable[..., Column] = partial(Column.entry, "Measurements", since=4)
-_correlation: Callable[..., Column] = partial(Column.entry, "Correlations", since=4)
+_measurement: Callable[..., Column] = partial(Column.entry, "Measurements", since=_FIRST)
+_correlation: Callable[..., Column] = partial(Column.entry, "Correlations", since=_FIRST)
 
 TOLERANCES = (
     _tolerance(
@@ -197,7 +200,7 @@ MEASUREMENTS = (
             help=f"{column.plain_name} of each measured part; blank where it was not measured.",
             unit=column.unit,
             quantity=column.quantity,
-            since=4,
+            since=max(_FIRST, column.since),
             also_called=column.also_called,
         )
         for column in VARIANTS
