@@ -16,6 +16,7 @@ from flexlash.analysis.class_correlations import class_correlations
 from flexlash.analysis.computed import ComputedRows, Nominal
 from flexlash.analysis.process_checks import processes_are_usual, report_processes
 from flexlash.analysis.sample_findings import report_samples
+from flexlash.mechanics.bending import ENDURANCE
 from flexlash.mechanics.nominal import nominal_numbers
 from flexlash.mechanics.nominal_record import NominalNumbers
 from flexlash.mechanics.stiffness import catalogue_torque
@@ -39,9 +40,6 @@ _LEAST, _GREATEST = 1e-12, 10.0
 
 _USUAL_SPEED = 3000 * RPM
 """Input speed [rad/s] that usual motors reach."""
-
-_ENDURANCE = 0.4
-"""Alternating stress over yield strength from which a steel may tire: half the tensile strength, less a ground face."""
 
 _WIDE, _COARSE = 0.1, 0.02
 """Half the width of the limits as a share of the value: unusual for any dimension, too much for a thin part."""
@@ -126,7 +124,7 @@ def _numbers_are_fine(arrays: VariantArrays, numbers: pl.DataFrame) -> npt.NDArr
         ~((of["backlash"] > _LEAST) & (of["backlash"] < _GREATEST))
         | (refined & ((sizes["cylinder_calibration"] != 1) | (sizes["disk_calibration"] != 1)))
         | (of["von_mises"] > asked["yield_strength"])
-        | (of["alternating_stress"] > _ENDURANCE * asked["yield_strength"])
+        | (of["alternating_stress"] > ENDURANCE * asked["yield_strength"])
         | (of["wall_shear"] > of["buckling_shear"])
         | (sizes["torque"] > most)
         | (of["least_stiffness"] > of["stiffness"])
@@ -292,8 +290,8 @@ def _report_strength(ledger: Ledger, variant: Variant, nominal: NominalNumbers) 
     if buckling is not None and buckles:
         ledger.add_at("W411", variant, "torque_Nm", value=_megapascals(shear), other=_megapascals(buckling))
     alternating, key = nominal.alternating_stress, "radial_deflection_mm"
-    if strength is not None and alternating is not None and alternating > _ENDURANCE * strength:
-        facts = {"value": _megapascals(alternating), "other": strength / 1e6, "detail": f"{_ENDURANCE:g}"}
+    if strength is not None and alternating is not None and alternating > ENDURANCE * strength:
+        facts = {"value": _megapascals(alternating), "other": strength / 1e6, "detail": f"{ENDURANCE:g}"}
         ledger.add_at("W460", variant, key, name=_name(key), **facts)
     listed, torque = catalogue_torque(nominal.mean_radius), variant.dimensions["torque"]
     if listed and torque > listed.torque and not (yields or buckles):

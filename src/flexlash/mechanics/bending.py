@@ -5,7 +5,10 @@ from __future__ import annotations
 from flexlash.mechanics.elementary import sqrt
 from flexlash.schema.arrays import Quantity
 
-__all__ = ["alternating_stress", "bending_stress", "combined_stress"]
+__all__ = ["ENDURANCE", "alternating_stress", "bending_stress", "combined_stress"]
+
+ENDURANCE = 0.4
+"""Alternating stress over yield strength from which a steel may tire: half the tensile strength, less a ground face."""
 
 
 def bending_stress(
