@@ -42,7 +42,7 @@ SHEETS = {
     "Samples": "What the measured parts tell of each dimension: mean, scatter, Cp, Cpk with 95 % intervals, normality.",
     "Sections": "Where along the part the nominal backlash arises.",
     "Strength": "Stress in each section, when it yields or buckles, how stiff the part is.",
-    "Elasticity": "The formula beside two-dimensional elasticity.",
+    "Elasticity": "The formula beside two-dimensional elasticity, and the bounds under two lobes.",
     "Stress": "Shear stress in the half-section of the worst checked variants, as pictures.",
     "Findings": "What was found in the submission: each rule with its mend, then every cell.",
     "Submission": "Sheet Variants as read, cell by cell; coloured cells say in a comment what is wrong.",
@@ -66,10 +66,17 @@ TABS = "Sheets with orange tabs have yellow cells to change; sheets with grey ta
 MODEL = (
     "Backlash here is the lag of the output when the torque reverses: twice the torsional wind-up U of the flexspline.",
     "U = T/(2πG) ∫ ds/(r³ t) along the meridian: tooth rim, wall, junction fillet, disk or flange, hub fillet.",
+    "With a tooth face width the torque enters over it from the open end on, and the band of the teeth counts a third: "
+    "2 to 7 % less wind-up with a thickened tooth rim, 7 to 18 % without. Blank: it enters at the open end.",
     "Without refinements this is U_cylinder = T l/(G 2π r_m³ Δ) plus U_disk = T/(4π t G) (1/r_ci² − 1/r_co²).",
     "G = E/(2(1 + ν)) unless the material gives G. The wall is thin; its torsion constant is low by (Δ/2r_m)².",
     "A disk that thins as a power of the radius: t = t_hub (r_ci/r)^n. A cone winds up 1/sin of its angle as much.",
     "Shear stress T/(2π r² t); von Mises √3 times it; wall buckling by NASA SP-8007 with its knock-down factor 0.67.",
+    "Bending: the wave generator presses the wall out of round by w₀ cos 2θ, twice a turn: 1.5 E Δ w₀/(r_m² (1 − ν²)), "
+    "without coning of the mouth and notches. All other stresses are of torsion only.",
+    "Two lobes, with --elasticity, of cups with a tooth face width: a bracket from harmonics of elasticity on a rigid, "
+    "tight wave generator. Low: all engaged teeth turn alike, the bore is held over the bearing's width. High: two "
+    "single teeth carry everything, the bore is held in the bearing's middle alone. There is no factor for two lobes.",
     "A blank disk thickness is the wall thickness and a blank disk radius the mean radius: one dimension, one scatter.",
 )
 PROOF = (
@@ -85,8 +92,11 @@ PROOF = (
     "factors contain fillets and rim already; relative to the finite elements the formula is 10.0 and 7.07 % high.",
 )
 LEFT_OUT = (
-    "Buckling of the disk; notches, except the fillets' peaks in the elasticity check; fatigue; an elastic hub.",
-    "Load entering in two lobes instead of evenly: one published shell model finds 0.6 of the axisymmetric stiffness.",
+    "Buckling of the disk; notches, except the fillets' peaks in the elasticity check; an elastic hub; fatigue, except "
+    "the warning of an alternating stress.",
+    "Two lobes, but for that bracket: backlash and its spread count the load as even around the axis.",
+    "The wave generator's fit: radial play of a few µm, or a soft bearing, can add 20 to 130 %, most without a "
+    "thickened tooth rim. It is not known from a drawing of the flexspline, and in no number here.",
     "Hub bolts, wave generator bearing and teeth: the wind-up is a lower bound on the drive's total compliance.",
     "Tooth clearance, radial play, couplings and hysteresis: they come on top of this backlash.",
     "Plastic deformation: a von Mises stress above yield is flagged, the number stays elastic.",
