@@ -29,6 +29,7 @@ from flexlash.report.wording.sentences import cause_of
 from flexlash.report.wording.summary_facts import SummaryFacts, rough
 from flexlash.report.wording.verdict import light, straddled
 from flexlash.report.wording.verdict_sentences import extremes, judged
+from flexlash.report.wording.wave_generator import BENDING, TWO_LOBES, bending_of, two_lobes_of
 from flexlash.schema.columns import DIMENSIONS, Column
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import Finding, shown
@@ -59,10 +60,12 @@ _NUMBERS = (
     "ppk", "ppk_normal", "interaction_share", "disk_share", "cylinder_only_backlash_arcmin",
     "two_term_backlash_arcmin", "lost_motion_arcmin", "drive_lost_motion_arcmin", "stiffness_Nm_per_rad",
     "stiffness_Nm_per_arcmin", "catalogue_stiffness_Nm_per_rad", "wall_shear_MPa", "rim_shear_MPa", "hub_shear_MPa",
-    "hub_shear_radius_mm", "von_mises_MPa", "governing_section", "elastic_limit_torque_Nm", "buckling_shear_MPa",
+    "hub_shear_radius_mm", "von_mises_MPa", "bending_stress_MPa", "rim_bending_stress_MPa", "alternating_stress_MPa",
+    "combined_stress_MPa", "governing_section", "elastic_limit_torque_Nm", "buckling_shear_MPa",
     "buckling_range", "natural_frequency_Hz", "resonance_speed_rpm", "cross_check", "cross_check_deviation",
     "elasticity_difference_percent", "elasticity_error_percent", "elasticity_hub_fillet_shear_MPa",
-    "elasticity_junction_fillet_shear_MPa", "spread_method", "spread_points", "spread_note",
+    "elasticity_junction_fillet_shear_MPa", "face_width_change_percent", "two_lobe_low_arcmin", "two_lobe_high_arcmin",
+    "spread_method", "spread_points", "spread_note",
 )  # fmt: skip
 """Results that a variant's own page has, in the order in which a reader wants them."""
 
@@ -111,6 +114,9 @@ def _sentences(facts: SummaryFacts, variant: Drawn) -> Iterator[Sentence]:
         for topic, text in (("What to tighten", tighter), ("What to stiffen", stiffer)):
             if text:
                 yield Sentence(topic=topic, text=text, kind="advice")
+    for topic, told in ((BENDING, bending_of(row)), (TWO_LOBES, two_lobes_of(row))):
+        if text := " ".join(told):
+            yield Sentence(topic=topic, text=text, kind="note")
 
 
 def _density(variant: Drawn) -> Density:

@@ -18,6 +18,7 @@ from flexlash.report.wording.lot_sentences import LOTS, lots_and_parts
 from flexlash.report.wording.measured_parts import PARTS, measured_parts
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows, rough, summary_facts
 from flexlash.report.wording.verdict_sentences import failing, sureness
+from flexlash.report.wording.wave_generator import bending, two_lobes
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import CATALOGUE, spelled_out
 from flexlash.schema.number_words import INTERVAL, angle_words
@@ -71,7 +72,7 @@ def sentences(outcome: Outcome, recommendations: Sequence[Recommendation]) -> It
         "What to stiffen": stiffening(facts),
         "Cylinder-only formula": _classical(facts),
         "Strength": _strength(facts),
-        "Of the calculation": _calculation(outcome),
+        "Of the calculation": _calculation(facts),
         FINDINGS: _findings(outcome),
     }
     of_these = f"Of the {facts.extent.drawn} worst: " if outcome.whole else ""
@@ -195,7 +196,8 @@ def _strength(facts: SummaryFacts) -> Iterator[str]:
             f"Nearest to yield{which} {facts.named(reserves[least][0])}: its {section} yields at "
             f"{spelled_out(times, _DIGITS)} times the torque, corners not counted."
         )
-    for code in ("W402", "W411", "W412", "W415", "W417"):
+    yield from bending(facts)
+    for code in ("W402", "W411", "W412", "W415", "W417", "W460"):
         names = dict.fromkeys(finding.variant for finding in facts.outcome.findings if finding.code == code)
         if names:
             yield f"{CATALOGUE[code].title.capitalize()}: {facts.names(list(names))} ({code})."
@@ -214,9 +216,11 @@ def _nearest_to_yield(facts: SummaryFacts) -> Iterator[tuple[str, str, float]]:
         yield from reserves.filter(pl.col("times") <= _NEARLY * pl.col("times").min()).iter_rows()
 
 
-def _calculation(outcome: Outcome) -> Iterator[str]:
+def _calculation(facts: SummaryFacts) -> Iterator[str]:
     """Yield what a reader must know of how the numbers were found."""
+    outcome = facts.outcome
     yield from _elasticity(outcome)
+    yield from two_lobes(facts)
     yield from spread_notes(outcome)
     if exact := _exact_moduli(outcome):
         yield f"The shear modulus of {counted(exact, 'variant')} is given and has no tolerance: it does not scatter."
