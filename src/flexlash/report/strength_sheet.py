@@ -40,9 +40,9 @@ _COLUMNS = (
     ("resonance_speed_rpm", "Resonance at input [rpm]", "count"),
 )
 _NOTES = (
-    "Torsion only: shear stress T/(2π r² t) of each section; von Mises stress is √3 times it. The governing section is "
+    "Torsion only: shear stress T/(2π r² t) of each section; von Mises stress √3 times it. The governing section is "
     "the first to yield, at the elastic limit torque, unless the wall buckles before. Peaks at corners come on top; a "
-    "run with the option --elasticity gives those of the fillets.",
+    "run with --elasticity gives those of the fillets.",
     "Buckling of the wall: NASA SP-8007 with its knock-down factor; for shorter cylinders a lower bound. A buckling "
     "stress above yield/√3 means that the wall yields first. The flexspline alone must be stiffer than whole drives.",
     "Lost motion of the flexspline alone is its part of a drive's; beside it the catalogue's for the whole drive of "
