@@ -10,6 +10,7 @@ from openpyxl.utils import get_column_letter
 
 from flexlash.feedback.template.upgrade import upgraded
 from flexlash.pipeline import check
+from flexlash.validation.template_versions import TEMPLATE_VERSION
 
 FILES = {
     "template": "templates/flexlash-template.xlsx",
@@ -189,7 +190,7 @@ def test_properties_are_kept(books):
     _, before, after = books
     properties = {one.name: one.value for one in after.custom_doc_props.props}
     assert properties == {one.name: one.value for one in before.custom_doc_props.props}
-    assert properties["flexlash_template_version"] == "4"
+    assert properties["flexlash_template_version"] == str(TEMPLATE_VERSION)
     assert after.properties.title == before.properties.title == "flexlash template"
     assert after.properties.description == before.properties.description
 
