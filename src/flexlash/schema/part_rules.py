@@ -210,7 +210,6 @@ PART_RULES = (
             row["tooth_face_width"] + row["junction_fillet_radius"] > row["cylinder_length"] + row.edge,
         ),
         facts=lambda row: {"other": row["cylinder_length"] - row["junction_fillet_radius"]},
-        after=("E313",),
         compares_lengths=True,
         reached=Reached(kind="overlap", words="the cylinder length"),
     ),
