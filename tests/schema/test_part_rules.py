@@ -170,10 +170,7 @@ def _reached(rules):
 
 @pytest.mark.slow
 def test_no_refused_part_has_a_half_section():
-    """What the rules of lengths refuse closes to no half-section, and hundreds of sound rows do close.
-
-    How far the teeth reach is no matter of the section's shape.
-    """
+    """What the rules of lengths refuse closes to no half-section, and hundreds of sound rows do close."""
     closed = Counter()
     for row in filter(_makes_a_row, NUMBERS):
         if "disk_hub_thickness" in row.entries:
@@ -181,7 +178,7 @@ def test_no_refused_part_has_a_half_section():
         rule = first_broken(LENGTHS, row)
         is_closed = section_problem(row.type, _variant(row).dimensions) is None
         closed[rule.code if rule else "", is_closed] += 1
-    assert {code for code, is_closed in closed if is_closed} == {"", "E360"}
+    assert {code for code, is_closed in closed if is_closed} == {""}
     assert closed["", True] > 300
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.part_row import Operand, PartRow, PartRule, Reached
 
-__all__ = ["PART_RULES", "fillet_meets_rim", "fillets_overlap", "is_off_the_wall", "said_before"]
+__all__ = ["PART_RULES", "face_meets_fillet", "fillet_meets_rim", "fillets_overlap", "is_off_the_wall", "said_before"]
 
 
 _WALL_SHARES = (0.006, 0.02)
@@ -80,6 +80,11 @@ def fillets_overlap(row: PartRow) -> Operand:
     """Return whether the fillets of a cup take more than the disk between hub and bore."""
     fillets = row["junction_fillet_radius"] + row["hub_fillet_radius"]
     return fillets > row.bore - row["disk_inner_radius"] + row.edge
+
+
+def face_meets_fillet(row: PartRow) -> Operand:
+    """Return whether tooth face and junction fillet together are longer than the cylinder."""
+    return row["tooth_face_width"] + row["junction_fillet_radius"] > row["cylinder_length"] + row.edge
 
 
 def fillet_meets_rim(row: PartRow) -> Operand:
@@ -207,7 +212,7 @@ PART_RULES = (
         words="tooth face and junction fillet exceed the length",
         broken=lambda row: (
             row.given("tooth_face_width"),
-            row["tooth_face_width"] + row["junction_fillet_radius"] > row["cylinder_length"] + row.edge,
+            face_meets_fillet(row),
         ),
         facts=lambda row: {"other": row["cylinder_length"] - row["junction_fillet_radius"]},
         compares_lengths=True,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from flexlash.schema.part_row import Operand, PartRow, PartRule
-from flexlash.schema.part_rules import fillet_meets_rim, fillets_overlap, is_off_the_wall
+from flexlash.schema.part_rules import face_meets_fillet, fillet_meets_rim, fillets_overlap, is_off_the_wall
 
 __all__ = ["SECTION_RULES"]
 
@@ -22,8 +22,10 @@ def _disk(row: PartRow) -> Operand:
 
 _OFF = "the disk does not end within the wall"
 _TOO_LONG = "rim and junction fillet are longer than the cylinder"
+_TOO_WIDE = "the tooth face reaches into the junction fillet"
 
 SECTION_RULES = (
+    _section("tooth_face_width", _TOO_WIDE, lambda row: (row.given("tooth_face_width"), face_meets_fillet(row))),
     _section("wall_thickness", "the wall fills its bore", lambda row: (row.bore <= row.edge,)),
     _section("disk_outer_radius", _OFF, lambda row: (row.is_type("cup"), is_off_the_wall(row, "disk_outer_radius"))),
     _section("disk_inner_radius", _OFF, lambda row: (row.is_type("hat"), is_off_the_wall(row, "disk_inner_radius"))),
