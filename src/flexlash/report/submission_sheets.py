@@ -43,7 +43,12 @@ _TEMPLATE_TITLES = frozenset(title for title, _ in TITLES.values())
 SUBMISSION = "Submission"
 """The sheet of the report that mirrors Variants."""
 
-_TITLES = {name: SUBMISSION if name == "Variants" else name for name in ENTRY_SHEETS}
+_RESULT_SHEETS = frozenset({"Levers", "Sweep"})
+"""Entry sheets whose names are those of sheets of the report, which say what comes of them."""
+
+_TITLES = {name: f"{name} entered" if name in _RESULT_SHEETS else name for name in ENTRY_SHEETS} | {
+    "Variants": SUBMISSION
+}
 
 
 def titles_of(submission: Submission) -> dict[str, str]:

@@ -1,8 +1,9 @@
 """The one truth about every field that is entered: what it is called, measured in, allowed to hold, good for.
 
 Template, validation, data dictionary, report and the README's tables all derive from these records. The fields of
-Variants are in `variant_columns`, those of Materials and Settings in `dimension_columns`, those of Tolerances and its
-optional sheets in `tolerance_columns`, those of the report in `result_columns`; here they are the sheets of a template.
+Variants are in `variant_columns`, those of Materials and Settings in `dimension_columns`, those of Tolerances,
+Measurements and Correlations in `tolerance_columns`, those of Other sources, Levers and Sweep in `decision_columns`;
+those of the report in `result_columns`, `used_columns` and `decision_results`. Here they are the sheets of a template.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from functools import cache
 from types import MappingProxyType
 
 from flexlash.schema.column import Column
+from flexlash.schema.decision_columns import LEVERS, OTHER_SOURCES, SWEEP
 from flexlash.schema.dimension_columns import DIMENSIONS, LOT_DIMENSIONS, MATERIALS, SETTINGS
 from flexlash.schema.tolerance_columns import CORRELATIONS, MEASUREMENTS, TOLERANCES
 from flexlash.schema.variant_columns import VARIANTS
@@ -20,12 +22,15 @@ __all__ = [
     "CORRELATIONS",
     "DIMENSIONS",
     "ENTRY_SHEETS",
+    "LEVERS",
     "LOT_DIMENSIONS",
     "MATERIALS",
     "MEASUREMENTS",
     "OPTIONAL_SHEETS",
+    "OTHER_SOURCES",
     "SETTINGS",
     "SETTINGS_SHEET",
+    "SWEEP",
     "TOLERANCES",
     "VARIANTS",
     "Column",
@@ -54,9 +59,12 @@ ENTRY_SHEETS = {
     "Settings": SETTINGS_SHEET,
     "Measurements": MEASUREMENTS,
     "Correlations": CORRELATIONS,
+    "Other sources": OTHER_SOURCES,
+    "Levers": LEVERS,
+    "Sweep": SWEEP,
 }
 
-OPTIONAL_SHEETS = ("Measurements", "Correlations")
+OPTIONAL_SHEETS = ("Measurements", "Correlations", "Other sources", "Levers", "Sweep")
 """Entry sheets that a template has only where they are asked for."""
 
 

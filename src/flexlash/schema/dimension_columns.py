@@ -153,6 +153,28 @@ SETTINGS = (
         usual=(1, 100_000),
         since=4,
     ),
+    _setting(
+        "requirement",
+        "target_percent",
+        "target_percent",
+        "Share of units that shall be within the backlash limit: a variant meets its limit where so many are.",
+        **PERCENT | {"minimum": 97.5, "exclusive_minimum": False},
+        maximum=99.9999,
+        default=99.865,
+        usual=(99, 99.9999),
+        since=6,
+    ),
+    _setting(
+        "requirement",
+        "mean_shift_factor",
+        "mean_shift_factor",
+        "Part of each tolerance by which means may drift alike, of the mean shift combination of the whole drive.",
+        quantity="ratio",
+        minimum=0,
+        maximum=1,
+        default=0.3,
+        since=6,
+    ),
 )
 
 DIMENSIONS: dict[str, Column] = {

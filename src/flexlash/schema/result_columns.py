@@ -249,6 +249,26 @@ RESULTS = (
         "MPa",
         "stress",
     ),
+    _angle(
+        "system_mean",
+        "System mean",
+        "Mean backlash of the whole drive: wind-up and Other sources, each at the middle of its limits.",
+    ),
+    _angle("system_rss_high", "System RSS high", "That mean and the root of the sum of squares of all deviations."),
+    _angle(
+        "system_bender_high", "System Bender high", "That mean and 1.5 times that root, at most the sum of deviations."
+    ),
+    _angle(
+        "system_mean_shift_high",
+        "System mean shift high",
+        "That mean, a part η of each deviation (Settings: mean_shift_factor) and the root of the rest squared.",
+    ),
+    _angle("system_worst_case_high", "System worst case high", "That mean and the sum of all deviations."),
+    _angle("system_p99_865", "System P99.865", "Backlash of the whole drive that 99.865 % of units stay below."),
+    _angle("system_p99_865_standard_error", "System P99.865 error", "Its standard error."),
+    _angle("system_limit", "System limit", "Greatest backlash of the whole drive, as entered."),
+    _share("system_probability_over_limit", "System over limit", "Share of units of the whole drive over that limit."),
+    _share("system_probability_over_limit_standard_error", "System over limit error", "Standard error of that share."),
     _result("notes", "Notes", "Notes as submitted.", type="text", role="remark"),
     _result(
         "findings", "Findings", "Codes and cells of the errors and warnings of this row.", type="text", role="remark"

@@ -34,11 +34,12 @@ FAR = 8.3
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """A material of the submission; elastic constants and yield strength in Pa."""
+    """A material of the submission; elastic constants and yield strength in Pa, density in kg/m³."""
 
     name: str
     constants: dict[str, float]
     yield_strength: float | None = None
+    density: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,12 +60,14 @@ class Variant:
     rated_torque: float | None = None
     load_inertia: float | None = None
     backlash_limit: float | None = None
+    system_limit: float | None = None
     bearing_width: float | None = None
     engaged_teeth: float | None = None
     radial_deflection: float | None = None
     yield_strength: float | None = None
     youngs_modulus: float | None = None
     poisson_ratio: float | None = None
+    density: float | None = None
 
 
 FEWEST_PARTS = 5
@@ -229,6 +232,8 @@ class Settings:
     samples: int | None = None
     lost_motion_percent: float = 4.0
     acceptable_ppm: float = 1350.0
+    target_percent: float = 99.865
+    mean_shift_factor: float = 0.3
     calibrations: dict[str, float] = field(
         default_factory=lambda: {column.key: 1.0 for column in SETTINGS if column.role == "dimension"}
     )

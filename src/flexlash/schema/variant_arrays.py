@@ -23,8 +23,8 @@ class VariantArrays:
     """Variants in SI, each array of shape (variants,); NaN is what a variant has not.
 
     `dimensions` are those of `schema.variant.Variant`; `numbers` what it holds beside them: `rated_torque`,
-    `load_inertia`, `backlash_limit`, `bearing_width`, `engaged_teeth`, `radial_deflection`, `yield_strength`,
-    `youngs_modulus` and `poisson_ratio`.
+    `load_inertia`, `backlash_limit`, `system_limit`, `bearing_width`, `engaged_teeth`, `radial_deflection`,
+    `yield_strength`, `density`, `youngs_modulus` and `poisson_ratio`.
     """
 
     flexspline_types: Sequence[str]

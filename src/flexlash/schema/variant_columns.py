@@ -253,6 +253,17 @@ VARIANTS = (
         also_called="maxbacklash backlashmax allowablebacklash permissiblebacklash backlashspec spielgrenze "
         "zulässigesspiel",
     ),
+    _requirement(
+        "system_limit_arcmin",
+        "System backlash limit [arcmin]",
+        "Greatest backlash allowed of the whole drive: wind-up and the sheet Other sources together.",
+        quantity="angle",
+        **POSITIVE,
+        group="Requirements",
+        since=6,
+        usual=(0.001, 600),
+        also_called="systemlimit systembacklash totalbacklashlimit systemspielgrenze",
+    ),
     _identity(
         "tolerance_class",
         "Tolerance class",

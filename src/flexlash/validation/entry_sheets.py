@@ -26,6 +26,9 @@ _OWN = {
     "Variants": frozenset({"variant", "material", "flexspline_type"}),
     "Measurements": frozenset({"sample"}),
     "Correlations": frozenset({"dimension_1", "dimension_2", "correlation"}),
+    "Other sources": frozenset({"source", "enter_as"}),
+    "Levers": frozenset({"dimension", "may_change"}),
+    "Sweep": frozenset({"dimension", "from", "to", "step"}),
 }
 """Headers that tell sheets apart which share the others: dimensions stand in Variants and in Measurements."""
 

@@ -69,11 +69,15 @@ def _material(record: Mapping[str, Any], name: str) -> Material:
         for column in MATERIALS
         if column.role == "dimension" and record.get(column.key) is not None
     }
-    strength = record.get("yield_MPa")
+    beside = {
+        key: None if record.get(key) is None else record[key] * _MATERIAL[key].si_unit.si
+        for key in ("yield_MPa", "density_kg_m3")
+    }
     return Material(
         name=name,
         constants=constants,
-        yield_strength=None if strength is None else strength * _MATERIAL["yield_MPa"].si_unit.si,
+        yield_strength=beside["yield_MPa"],
+        density=beside["density_kg_m3"],
     )
 
 

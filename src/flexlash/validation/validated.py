@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 from flexlash.reading.raw import RawValue
 from flexlash.reading.whole_table import WholeTable
 from flexlash.schema.cell_addresses import CellAddress, cell_ranges
+from flexlash.schema.decision_rows import LeverRow, OtherSource, SweepRow
 from flexlash.schema.findings import Finding
 from flexlash.schema.variant import CorrelationRow, Material, MeasuredDimension, Settings, ToleranceRow
 from flexlash.validation.variant_rows import VariantRows
@@ -130,7 +131,8 @@ class Validated:
     `unit_mistakes` are the cells whose unit is mistaken, by sheet, row and column. `table` is Variants as read, one row
     per submitted variant; `tolerances` is Tolerances, None where the built-in class is used; `measurements` and
     `correlations` are those sheets, None where there are none, `correlation_rows` the sound rows of the latter,
-    `measured` what was measured, by plain name of the sample and dimension; `variants` are the rows of Variants without
+    `measured` what was measured, by plain name of the sample and dimension; `other_sources`, `levers` (by
+    dimension) and `sweeps` are the sound rows of those sheets; `variants` are the rows of Variants without
     an error; `header_rows` the row of each entry sheet's headers.
     """
 
@@ -144,6 +146,9 @@ class Validated:
     correlations: Table | None = None
     correlation_rows: Sequence[CorrelationRow] = ()
     measured: Mapping[str, Mapping[str, MeasuredDimension]] = field(default_factory=dict)
+    other_sources: Sequence[OtherSource] = ()
+    levers: Mapping[str, LeverRow] = field(default_factory=dict)
+    sweeps: Sequence[SweepRow] = ()
     variants: VariantRows = field(default_factory=VariantRows)
     classes: Mapping[str, Sequence[ToleranceRow]] = field(default_factory=dict)
     materials: Mapping[str, Material] = field(default_factory=dict)

@@ -24,6 +24,7 @@ _REQUIREMENTS = {
     "rated_torque": "rated_torque",
     "load_inertia": "load_inertia_kg_m2",
     "backlash_limit": "backlash_limit",
+    "system_limit": "system_limit",
     "bearing_width": "bearing_width",
     "engaged_teeth": "engaged_teeth_percent",
     "radial_deflection": "radial_deflection",
@@ -106,6 +107,7 @@ class VariantRows(Sequence[Variant]):
         asked, none = self._columns("requirement"), np.full(count, np.nan)
         numbers = {name: asked.get(key, none) for name, key in _REQUIREMENTS.items()}
         numbers["yield_strength"] = of_material(one.yield_strength for one in used)
+        numbers["density"] = of_material(one.density for one in used)
         numbers |= {
             name: of_material(one.constants.get(name) for one in used) for name in ("youngs_modulus", "poisson_ratio")
         }
@@ -141,6 +143,7 @@ class VariantRows(Sequence[Variant]):
             yield_strength=material.yield_strength,
             youngs_modulus=material.constants.get("youngs_modulus"),
             poisson_ratio=material.constants.get("poisson_ratio"),
+            density=material.density,
         )
 
 

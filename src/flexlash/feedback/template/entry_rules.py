@@ -118,7 +118,8 @@ def write_lists(workbook: Any, sheet: Any, names: Mapping[str, Sequence[str]]) -
 
     `names` are those in the first column of each sheet of the workbook, row by row.
     """
-    choices = {column.key: column.choices for columns in ENTRY_SHEETS.values() for column in columns}
+    every = [column for columns in ENTRY_SHEETS.values() for column in columns]
+    choices = {column.key: column.choices for column in reversed(every)}
     lists = {
         "fl_flexspline_types": choices["flexspline_type"],
         "fl_distributions": choices["distribution"],

@@ -74,7 +74,7 @@ class Filling:
                 {"setting": column.key, "value": self.settings.get(column.key, column.default)} for column in SETTINGS
             ]
         else:
-            rows = self.measurements if sheet == "Measurements" else self.correlations
+            rows = {"Measurements": self.measurements, "Correlations": self.correlations}.get(sheet, ())
         return Entries(rows=rows, columns=ENTRY_SHEETS[sheet])
 
 

@@ -42,6 +42,15 @@ TITLES = {
         "which it is based on.",
     ),
     "Settings": ("Settings", "Blank values take the default."),
+    "Other sources": (
+        "Other sources",
+        "One row per source of backlash beside the wind-up of the flexspline. One budget for all variants.",
+    ),
+    "Levers": (
+        "Levers",
+        "One row per dimension: whether it may change, how far, in which steps, at which relative cost.",
+    ),
+    "Sweep": ("Sweep", "One row per study: a dimension, or two, from the first value to the last."),
     "Measurements": (
         "Measurements",
         "One row per measured part; blank where it was not measured. Dimensions measured on the same parts give their "
