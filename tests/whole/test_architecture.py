@@ -22,6 +22,7 @@ ROOMS = (
     "mechanics",
     "tolerance",
     "analysis",
+    "decisions",
     "feedback",
     "report",
     "comparison",
@@ -48,7 +49,7 @@ EDGES = {
     "xlsxwriter": {"batch", "feedback", "report"},
     "pandera": {"validation"},
     "click": {"cli"},
-    "scipy": {"mechanics", "report", "tolerance"},
+    "scipy": {"decisions", "mechanics", "report", "tolerance"},
     "dask": {"batch"},
     "distributed": {"batch"},
     "rapidfuzz": {"schema"},
@@ -145,7 +146,7 @@ BUILT = {
 }
 """Where a record is filled step by step by the code beside it, and stays with it."""
 
-OURS = {"schema", "validation", "mechanics", "tolerance", "analysis", "comparison", "outputs", "pipeline"}
+OURS = {"schema", "validation", "mechanics", "tolerance", "analysis", "decisions", "comparison", "outputs", "pipeline"}
 """The rooms whose objects are all of our own making; elsewhere, cells and sheets of libraries are given attributes."""
 
 

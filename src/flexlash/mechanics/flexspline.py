@@ -14,6 +14,7 @@ from flexlash.schema.arrays import Array, Quantity
 __all__ = [
     "CYLINDER_SEGMENTS",
     "DISK_SEGMENTS",
+    "Dimensions",
     "backlash",
     "disk_radii",
     "disk_thickness",
@@ -29,6 +30,7 @@ CYLINDER_SEGMENTS = ("tooth_band", "rim", "wall", "junction_fillet")
 DISK_SEGMENTS = ("disk_body", "hub_fillet")
 
 Dimensions = Mapping[str, Quantity]
+"""The dimensions of flexsplines in SI, by name."""
 
 
 def radius_of(dimensions: Dimensions) -> Quantity:
