@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from flexlash.schema.swept_values import MOST_POINTS, swept_values
+from flexlash.schema.swept_values import MOST_POINTS, swept_count, swept_values
 
 
 def test_steps_add_up_as_decimals():
@@ -30,3 +30,18 @@ def test_a_step_of_nothing_is_refused():
     """A step must be greater than 0."""
     with pytest.raises(ValueError, match="greater than 0"):
         swept_values(0, 1, 0)
+
+
+def test_the_last_value_is_reached_within_rounding():
+    """A step that is a rounded third ends on the last value itself, whether it was rounded up or down."""
+    for third in (0.3333333333333333, 0.33333333333333337, 1 / 3):
+        assert swept_values(0, 1, third)[-1] == 1.0
+        assert swept_count(0, 1, third) == len(swept_values(0, 1, third)) == 4
+    assert swept_values(0, 1, 0.333)[-1] == pytest.approx(0.999, abs=1e-15)
+
+
+def test_how_many_values_there_are_is_told_of_any_number():
+    """The count needs no list of the values, however many there are."""
+    assert swept_count(0, 1e300, 1e-300) == 10**600 + 1
+    for first, last, step in ((0, 7, 0.7), (7, 0, 0.7), (-1, 1, 0.3), (2, 2, 5)):
+        assert swept_count(first, last, step) == len(swept_values(first, last, step))

@@ -730,6 +730,85 @@ CATALOGUE = _rules(
         "The tooth face lies on the cylinder, from the open end on; it may be as wide as the cylinder is long.",
     ),
     (
+        "E361",
+        "row twice",
+        '{place} {name} = "{value}" also stands in {other}.',
+        "Keep one row for each of them, or give each source a name of its own.",
+        "With two rows of one name flexlash cannot know which holds. Other sources with an error give no budget of the "
+        "drive; a dimension whose row of Levers has one is left out of the levers.",
+    ),
+    (
+        "E362",
+        "does not belong to this row",
+        "{place} {name} = {value}: {detail}.",
+        "Clear the cell, or mend the cell that it does not go with.",
+        "Beside what else stands in the row the number has no meaning, so that one of the two must be mistaken: a "
+        "radius beside an angle in arcmin, a ratio on the output side, a range of another material.",
+    ),
+    (
+        "E363",
+        "source without a number",
+        "{place} {name} is empty: {detail} are required.",
+        "Enter the play, its deviations, or both; delete the row if the source has no play.",
+        "A source adds its value to the drive's backlash and its deviations to the spread of it. A row with neither "
+        "would look as if the source had been counted.",
+    ),
+    (
+        "E364",
+        "play below 0",
+        "{place} {name} = {value}: the middle between the least and the greatest play is {detail}; at least 0 is "
+        "required.",
+        "Check value, deviations and their unit; for what scatters about 0 choose the kind random.",
+        "A systematic source that is negative on average would make the drive's backlash less, which no clearance "
+        "does. A press fit has a play of 0.",
+    ),
+    (
+        "E365",
+        "range reversed",
+        "{place} {name} = {value} is greater than the highest value {other}.",
+        "Exchange the two.",
+        "Lowest and highest are the ends of the range in which the drawing may change the dimension.",
+    ),
+    (
+        "E366",
+        "unknown variant",
+        '{place} {name} = "{value}" is not a row of Variants.',
+        "Write the name of a variant as Variants has it; leave the cell blank for every variant.",
+        "The name must be that of a row of Variants; letter case and spaces do not matter. The study of this row is "
+        "left out.",
+    ),
+    (
+        "E367",
+        "one dimension swept twice",
+        "{place} {name} = {value}: another dimension than the first of the row is required.",
+        "Enter another dimension, or clear the four cells of the second one.",
+        "A study over two dimensions computes each value of the one with each of the other.",
+    ),
+    (
+        "E368",
+        "step greater than the range",
+        "{place} {name} = {value} reaches no second value: from the first to the last it is {other}.",
+        "Enter a smaller step; for a single value let both ends be the same.",
+        "Values run from the first by the step up to the last, or down to it where that is the lesser one. The step is "
+        "always above 0.",
+    ),
+    (
+        "E369",
+        "too many rows in studies",
+        "{place} {name} = {value}: the study computes {found} rows{detail}; at most {limit} are possible.",
+        "Widen the steps, name one variant, or split the sweep over several submissions.",
+        "Each row of a study is computed with its whole spread, values times values of the second dimension times "
+        "variants. The limit holds for all rows of Sweep together.",
+    ),
+    (
+        "E370",
+        "no value makes a part",
+        "{place} {name} = {value}: no value of this study makes a part of {other}: {detail}.",
+        "Choose a dimension that the variant has, or other values.",
+        "Each value is put in place of what the variant has entered, everything else kept. A variant given by its bore "
+        "has no mean radius of its own, a cylinder no disk; a dimension that another one bounds cannot pass it.",
+    ),
+    (
         "W401",
         "disk does not meet the wall",
         "{place} {name} = {value} mm differs from the mean radius {other} mm.",
@@ -764,13 +843,6 @@ CATALOGUE = _rules(
         "Choose a truncated normal, or narrow the tolerance.",
         "A normal distribution has no end. Where it would reach a thickness of 0, or a hub outside the disk, "
         "within 8.3 standard deviations, it is cut there.",
-    ),
-    (
-        "W406",
-        "not used yet",
-        "{place}: the sheet Other sources is not used yet.",
-        "Add other backlash sources by hand until a later version.",
-        "The report covers the backlash from torsional wind-up alone.",
     ),
     (
         "W407",
@@ -1089,8 +1161,8 @@ CATALOGUE = _rules(
         "sheet without a table",
         "{place}: this sheet has the name of an entry sheet, but no header row of {other}; nothing of it is used.",
         "Copy the header row of the template above the data (flexlash template --with), or rename the sheet.",
-        "Sheets Measurements and Correlations are read wherever they are. A sheet of such a name that holds something "
-        "else does no harm.",
+        "Measurements, Correlations, Other sources, Levers and Sweep are read wherever they are. A sheet that has such "
+        "a name and holds something else does no harm.",
     ),
     (
         "W453",
@@ -1116,6 +1188,54 @@ CATALOGUE = _rules(
         "Take a thinner wall or rim, a smaller deflection or a stronger material; a thicker wall is bent harder.",
         "Twice a turn the wave generator bends wall and rim, which no torsion shows. Polished steels endure half of "
         "their tensile strength, ground ones about 0.4 of the yield strength; tooth roots are notches and endure less.",
+    ),
+    (
+        "W461",
+        "entry takes no part",
+        "{place} {name} = {value} takes no part: {detail}.",
+        "Nothing to do; or clear the cell, or mend the cell beside it.",
+        "Another cell of the row leaves nothing for this one to say. The row is used without it.",
+    ),
+    (
+        "W462",
+        "least play below 0",
+        "{place} {name} = {value}: the least play is {detail}; it is used as entered.",
+        "Check the deviations; for what scatters about 0 choose the kind random, for a press fit a play of 0.",
+        "A play is 0 or more. A negative one counts as if it took away from the other sources, which parts that are "
+        "pressed together do not.",
+    ),
+    (
+        "W463",
+        "coarse drawing step",
+        "{place} {name} = {value}: {detail}.",
+        "Check the step and its unit, that of the dimension's column in Variants.",
+        "The values that levers offer are multiples of the step within the range. A step wider than the range, or than "
+        "every entered value, leaves hardly one; often it is in another unit.",
+    ),
+    (
+        "W464",
+        "range beside every variant",
+        "{place} {name} = {value}: {other} is {detail} in Variants, outside the range of Levers.",
+        "Check the range and its unit, that of the dimension's column in Variants.",
+        "Lowest and highest say which values the drawing may have. When the drawings of all variants lie outside, the "
+        "range is probably in another unit or one of another dimension. It is used as entered.",
+    ),
+    (
+        "W465",
+        "variants left out of a study",
+        "{place} {name} = {value}: no value of this study makes a part of {other}: {detail}.",
+        "Nothing to do; or name in a row of its own each variant that is meant.",
+        "A study without a variant's name is one of every variant. Those that lack the dimension, or to which no "
+        "value fits, are left out of it.",
+    ),
+    (
+        "W466",
+        "system limit without sources",
+        "{place}: {name} is given, but no source is entered in Other sources, so that it is not judged.",
+        "Enter the other sources of backlash of the drive (flexlash template --with other-sources), or take this as "
+        "the Backlash limit of the wind-up alone.",
+        "The system limit is that of the whole drive: the wind-up of the flexspline and the sheet Other sources "
+        "together.",
     ),
     (
         "I501",

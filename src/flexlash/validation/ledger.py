@@ -59,6 +59,10 @@ class Ledger:
             everything=self.everything,
         )
 
+    def has_errors(self, since: int = 0) -> bool:
+        """Return whether an error is among the findings, but for so many first ones."""
+        return any(found.level == "error" for found in self.findings[since:])
+
     def add(self, code: str, *, rows: Iterable[int] = (), **facts: Any) -> None:
         """Record a finding; an error spoils the given rows of Variants."""
         if mistake := self._unit_mistake_at(facts):

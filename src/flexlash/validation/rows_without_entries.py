@@ -27,6 +27,9 @@ _LIMITS = frozenset((
 ))  # fmt: skip
 """What measuring machines write in place of a part's number, in rows of statistics and limits."""
 
+_SUMMED = frozenset({"Other sources", "Levers"})
+"""Sheets whose rows have no second text that a total would lack: plays and costs are summed below."""
+
 _NOTES = (
     "notes? remarks? comments? legend key source prepared created checked approved author date revision rev see "
     "hinweise? bemerkung(?:en)? anmerkung(?:en)? legende quelle erstellt geprüft bearbeiter datum stand end"
@@ -89,8 +92,8 @@ class NoEntries:
             return None
         is_alone = self.others.isdisjoint(cells)
         is_note = _begins_like_a_note(value) and self.texts.isdisjoint(cells)
-        # A material may have a name of many words; without constants it is told as one that lacks them.
-        reads_like_one = self.schema != "Materials" and len(value.split()) >= _SENTENCE
+        # A material or a source may have a name of many words; without numbers it is told as one that lacks them.
+        reads_like_one = self.schema not in {"Materials", "Other sources"} and len(value.split()) >= _SENTENCE
         if is_note or (is_alone and (apart or reads_like_one)):
             return NoEntry("W433", "a remark", index, value)
         is_bare = self.schema == "Variants" and self.numbers.isdisjoint(cells)
@@ -101,12 +104,13 @@ class NoEntries:
 
         Below measured parts a machine writes statistics and limits, by words in place of a part's number.
         """
+        named: tuple[tuple[int | None, frozenset[str]], ...] = ((self.first, _TOTALS),)
         if self.schema == "Measurements":
-            named = ((self.first, _TOTALS), (self.part, _LIMITS))
-        elif self.texts and (self.texts - {index}).isdisjoint(cells) and index in self.texts | {self.first}:
-            named = ((index, _TOTALS), (None, _TOTALS))
-        else:
-            return None
+            named = (*named, (self.part, _LIMITS))
+        elif self.schema not in _SUMMED:
+            if not self.texts or (self.texts - {index}) & cells.keys() or index not in self.texts | {self.first}:
+                return None
+            named = ((index, _TOTALS),)
         texts = ((place, cells.get(place or 0), known) for place, known in named)
         return next((place for place, text, known in texts if isinstance(text, str) and _bare(text) in known), None)
 

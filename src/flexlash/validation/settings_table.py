@@ -44,7 +44,7 @@ def settings_of(table: Table, ledger: Ledger) -> Settings:
         cell = table.address(row, "value")
         ledger.add(value.code, sheet=table.sheet, cell=cell, column=name, name=name, value=value.value, **facts)
     faulty = any((row, key) in table.faulty for row in table.frame["row"] for key in ("setting", "value"))
-    if faulty or any(finding.level == "error" for finding in ledger.findings[before:]):
+    if faulty or ledger.has_errors(before):
         ledger.everything = True
     return _settings(values)
 

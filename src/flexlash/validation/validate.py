@@ -11,13 +11,13 @@ import polars as pl
 
 from flexlash.reading.raw import RawSheet, Submission
 from flexlash.reading.reading_limits import ReadingLimits
-from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.columns import columns_of
 from flexlash.schema.spellings import plain
 from flexlash.schema.variant import CorrelationRow, Material, Settings, ToleranceRow
 from flexlash.validation.class_bases import class_names
 from flexlash.validation.correlation_rows import correlation_rows_of
 from flexlash.validation.csv_findings import report_dialect
+from flexlash.validation.decision_sheets import decided_by
 from flexlash.validation.entry_sheets import (
     entry_sheets,
     report_other_names,
@@ -46,7 +46,8 @@ from flexlash.validation.variant_rows import VariantRows
 
 __all__ = ["TEMPLATE_VERSION", "validate"]
 
-_OTHER_SOURCES = "Other sources"
+_OF_THEIR_OWN = frozenset({"Measurements", "Other sources", "Levers", "Sweep"})
+"""Sheets whose errors spoil what is taken from them alone, not the rows of Variants."""
 
 
 def validate(submission: Submission, limits: ReadingLimits | None = None) -> Validated:
@@ -60,7 +61,8 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     unclear = report_other_names(submission, sheets, ledger)
     report_second_tables(submission, sheets, ledger)
     sheets = with_tables(sheets, ledger)
-    tables, samples = _tables(sheets, ledger)
+    own = {schema: Ledger(ledger.file) for schema in _OF_THEIR_OWN}
+    tables, samples = _tables(sheets, ledger, own)
     for sheet in sheets.values():
         report_dialect(sheet, ledger)
     used = _used(submission, sheets.keys() | unclear, tables, samples, ledger)
@@ -69,7 +71,8 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
         _check_rows(variants, used, ledger)
         report_unused_classes(tables.get("Tolerances"), variants, used.classes, ledger)
         report_sample_sizes(samples, tables.get("Tolerances"), variants, ledger)
-    _report_other_sources(submission, ledger)
+    decided = decided_by(tables, unclear, ledger, own)
+    ledger.findings += [found for schema in sheets if schema in own for found in own[schema].findings]
     sound = None if variants is None or ledger.everything else _sound(variants.frame, ledger.rows)
     return Validated(
         file=submission.name,
@@ -80,6 +83,12 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
         tolerances=tables.get("Tolerances"),
         measurements=tables.get("Measurements"),
         measured=samples.dimensions,
+        other_sources=decided.sources.rows,
+        sources_are_faulty=decided.sources.are_faulty,
+        levers=decided.levers.rows,
+        withheld_levers=decided.levers.withheld,
+        sweeps=decided.sweeps.rows,
+        faulty_sweeps=decided.sweeps.faulty,
         correlations=tables.get("Correlations"),
         correlation_rows=used.correlations,
         variants=VariantRows(frame=sound, materials=used.materials, settings=used.settings),
@@ -90,19 +99,16 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
     )
 
 
-def _tables(sheets: Mapping[str, RawSheet], ledger: Ledger) -> tuple[dict[str, Table], Samples]:
+def _tables(
+    sheets: Mapping[str, RawSheet], ledger: Ledger, own: Mapping[str, Ledger]
+) -> tuple[dict[str, Table], Samples]:
     """Return the typed tables of the entry sheets that have one, and what was measured."""
     tables: dict[str, Table] = {}
     samples = Samples()
     for schema, sheet in sheets.items():
+        table = _typed(sheet, schema, own.get(schema, ledger))
         if schema == "Measurements":
-            # What is wrong there spoils what is taken from it alone.
-            own = Ledger(ledger.file)
-            samples = measured_samples(_typed(sheet, schema, own), own)
-            ledger.findings += own.findings
-            table = samples.table
-        else:
-            table = _typed(sheet, schema, ledger)
+            samples = measured_samples(table, own[schema])
         if table is not None:
             tables[schema] = table
     return tables, samples
@@ -229,10 +235,3 @@ def _report(table: Table, ledger: Ledger, code: str, row: int, key: str, **facts
     name = columns_of("Variants")[key].name
     cell = table.address(row, key)
     ledger.add(code, sheet=table.sheet, cell=cell, column=key, name=name, rows=[row], **facts)
-
-
-def _report_other_sources(submission: Submission, ledger: Ledger) -> None:
-    """Warn when the sheet of a later version is filled."""
-    for name, sheet in submission.sheets.items():
-        if plain(name) == plain(_OTHER_SOURCES) and len(sheet.rows) > 1:
-            ledger.add("W406", sheet=name, cell=CellAddress(row=min(sheet.rows), column=1))

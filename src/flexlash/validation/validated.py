@@ -132,8 +132,10 @@ class Validated:
     per submitted variant; `tolerances` is Tolerances, None where the built-in class is used; `measurements` and
     `correlations` are those sheets, None where there are none, `correlation_rows` the sound rows of the latter,
     `measured` what was measured, by plain name of the sample and dimension; `other_sources`, `levers` (by
-    dimension) and `sweeps` are the sound rows of those sheets; `variants` are the rows of Variants without
-    an error; `header_rows` the row of each entry sheet's headers.
+    dimension) and `sweeps` are the sound rows of those sheets. What other rows of them with errors take away:
+    `sources_are_faulty` leaves no budget of the drive, since it would lack a source; `withheld_levers` are dimensions
+    (or material) of which nothing may be advised; `faulty_sweeps` rows of Sweep whose studies are left out.
+    `variants` are the rows of Variants without an error; `header_rows` the row of each entry sheet's headers.
     """
 
     file: str = ""
@@ -147,8 +149,11 @@ class Validated:
     correlation_rows: Sequence[CorrelationRow] = ()
     measured: Mapping[str, Mapping[str, MeasuredDimension]] = field(default_factory=dict)
     other_sources: Sequence[OtherSource] = ()
+    sources_are_faulty: bool = False
     levers: Mapping[str, LeverRow] = field(default_factory=dict)
+    withheld_levers: frozenset[str] = frozenset()
     sweeps: Sequence[SweepRow] = ()
+    faulty_sweeps: tuple[int, ...] = ()
     variants: VariantRows = field(default_factory=VariantRows)
     classes: Mapping[str, Sequence[ToleranceRow]] = field(default_factory=dict)
     materials: Mapping[str, Material] = field(default_factory=dict)
