@@ -27,8 +27,10 @@ __all__ = [
     "first_orders",
     "row_curves",
     "row_statistics",
+    "sampling_plan",
     "spread_again",
     "spread_of",
+    "toleranced_row",
 ]
 
 _FIRST_VERSIONS = 4
@@ -50,8 +52,10 @@ ROWS_PER_WORKER, POINTS_PER_WORKER = 1000, 100_000
 
 def spread_of(computed: ComputedRows, settings: Settings, options: Options) -> Spread:
     """Return the spread of the variants; the same points serve all rows."""
-    pieces = _Pieces(lambda numbers: [_toleranced(computed[number]) for number in numbers], computed.alike(_TOGETHER))
-    found = _told(_found(pieces, _plan(settings, options), options.jobs), options, len(computed))
+    pieces = _Pieces(
+        lambda numbers: [toleranced_row(computed[number]) for number in numbers], computed.alike(_TOGETHER)
+    )
+    found = _told(_found(pieces, sampling_plan(settings, options), options.jobs), options, len(computed))
     return Spread(statistics=SpreadRows.of(found), cross_checked=bool(options.cross_check))
 
 
@@ -108,14 +112,14 @@ def spread_again(
     variant: Computed, limits: Iterable[Mapping[str, Limits]], settings: Settings
 ) -> list[SpreadStatistics]:
     """Return the spread of a variant by lines with each of these limits instead of its own; nothing of its lots."""
-    plan = _plan(replace(settings, method="line", samples=None), Options())
-    row = replace(_toleranced(variant), between=None)
+    plan = sampling_plan(replace(settings, method="line", samples=None), Options())
+    row = replace(toleranced_row(variant), between=None)
     return [batch_statistics([replace(row, limits=other)], plan)[0] for other in limits]
 
 
 def first_orders(variants: Sequence[Computed]) -> list[FirstOrder]:
     """Return what the first-order standard deviation of each variant is made of."""
-    rows = [_toleranced(variant) for variant in variants]
+    rows = [toleranced_row(variant) for variant in variants]
     found: dict[int, FirstOrder] = {}
     for batch in batches_alike(rows):
         found |= zip(batch, RowBatch([rows[index] for index in batch]).first_order(), strict=True)
@@ -124,8 +128,8 @@ def first_orders(variants: Sequence[Computed]) -> list[FirstOrder]:
 
 def drawn_curves(drawn: Sequence[Computed], settings: Settings, options: Options) -> list[Curve]:
     """Return the curves of variants that have a spread."""
-    rows = [(_toleranced(variant), variant.spread) for variant in drawn if variant.spread]
-    return list(row_curves(rows, _plan(settings, options), options.jobs))
+    rows = [(toleranced_row(variant), variant.spread) for variant in drawn if variant.spread]
+    return list(row_curves(rows, sampling_plan(settings, options), options.jobs))
 
 
 def row_curves(
@@ -148,7 +152,8 @@ def _curves(rows: Sequence[tuple[TolerancedRow, SpreadStatistics]], plan: Sampli
     return curves_of([row for row, _ in rows], [statistics for _, statistics in rows], plan)
 
 
-def _plan(settings: Settings, options: Options) -> SamplingPlan:
+def sampling_plan(settings: Settings, options: Options) -> SamplingPlan:
+    """Return how the rows of a submission are sampled."""
     return SamplingPlan(
         method=settings.method,
         inputs=FIRST_INPUTS,
@@ -161,7 +166,7 @@ def _plan(settings: Settings, options: Options) -> SamplingPlan:
     )
 
 
-def _toleranced(variant: Computed) -> TolerancedRow:
+def toleranced_row(variant: Computed) -> TolerancedRow:
     """Return what the spread of a variant takes."""
     return TolerancedRow(
         model=BACKLASH_OF[variant.variant.flexspline_type],
