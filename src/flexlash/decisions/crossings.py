@@ -1,0 +1,117 @@
+"""Where a number crosses 0 between two values, found for many numbers at once: each step is one batch of the engine."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
+
+__all__ = ["Bracket", "crossings"]
+
+Whose = TypeVar("Whose")
+
+_STEPS = 100
+"""Most evaluations of a bracket, which close it whatever the number does; a smooth one takes three to six."""
+
+_NEAR = 1e-8
+"""Width of a bracket, as a part of its values, at which it has closed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bracket(Generic[Whose]):
+    """Two values between which a number changes its sign, with the number at each; `whose` number it is."""
+
+    whose: Whose
+    low: float
+    high: float
+    at_low: float
+    at_high: float
+
+
+def crossings(
+    brackets: Sequence[Bracket[Whose]],
+    evaluate: Callable[[Sequence[tuple[Whose, float]]], Sequence[float | None]],
+    small: float,
+) -> list[float | None]:
+    """Return the value at which each bracket's number is 0, None where the number is missing on the way.
+
+    `evaluate` returns the numbers at values, None where there is none; a number of at most `small` counts as 0. Found
+    by false position with the Illinois rule, by halves where a number is infinite or three steps did not halve the
+    bracket; each bracket goes its own way, so that none depends on the others.
+
+    >>> line = Bracket(whose=2.0, low=1.0, high=3.0, at_low=-1.0, at_high=7.0)
+    >>> crossings([line], lambda asked: [value**2 - whose for whose, value in asked], 1e-12)
+    [1.414213562373...]
+    """
+    open_ones = {place: _Open(bracket) for place, bracket in enumerate(brackets)}
+    found: list[float | None] = [None] * len(brackets)
+    for place, one in list(open_ones.items()):
+        if (known := one.ended(small)) is not None:
+            found[place] = known
+            del open_ones[place]
+    for _ in range(_STEPS):
+        if not open_ones:
+            break
+        asked = [(one.bracket.whose, one.next_value()) for one in open_ones.values()]
+        for (place, one), (_, value), number in zip(list(open_ones.items()), asked, evaluate(asked), strict=True):
+            if number is None:
+                del open_ones[place]
+                continue
+            one.narrow(value, number)
+            if (known := one.ended(small)) is not None:
+                found[place] = known
+                del open_ones[place]
+    return found
+
+
+class _Open(Generic[Whose]):
+    """A bracket that is being narrowed.
+
+    `kept` is the end that stayed last time, whose weight the Illinois rule halves; `widths` are those before the last
+    three steps, one each.
+    """
+
+    def __init__(self, bracket: Bracket[Whose]) -> None:
+        self.bracket = bracket
+        self.weights = (bracket.at_low, bracket.at_high)
+        self.kept = ""
+        self.widths = (math.inf,) * 3
+
+    @property
+    def width(self) -> float:
+        """How far its ends are apart."""
+        return abs(self.bracket.high - self.bracket.low)
+
+    def next_value(self) -> float:
+        """Return the value to look at next, within the bracket."""
+        low, high = self.bracket.low, self.bracket.high
+        at_low, at_high = self.weights
+        is_slow = 2 * self.width > self.widths[0]
+        if not is_slow and math.isfinite(at_low) and math.isfinite(at_high):
+            value = (low * at_high - high * at_low) / (at_high - at_low)
+            if min(low, high) < value < max(low, high):
+                return value
+        return (low + high) / 2
+
+    def narrow(self, value: float, number: float) -> None:
+        """Let a value take the place of the end whose number has its sign."""
+        bracket, (at_low, at_high) = self.bracket, self.weights
+        self.widths = (*self.widths[1:], self.width)
+        if (number > 0) == (bracket.at_low > 0):
+            self.bracket = replace(bracket, low=value, at_low=number)
+            self.weights = (number, at_high / 2 if self.kept == "high" else at_high)
+            self.kept = "high"
+        else:
+            self.bracket = replace(bracket, high=value, at_high=number)
+            self.weights = (at_low / 2 if self.kept == "low" else at_low, number)
+            self.kept = "low"
+
+    def ended(self, small: float) -> float | None:
+        """Return where the number is 0, None where that is not known yet."""
+        bracket = self.bracket
+        near, least = min(((bracket.low, bracket.at_low), (bracket.high, bracket.at_high)), key=lambda end: abs(end[1]))
+        if abs(least) <= small:
+            return near
+        closed = self.width <= _NEAR * max(abs(bracket.low), abs(bracket.high))
+        return near if closed else None
