@@ -40,7 +40,7 @@ _STEMS = {column.key: (column.dimension, column.si_unit.si) for column in _COLUM
 }
 """Result key → its SI number's name and the size of the printed unit."""
 
-_ENTERED = frozenset({"backlash_limit_arcmin", "hub_shear_radius_mm"})
+_ENTERED = frozenset({"backlash_limit_arcmin", "system_limit_arcmin", "hub_shear_radius_mm"})
 """Results that repeat an entry, the radius where it is the disk's own."""
 
 _ELASTICITY = [one.name for one in fields(Elasticity)]
@@ -83,9 +83,11 @@ def _type(column: Column) -> type[pl.DataType]:
 def _known(table: Table, computed: ComputedRows) -> pl.DataFrame:
     """Return all that is known of the computed variants: numbers [SI] and words by name, with their row number."""
     known = pl.DataFrame(schema={"row": pl.Int64}) if computed.numbers is None else computed.numbers
-    entered = table.frame["backlash_limit_arcmin"]
-    limits = pl.Series("backlash_limit", entered.to_numpy() * ARCMIN, nan_to_null=True)
-    beside = [table.frame.select("row", limits)]
+    limits = [
+        pl.Series(name, table.frame[f"{name}_arcmin"].to_numpy() * ARCMIN, nan_to_null=True)
+        for name in ("backlash_limit", "system_limit")
+    ]
+    beside = [table.frame.select("row", *limits)]
     if computed.statistics is not None:
         beside += [computed.statistics.frame, computed.statistics.main_shares()]
     if computed.checks:

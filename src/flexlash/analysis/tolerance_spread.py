@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TypeAlias, overload
+from typing import NamedTuple, TypeAlias, overload
 
 from flexlash.analysis.backlash_models import BACKLASH_OF
 from flexlash.analysis.computed import Computed, ComputedRows, Spread
+from flexlash.analysis.drive_budget import DriveBudget, budget_of
 from flexlash.analysis.measured_uncertainty import with_measured_uncertainty
 from flexlash.analysis.options import Options
 from flexlash.analysis.spread_rows import SpreadRows
@@ -52,10 +53,11 @@ ROWS_PER_WORKER, POINTS_PER_WORKER = 1000, 100_000
 
 def spread_of(computed: ComputedRows, settings: Settings, options: Options) -> Spread:
     """Return the spread of the variants; the same points serve all rows."""
+    budget = budget_of(computed.validated, settings)
     pieces = _Pieces(
-        lambda numbers: [toleranced_row(computed[number]) for number in numbers], computed.alike(_TOGETHER)
+        lambda numbers: _piece([computed[number] for number in numbers], budget), computed.alike(_TOGETHER)
     )
-    found = _told(_found(pieces, sampling_plan(settings, options), options.jobs), options, len(computed))
+    found = _told(_found(pieces, sampling_plan(settings, options), options.jobs, budget), options, len(computed))
     return Spread(statistics=SpreadRows.of(found), cross_checked=bool(options.cross_check))
 
 
@@ -70,39 +72,58 @@ def _told(found: Iterable[Found], options: Options, rows: int) -> Iterator[Found
 
 def row_statistics(rows: Sequence[TolerancedRow], plan: SamplingPlan, jobs: int) -> Iterator[Found]:
     """Yield each row's index and statistics, rows alike together, by up to `jobs` processes where there are enough."""
-    return _found(_Pieces(lambda indices: [rows[index] for index in indices], list(batches_alike(rows))), plan, jobs)
+    pieces = _Pieces(lambda indices: _Piece([rows[index] for index in indices]), list(batches_alike(rows)))
+    return _found(pieces, plan, jobs)
 
 
-def _found(pieces: _Pieces, plan: SamplingPlan, jobs: int) -> Iterator[Found]:
-    """Yield the number and the statistics of each row of some pieces of work."""
+def _found(pieces: _Pieces, plan: SamplingPlan, jobs: int, budget: DriveBudget | None = None) -> Iterator[Found]:
+    """Yield the number and the statistics of each row of some pieces of work, with the budget of its drive if any."""
     workers = min(jobs, sum(map(len, pieces.numbers)) // ROWS_PER_WORKER)
-    for numbers, statistics in zip(pieces.numbers, mapped(partial(_of_piece, plan=plan), pieces, workers), strict=True):
+    work = partial(_of_piece, plan=plan, budget=budget)
+    for numbers, statistics in zip(pieces.numbers, mapped(work, pieces, workers), strict=True):
         yield from zip(numbers, statistics, strict=True)
 
 
-def _of_piece(rows: Sequence[TolerancedRow], plan: SamplingPlan) -> list[SpreadStatistics]:
+class _Piece(NamedTuple):
+    """Rows to be spread together, and the whole drives of these where there is a budget."""
+
+    rows: list[TolerancedRow]
+    drives: Sequence[TolerancedRow] = ()
+
+
+def _piece(variants: Sequence[Computed], budget: DriveBudget | None) -> _Piece:
+    """Return what the spread of variants takes."""
+    rows = [toleranced_row(variant) for variant in variants]
+    if budget is None:
+        return _Piece(rows)
+    drives = [budget.row(row, one.variant.system_limit) for row, one in zip(rows, variants, strict=True)]
+    return _Piece(rows, drives)
+
+
+def _of_piece(piece: _Piece, plan: SamplingPlan, budget: DriveBudget | None) -> list[SpreadStatistics]:
     """Return the statistics of each row, rows alike together."""
-    found: dict[int, SpreadStatistics] = {}
+    rows, found = piece.rows, dict[int, SpreadStatistics]()
     for batch in batches_alike(rows):
         found |= zip(batch, batch_statistics([rows[index] for index in batch], plan), strict=True)
-    return with_measured_uncertainty(rows, [found[index] for index in range(len(rows))], plan)
+    statistics = with_measured_uncertainty(rows, [found[index] for index in range(len(rows))], plan)
+    return statistics if budget is None else budget.with_budget(piece.drives, statistics, plan)
 
 
 @dataclass(frozen=True)
-class _Pieces(Sequence[list[TolerancedRow]]):
+class _Pieces(Sequence[_Piece]):
     """Rows of which some are spread together, by their numbers; made when it is their turn, since limits are large."""
 
-    rows: Callable[[Sequence[int]], list[TolerancedRow]]
+    rows: Callable[[Sequence[int]], _Piece]
     numbers: Sequence[Sequence[int]]
 
     def __len__(self) -> int:
         return len(self.numbers)
 
     @overload
-    def __getitem__(self, index: int) -> list[TolerancedRow]: ...
+    def __getitem__(self, index: int) -> _Piece: ...
     @overload
-    def __getitem__(self, index: slice) -> Sequence[list[TolerancedRow]]: ...
-    def __getitem__(self, index: int | slice) -> list[TolerancedRow] | Sequence[list[TolerancedRow]]:
+    def __getitem__(self, index: slice) -> Sequence[_Piece]: ...
+    def __getitem__(self, index: int | slice) -> _Piece | Sequence[_Piece]:
         if isinstance(index, slice):
             return _Pieces(self.rows, self.numbers[index])
         return self.rows(self.numbers[index])

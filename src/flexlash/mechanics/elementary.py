@@ -11,11 +11,11 @@ from __future__ import annotations
 from functools import singledispatch
 
 import numpy as np
-from scipy.special import boxcox, expm1, sindg, xlogy
+from scipy.special import boxcox, expm1, sindg, tandg, xlogy
 
 from flexlash.schema.arrays import Array, Condition, Quantity
 
-__all__ = ["absolute", "box_cox", "exp", "log", "maximum", "minimum", "power", "sin", "sqrt", "where"]
+__all__ = ["absolute", "box_cox", "exp", "log", "maximum", "minimum", "power", "sin", "sqrt", "tan", "where"]
 
 
 @singledispatch
@@ -58,6 +58,12 @@ def box_cox(base: Quantity, exponent: Quantity) -> Array:
 def sin(angle: Quantity) -> Array:
     """Sine of an angle [rad]."""
     return np.asarray(sindg(np.asarray(angle) * (180 / np.pi)))
+
+
+@singledispatch
+def tan(angle: Quantity) -> Array:
+    """Tangent of an angle [rad]."""
+    return np.asarray(tandg(np.asarray(angle) * (180 / np.pi)))
 
 
 @singledispatch

@@ -252,9 +252,13 @@ RESULTS = (
     _angle(
         "system_mean",
         "System mean",
-        "Mean backlash of the whole drive: wind-up and Other sources, each at the middle of its limits.",
+        "Mean backlash of the whole drive: that of the wind-up's spread and the middle of every one of Other sources.",
     ),
-    _angle("system_rss_high", "System RSS high", "That mean and the root of the sum of squares of all deviations."),
+    _angle(
+        "system_rss_high",
+        "System RSS high",
+        "That mean and the root of the sum of squares of all deviations, of the wind-up three standard deviations.",
+    ),
     _angle(
         "system_bender_high", "System Bender high", "That mean and 1.5 times that root, at most the sum of deviations."
     ),

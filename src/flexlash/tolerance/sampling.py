@@ -77,11 +77,11 @@ class SamplingPlan:
         return _drawn(self.inputs, self.later_inputs, method=method, samples=samples, seed=self.seed)
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=3)
 def _drawn(
     names: tuple[str, ...], later: tuple[str, ...], *, method: PointMethod, samples: int | None, seed: int
 ) -> UnitPoints:
-    """Return points; those of one plan's two methods are kept."""
+    """Return points; those of one plan's two methods are kept, and of the whole drive's."""
     return UnitPoints(names, method=method, samples=samples, seed=seed, later=later)
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any, cast
 
 from flexlash.mechanics import elementary
-from flexlash.report.formula.functions import ABS, IF, LN, MAX, MIN, SIN, SQRT
+from flexlash.report.formula.functions import ABS, IF, LN, MAX, MIN, SIN, SQRT, TAN
 from flexlash.report.formula.live import Live, Operand, live
 
 __all__ = ["worked"]
@@ -38,6 +38,7 @@ for _function, _answer in (
     (elementary.sqrt, SQRT),
     (elementary.log, LN),
     (elementary.sin, SIN),
+    (elementary.tan, TAN),
     (elementary.power, operator.pow),
     (elementary.box_cox, _box_cox),
     (elementary.maximum, MAX),

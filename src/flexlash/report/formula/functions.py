@@ -45,6 +45,7 @@ __all__ = [
     "SIN",
     "SQRT",
     "SUM",
+    "TAN",
     "N",
     "decimals_to",
     "match_exactly",
@@ -70,6 +71,11 @@ def SIN(angle: Operand) -> Live:
 def COS(angle: Operand) -> Live:
     """Return the cosine of an angle in radians."""
     return _of_number("COS", angle, math.cos)
+
+
+def TAN(angle: Operand) -> Live:
+    """Return the tangent of an angle in radians."""
+    return _of_number("TAN", angle, math.tan)
 
 
 def EXP(number: Operand) -> Live:
