@@ -46,7 +46,7 @@ def tolerance_step(dimension: str) -> float:
 def on_drawing(value: float, step: float, *, upwards: bool) -> float:
     """Return the next multiple of a step at or above a value, or at or below it, as a decimal number.
 
-    >>> on_drawing(45.84, 0.5, upwards=True), on_drawing(1.817, 0.01, upwards=True), on_drawing(1.6, 0.01, upwards=False)
+    >>> on_drawing(45.84, 0.5, upwards=True), on_drawing(1.817, 0.01, upwards=True), on_drawing(1.6, 0.01, upwards=True)
     (46.0, 1.82, 1.6)
     """
     steps = value / step

@@ -59,13 +59,13 @@ class Present:
 class Effects:
     """What a change does beside the backlash: changes as shares, the greatest von Mises stress of torsion [Pa].
 
-    The mass is None without a density.
+    None is what hangs on a density, or an elastic constant, that a material has not.
     """
 
     mass_change: float | None
     stiffness_change: float
     von_mises: float
-    bending_stress_change: float
+    bending_stress_change: float | None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,0 +1,209 @@
+"""The value of a changed dimension at which just the target share of units is over the limit, and its drawing value.
+
+The prediction of `predicted_scores` says where to look; the engine then says which share is over the limit there and at
+the drawing value. Between two such points the scores rise in proportion to the levels of Φ, which tells the value to
+some parts in ten million. What does not yield to that, a grade that jumps, is found by halving on the engine alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import ndtri
+
+from flexlash.decisions.changed_rows import limits_as_submitted, over_limit, toleranced
+from flexlash.decisions.changes import with_sizes
+from flexlash.decisions.lever import Present, Terms
+from flexlash.decisions.predicted_scores import ChangedAlike
+from flexlash.schema.arrays import Array
+from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.units import as_entered
+from flexlash.schema.variant_arrays import Indices
+
+__all__ = ["LimitSearch", "Solution", "level_of"]
+
+Bools = npt.NDArray[np.bool_]
+Rounded = Callable[[float, bool], float]
+"""The drawing value next to a value, upwards or downwards, both in the unit of the column."""
+
+_RAREST = 1e-15
+_ROUNDS, _HALVINGS, _MORE_STEPS = 5, 36, 3
+_NEAR, _NEARER = 0.01, 1e-3
+"""How near the target a first point must be, in levels of Φ, with and without a slope from two points."""
+
+_APART = 0.05
+"""How far apart two points must be, in levels of Φ, to tell a slope."""
+
+_SLOPES = (0.5, 2.0)
+"""Between which parts of the expected slope a told one is believed."""
+
+_SAME = 1e-9
+"""Part of a value by which it no longer moves."""
+
+
+def level_of(presents: Sequence[Present], unchanged: ChangedAlike, target: float) -> tuple[Array, Array]:
+    """Return the score (variants,) at which the target is met, and how it rises with levels of Φ, as they are now."""
+    mean, sd = (one[:, 0] for one in unchanged.moments(unchanged.present[:, None]))
+    known = np.array(sorted(presents[0].quantiles))
+    outputs = np.array([[one.quantiles[probability] for probability in known.tolist()] for one in presents])
+    scores, levels = (outputs - mean[:, None]) / sd[:, None], ndtri(known)
+    wanted = float(ndtri(1 - target))
+    above = int(np.clip(np.searchsorted(levels, wanted), 1, len(levels) - 1))
+    rise = (scores[:, above] - scores[:, above - 1]) / (levels[above] - levels[above - 1])
+    return scores[:, above] + rise * (wanted - levels[above]), np.where(rise > 0, rise, 1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Solution:
+    """What was found of each variant: arrays (variants,), NaN where there is nothing.
+
+    `value` [SI] meets the target just so; `drawing` is its drawing value in the unit of the column, NaN where no
+    multiple of the step beside it serves. Where no value was found, `extreme` [SI] is the best there is, or the worst,
+    which still meets the limit. `over` is the share over the limit with the drawing value, or at the extreme.
+    """
+
+    value: Array
+    drawing: Array
+    extreme: Array
+    over: Array
+
+
+class LimitSearch:
+    """The search for one change of some variants alike; the engine says which share is over the limit.
+
+    `level` and `rise` (variants,) are as of `level_of`.
+    """
+
+    def __init__(
+        self, alike: ChangedAlike, presents: Sequence[Present], terms: Terms, level: Array, rise: Array
+    ) -> None:
+        self._alike = alike
+        self._presents = presents
+        self._terms = terms
+        self._rise = rise
+        self._unit = DIMENSIONS[alike.change.dimension].si_unit.si
+        self._wanted = np.array([present.direction(terms.target) == "meet" for present in presents])
+        self._target = float(ndtri(1 - terms.target))
+        self._crossing = alike.crossing(level, wanted=self._wanted)
+
+    def solution(self, rounded: Rounded) -> Solution:
+        """Return what is found, with drawing values as `rounded` returns them."""
+        count = len(self._presents)
+        found = {name: np.full(count, np.nan) for name in ("value", "drawing", "extreme", "over")}
+        has = np.isfinite(self._crossing.value)
+        unsettled = self._refine(np.flatnonzero(has), found, rounded)
+        missing = np.flatnonzero(~has)
+        ends = self._alike.take(missing).extreme(highest=self._wanted[missing]) if len(missing) else np.empty(0)
+        over = self._shares(missing, ends)
+        found["extreme"][missing], found["over"][missing] = ends, over
+        unpredicted = missing[self._crossed(missing, over)]
+        beyond = self._crossing.beyond.copy()
+        beyond[unpredicted] = found["extreme"][unpredicted]
+        halved = np.concatenate([unsettled, unpredicted])
+        self._halve(halved, beyond, found, rounded)
+        self._make_safe(np.flatnonzero(np.isfinite(found["value"])), found, rounded)
+        return Solution(**found)
+
+    def _crossed(self, rows: Indices, over: Array) -> Bools:
+        """Return where shares over the limit are on the other side of the target than they are now."""
+        return np.asarray((over <= self._terms.target) == self._wanted[rows])
+
+    def _shares(self, rows: Indices, values: Array, *, by_lines: bool = True) -> Array:
+        """Return the shares over the limit of some variants with values [SI]; NaN where these make no part."""
+        over, spread, places = np.full(len(rows), np.nan), [], []
+        for place, (row, value) in enumerate(zip(rows.tolist(), values.tolist(), strict=True)):
+            present = self._presents[row]
+            if not np.isfinite(value):
+                continue
+            sizes = self._alike.change.sizes(present.variant.dimensions, value)
+            changed = with_sizes(present.variant, sizes)
+            limits, problems = limits_as_submitted(changed, self._terms)
+            if not any(problem.kind in {"impossible", "untabulated"} for problem in problems):
+                spread.append(toleranced(changed, limits, present.limit, self._terms))
+                places.append(place)
+        over[places] = over_limit(spread, self._terms, by_lines=by_lines)
+        fine = self._alike.take(rows).makes_a_part(values[:, None])[:, 0] if len(rows) else np.empty(0, dtype=bool)
+        return np.where(fine, over, np.nan)
+
+    def _levels(self, over: Array) -> Array:
+        """Return the levels of Φ of shares over the limit."""
+        return np.asarray(ndtri(np.clip(1 - over, _RAREST, 1 - _RAREST)))
+
+    def _refine(self, rows: Indices, found: dict[str, Array], rounded: Rounded) -> Indices:
+        """Put down what is found from the predicted values on, and return the variants of which it is not."""
+        values = self._crossing.value.copy()
+        for _ in range(_ROUNDS):
+            if not len(rows):
+                break
+            own, first, rise = self._alike.take(rows), values[rows], self._rise[rows]
+            level, score = self._levels(self._shares(rows, first)), own.score(first)
+            drawing = self._drawn(rows, own.value_at(first, score + (self._target - level) * rise), rounded)
+            over = self._shares(rows, drawing * self._unit, by_lines=False)
+            with np.errstate(all="ignore"):
+                apart = self._levels(over) - level
+                slope = (own.score(drawing * self._unit) - score) / apart
+                told = (abs(apart) > _APART) & (slope > _SLOPES[0] * rise) & (slope < _SLOPES[1] * rise)
+            told &= (self._terms.plan.method == "line") & (over > _RAREST) & (over < 1 - _RAREST)
+            value = own.value_at(first, score + (self._target - level) * np.where(told, slope, rise))
+            near = np.abs(self._target - level) <= np.where(told, _NEAR, _NEARER)
+            near |= np.abs(value - first) <= _SAME * np.abs(first)
+            settled = near & (self._drawn(rows, value, rounded) == drawing)
+            done = rows[settled]
+            for name, numbers in (("value", value), ("drawing", drawing), ("over", over)):
+                found[name][done] = numbers[settled]
+            values[rows] = value
+            rows = rows[~settled & np.isfinite(value)]
+        return np.flatnonzero(np.isfinite(self._crossing.value) & np.isnan(found["value"]))
+
+    def _halve(self, rows: Indices, beyond: Array, found: dict[str, Array], rounded: Rounded) -> None:
+        """Put down what halving between the present values and some beyond the target finds."""
+        if not len(rows):
+            return
+        near, far = self._alike.present[rows].copy(), beyond[rows]
+        over = self._shares(rows, far)
+        reached = self._crossed(rows, over)
+        for _ in range(_HALVINGS):
+            middle = (near + far) / 2
+            crossed = self._crossed(rows, self._shares(rows, middle))
+            near, far = np.where(crossed, near, middle), np.where(crossed, middle, far)
+        value = np.where(self._wanted[rows], far, near)
+        drawing = self._drawn(rows, value, rounded)
+        shares = self._shares(rows, drawing * self._unit, by_lines=False)
+        for name, numbers in (("value", value), ("drawing", drawing), ("over", shares)):
+            found[name][rows[reached]] = numbers[reached]
+        missed = rows[~reached]
+        found["extreme"][missed], found["over"][missed] = beyond[missed], over[~reached]
+
+    def _drawn(self, rows: Indices, values: Array, rounded: Rounded, more: int = 0) -> Array:
+        """Return the drawing values of values [SI] on their safe side, so many steps further; NaN of NaN.
+
+        A value that may only be relaxed keeps at least what it is.
+        """
+        drawing = np.full(len(rows), np.nan)
+        for place, (row, value) in enumerate(zip(rows.tolist(), values.tolist(), strict=True)):
+            if not np.isfinite(value):
+                continue
+            present = float(self._alike.present[row])
+            outwards = value > present
+            upwards = outwards if self._wanted[row] else not outwards
+            told = rounded(value / self._unit, upwards)
+            for _ in range(more):
+                told = rounded(told * (1 + (_SAME if upwards else -_SAME) * 10), upwards)
+            entered = as_entered(present, self._unit)
+            passed = told <= entered if outwards else told >= entered
+            drawing[place] = entered if passed and not self._wanted[row] else told
+        return drawing
+
+    def _make_safe(self, rows: Indices, found: dict[str, Array], rounded: Rounded) -> None:
+        """Go on by a step or some where the share with the drawing value is above the target after all."""
+        for more in range(1, _MORE_STEPS + 1):
+            rows = rows[found["over"][rows] > self._terms.target]
+            if not len(rows):
+                return
+            found["drawing"][rows] = self._drawn(rows, found["value"][rows], rounded, more)
+            found["over"][rows] = self._shares(rows, found["drawing"][rows] * self._unit, by_lines=False)
+        still = rows[found["over"][rows] > self._terms.target]
+        found["drawing"][still] = np.nan

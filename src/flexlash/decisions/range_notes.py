@@ -1,0 +1,69 @@
+"""What a drawing value does not keep to, and what gets worse with it, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from flexlash.decisions.lever import Lever, Terms
+from flexlash.decisions.part_range import broken_rules
+from flexlash.decisions.side_effects import PartNumbers
+from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.findings import spelled_out
+from flexlash.schema.units import as_entered
+
+__all__ = ["beyond_entered_range", "faults_of", "growing_worse"]
+
+
+def faults_of(numbers: PartNumbers) -> list[dict[str, str]]:
+    """Return of each variant what a submission of it is warned of, by a name of the warning."""
+    arrays = numbers.arrays
+    found: list[dict[str, str]] = [{} for _ in arrays.flexspline_types]
+    for kind, _, places, sizes in arrays.alike():
+        with np.errstate(all="ignore"):
+            for rule, broken in broken_rules(kind, sizes, errors=False):
+                for place in places[np.flatnonzero(np.broadcast_to(broken, places.shape))].tolist():
+                    found[place][rule.id] = rule.words
+    strength = arrays.numbers["yield_strength"]
+    told = {
+        "yields": ("von Mises stress {} MPa of torsion is above the yield strength {} MPa", "von_mises", strength),
+        "buckles": (
+            "wall shear {} MPa is above that at which the wall buckles, {} MPa",
+            "wall_shear",
+            numbers["buckling_shear"],
+        ),
+        "tires": (
+            "alternating stress {} MPa of bending is more than a part of the yield strength {} MPa that can last",
+            "alternating_stress",
+            strength,
+        ),
+    }
+    for name, (words, stress, allowed) in told.items():
+        for place in np.flatnonzero(getattr(numbers, name)).tolist():
+            pair = (spelled_out(float(values[place]) / 1e6) for values in (numbers[stress], allowed))
+            found[place][name] = words.format(*pair)
+    return found
+
+
+def beyond_entered_range(lever: Lever, terms: Terms) -> Iterator[str]:
+    """Yield how a drawing value lies beyond the range of Levers."""
+    row, drawing = terms.rows.get(lever.dimension), lever.drawing_value
+    if row is None or drawing is None or lever.what != "nominal":
+        return
+    column = DIMENSIONS[lever.dimension]
+    unit, behind = column.si_unit.si, column.unit_behind
+    if row.lowest is not None and drawing < (least := as_entered(row.lowest, unit)):
+        yield f"below the lowest value of Levers, {least:.10g}{behind}"
+    if row.highest is not None and drawing > (most := as_entered(row.highest, unit)):
+        yield f"above the highest value of Levers, {most:.10g}{behind}"
+
+
+def growing_worse(lever: Lever) -> Iterator[str]:
+    """Yield what gets worse with a lever though no number of the report shows it."""
+    drawing, before, kind = lever.drawing_value, lever.from_value, lever.variant.flexspline_type
+    if lever.dimension != "cylinder_length" or drawing is None or before is None or kind == "cylinder":
+        return
+    if drawing < before:
+        more = f"{100 * (before / drawing - 1):.3g} %"
+        yield f"a shorter {kind} is coned more steeply by the wave generator: that part of its bending rises by {more}"
