@@ -1,0 +1,105 @@
+"""Levers of tolerances: how far each alone may be relaxed, or must be tightened, for a variant to keep its target."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from flexlash.analysis.backlash_models import BACKLASH_OF
+from flexlash.decisions.changes import changes_of
+from flexlash.decisions.found_widths import ALL, FoundWidth, Width, found_widths
+from flexlash.decisions.lever import Lever, Present, Terms
+from flexlash.decisions.tolerance_widths import grades_finer
+from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.number_words import share_words
+
+__all__ = ["tolerance_levers"]
+
+FACTOR = "×"
+"""The unit of the factor by which all tolerances change."""
+
+
+def tolerance_levers(presents: Sequence[Present], terms: Terms) -> list[Lever]:
+    """Return the levers of tolerances of variants with a limit, in the order of these.
+
+    Half the width of the limits is the value; middle, distribution and capability of the process stay. A variant with
+    several tolerances that may change has one more lever, `all`: the factor by which they change together.
+    """
+    return [_lever(found, terms) for found in found_widths(presents, terms)]
+
+
+def _lever(found: FoundWidth, terms: Terms) -> Lever:
+    width = found.width
+    direction = width.present.direction(terms.target)
+    reason = _reason(found, meets=direction == "meet")
+    exact = None if reason or found.root is None or found.root.factor is None else found.root.factor * width.half
+    return Lever(
+        variant=width.present.variant,
+        dimension=width.name,
+        moves=_moves(width),
+        what="tolerance",
+        direction=direction,
+        unit=FACTOR if width.name == ALL else DIMENSIONS[width.name].unit,
+        from_value=width.half,
+        to_value=exact,
+        drawing_value=None if reason else found.drawn,
+        reason=reason,
+        over=None if reason else found.over,
+        notes=() if reason else tuple(_notes(found)),
+        relative_cost=None if reason or found.drawn is None else _cost(width, found.drawn / width.half, terms),
+    )
+
+
+def _moves(width: Width) -> tuple[str, ...]:
+    """Return what has the same tolerance: of all those that change together, of a wall the disk that is as thick."""
+    if width.name == ALL:
+        return width.dimensions
+    changes = changes_of(width.present.variant, lambda _: True)
+    return next((change.moves for change in changes if change.dimension == width.name), ())
+
+
+def _cost(width: Width, factor: float, terms: Terms) -> float:
+    """Return what it costs to have tolerances so many times as wide: less than nothing where they are relaxed."""
+    rows = (terms.rows.get(name) for name in width.dimensions)
+    cost = math.fsum(1.0 if row is None else row.cost_per_grade for row in rows) * grades_finer(factor)
+    return float(f"{cost:.12g}")
+
+
+def _notes(found: FoundWidth) -> Sequence[str]:
+    if found.root is None or not found.root.bounded:
+        return []
+    if found.width.farthest[1]:
+        return ["as far as the shape allows"]
+    return ["as far as is usual, ± 10 % of the value"]
+
+
+def _reason(found: FoundWidth, *, meets: bool) -> str:
+    """Return why tolerances cannot do it, empty where they can."""
+    width = found.width
+    if width.is_measured:
+        return "its parts were measured: other limits do not change how they scatter"
+    if found.over_narrow is not None:
+        return _helpless(found, found.over_narrow)
+    if found.drawn is not None:
+        return ""
+    step = f"{width.step:g}{'' if width.name == ALL else DIMENSIONS[width.name].unit_behind}"
+    if meets:
+        return f"it would have to be finer than the drawing step of {step}"
+    if found.root is not None and found.root.bounded:
+        return "the shape allows no more" if width.farthest[1] else "it is as wide as is usual, ± 10 % of the value"
+    return f"not by a drawing step of {step}"
+
+
+def _helpless(found: FoundWidth, over: float) -> str:
+    """Return why no width helps, with what the narrowest leaves over the limit."""
+    present = found.width.present
+    who = "no tolerance can, nor all together" if found.width.name == ALL else "no tolerance alone can"
+    nominal = float(BACKLASH_OF[present.variant.flexspline_type](present.variant.dimensions))
+    if nominal > present.limit:
+        return f"{who}: the nominal is over the limit"
+    without = "it" if found.alone and found.width.name != ALL else "any of them"
+    return f"{who}: even without scatter of {without} {_share(over)} of units are over the limit"
+
+
+def _share(over: float) -> str:
+    return share_words({f"probability_over_limit{end}": over for end in ("", "_low", "_high")})
