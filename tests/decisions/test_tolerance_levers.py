@@ -36,7 +36,7 @@ def tolerances(tmp_path):
 
 def _levers(outcome, **changed):
     """Return the tolerance levers of an outcome by variant and dimension."""
-    found = tolerance_levers(presents_of(outcome), terms_of(outcome, **changed))
+    found = [lever for _, lever, _ in tolerance_levers(presents_of(outcome), terms_of(outcome, **changed))]
     return {(lever.variant.name, lever.dimension): lever for lever in found}
 
 

@@ -18,6 +18,7 @@ from flexlash.decisions.material_levers import material_levers
 from flexlash.decisions.nominal_levers import nominal_levers
 from flexlash.decisions.range_notes import beyond_entered_range, faults_of, growing_worse
 from flexlash.decisions.side_effects import PartNumbers, effects_between
+from flexlash.decisions.tolerance_levers import tolerance_levers
 from flexlash.schema.decision_results import LEVERS_TABLE
 from flexlash.schema.decision_rows import LeverRow
 from flexlash.schema.variant import Settings, Variant
@@ -35,7 +36,11 @@ _PER_WORKER = 60
 Found: TypeAlias = tuple[int, Lever, Variant | None]
 """The index of a variant, a lever of it, and the variant as drawn with that; None where it is as it was."""
 
-_KINDS: Sequence[Callable[[Sequence[Present], Terms], Iterator[Found]]] = (nominal_levers, material_levers)
+_KINDS: Sequence[Callable[[Sequence[Present], Terms], Iterator[Found]]] = (
+    nominal_levers,
+    tolerance_levers,
+    material_levers,
+)
 """What yields the levers of variants, in the order of the table."""
 
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from flexlash.analysis.backlash_models import BACKLASH_OF
 from flexlash.decisions.changes import changes_of
 from flexlash.decisions.found_widths import ALL, FoundWidth, Width, found_widths
 from flexlash.decisions.lever import Lever, Present, Terms
 from flexlash.decisions.tolerance_widths import grades_finer
+from flexlash.decisions.why_not import share_of_units
 from flexlash.schema.columns import DIMENSIONS
-from flexlash.schema.number_words import share_words
+from flexlash.schema.variant import Variant
 
 __all__ = ["tolerance_levers"]
 
@@ -19,13 +20,16 @@ FACTOR = "×"
 """The unit of the factor by which all tolerances change."""
 
 
-def tolerance_levers(presents: Sequence[Present], terms: Terms) -> list[Lever]:
-    """Return the levers of tolerances of variants with a limit, in the order of these.
+def tolerance_levers(presents: Sequence[Present], terms: Terms) -> Iterator[tuple[int, Lever, Variant | None]]:
+    """Yield the levers of tolerances: the index of the variant, the lever, the variant as drawn with it.
 
     Half the width of the limits is the value; middle, distribution and capability of the process stay. A variant with
     several tolerances that may change has one more lever, `all`: the factor by which they change together.
     """
-    return [_lever(found, terms) for found in found_widths(presents, terms)]
+    places = {present.variant.row: index for index, present in enumerate(presents)}
+    for found in found_widths(presents, terms):
+        lever, variant = _lever(found, terms), found.width.present.variant
+        yield places[variant.row], lever, None if lever.drawing_value is None else variant
 
 
 def _lever(found: FoundWidth, terms: Terms) -> Lever:
@@ -98,8 +102,7 @@ def _helpless(found: FoundWidth, over: float) -> str:
     if nominal > present.limit:
         return f"{who}: the nominal is over the limit"
     without = "it" if found.alone and found.width.name != ALL else "any of them"
-    return f"{who}: even without scatter of {without} {_share(over)} of units are over the limit"
-
-
-def _share(over: float) -> str:
-    return share_words({f"probability_over_limit{end}": over for end in ("", "_low", "_high")})
+    share = share_of_units(over)
+    return (
+        f"{who}: even without scatter of {without} {share} {'is' if share.endswith('unit') else 'are'} over the limit"
+    )
