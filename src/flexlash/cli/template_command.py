@@ -20,8 +20,6 @@ __all__ = ["template"]
 
 _SHEETS = {name.lower().replace(" ", "-"): name for name in OPTIONAL_SHEETS}
 _ALL = "all"
-_LATER = ("other-sources", "levers", "sweep")
-"""Sheets of a later version."""
 
 
 def _optional(context: click.Context, option: click.Parameter, value: tuple[str, ...]) -> tuple[str, ...]:
@@ -30,8 +28,6 @@ def _optional(context: click.Context, option: click.Parameter, value: tuple[str,
     asked = {name.strip().lower() for names in value for name in names.split(",") if name.strip()}
     there = f"There are {', '.join(_SHEETS)} and {_ALL}."
     for name in sorted(asked - {*_SHEETS, _ALL}):
-        if name in _LATER:
-            raise click.BadParameter(f"the sheet {name} comes with a later version of flexlash. {there}")
         raise click.BadParameter(f"there is no optional sheet {shown(name)}. {there}")
     return tuple(sheet for name, sheet in _SHEETS.items() if asked & {name, _ALL})
 

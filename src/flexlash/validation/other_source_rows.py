@@ -9,6 +9,7 @@ from typing import Any
 from flexlash.schema.columns import columns_of
 from flexlash.schema.decision_rows import OtherSource
 from flexlash.schema.findings import spelled_out
+from flexlash.schema.part_row import PartRow
 from flexlash.schema.spellings import plain
 from flexlash.schema.units import find_unit
 from flexlash.validation.ledger import Ledger
@@ -22,6 +23,9 @@ _SCATTER = ("distribution", "limits_sigma")
 _ANGLE, _RADIAL = "arcmin", "mm radial play"
 _PLAUSIBLE = {"arcmin": 600.0, "mm": 1.0}
 """Greatest play and deviation that is plausible, in the unit of the entry."""
+
+_EDGE = PartRow.edge
+"""What counts as 0: deviations that cancel a value as decimals may miss it by a last binary digit."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,10 +159,8 @@ def _check_play(table: Table, ledger: Ledger, record: Mapping[str, Any]) -> None
 def _negative_play(least: float, most: float) -> tuple[str, float] | None:
     """Return the code of a play that is negative on average, or at the least, and how much it is; else None."""
     middle = (least + most) / 2
-    # Deviations that cancel a value as decimals may miss it by a last binary digit.
-    edge = 1e-12 * max(abs(least), abs(most))
-    code, found = ("E364", middle) if middle < -edge else ("W462", least)
-    return (code, found) if found < -edge else None
+    code, found = ("E364", middle) if middle < -_EDGE else ("W462", least)
+    return (code, found) if found < -_EDGE else None
 
 
 def _source(record: Mapping[str, Any]) -> OtherSource:

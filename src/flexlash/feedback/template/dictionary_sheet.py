@@ -16,7 +16,7 @@ _ABSENT = "An optional sheet. To add it to this workbook: flexlash template --up
 def write_dictionary(sheet: Any, formats: Mapping[str, Any], sheets: Collection[str]) -> None:
     """Write every column of these entry sheets: what it is called, holds and means; then which sheets are missing."""
     headings = {
-        "Sheet": 12,
+        "Sheet": 15,
         "Column": 28,
         "Key": 24,
         "Required": 10,
@@ -45,7 +45,7 @@ def write_dictionary(sheet: Any, formats: Mapping[str, Any], sheets: Collection[
     absent = (name for name in OPTIONAL_SHEETS if name not in sheets)
     for row, name in enumerate(absent, start=len(entries) + 1):
         sheet.write_string(row, 0, name, formats["wrap"])
-        sheet.write_string(row, len(headings) - 1, _ABSENT.format(name.lower()), formats["wrap"])
+        sheet.write_string(row, len(headings) - 1, _ABSENT.format(name.lower().replace(" ", "-")), formats["wrap"])
     sheet.freeze_panes(1, 0)
     sheet.set_landscape()
     sheet.set_paper(9)

@@ -7,8 +7,9 @@ from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
+from flexlash.feedback.template.decision_status import SIZES
 from flexlash.feedback.template.tolerance_status import GRADED
-from flexlash.schema.columns import ENTRY_SHEETS, SETTINGS, Column
+from flexlash.schema.columns import DIMENSIONS, ENTRY_SHEETS, SETTINGS, Column, columns_of
 
 __all__ = [
     "FIRST_ROW",
@@ -27,6 +28,9 @@ PREPARED_ROWS = 2000
 SIDE_ROWS = 500
 _MEASURED_ROWS = 1000
 """LibreOffice keeps the rules of no more than a thousand rows below the last entry."""
+
+_FEW_ROWS = 100
+"""Rows of a sheet that has one for a source, a dimension or a study."""
 
 _LISTED_ROWS = {"Measurements": 10_000}
 """Rows whose names are listed, where these are more than those that are prepared."""
@@ -57,6 +61,16 @@ _LISTS = {
     ("Correlations", "tolerance_class"): "fl_tolerance_classes",
     ("Correlations", "dimension_1"): "fl_dimensions",
     ("Correlations", "dimension_2"): "fl_dimensions",
+    ("Other sources", "enter_as"): "fl_enter_as",
+    ("Other sources", "distribution"): "fl_source_distributions",
+    ("Other sources", "side"): "fl_sides",
+    ("Other sources", "kind"): "fl_kinds",
+    ("Levers", "dimension"): "fl_levers",
+    ("Levers", "may_change"): "fl_answers",
+    ("Levers", "tolerance_may_change"): "fl_answers",
+    ("Sweep", "variant"): "fl_variant_names",
+    ("Sweep", "dimension"): "fl_sizes",
+    ("Sweep", "second_dimension"): "fl_sizes",
 }
 
 _ROWS = {"Tolerances": "fl_tolerance_rows", "Measurements": "fl_sample_rows"}
@@ -65,7 +79,7 @@ _ROWS = {"Tolerances": "fl_tolerance_rows", "Measurements": "fl_sample_rows"}
 _NAMES = {"Tolerances": "fl_tolerance_classes", "Measurements": "fl_samples"}
 """The names in a sheet's first column, each once."""
 
-_PICK = "Pick an entry of the list. Add materials, tolerance classes and samples on their sheets."
+_PICK = "Pick an entry of the list. Add variants, materials, tolerance classes and samples on their sheets."
 
 
 def header_note(column: Column) -> str:
@@ -76,7 +90,12 @@ def header_note(column: Column) -> str:
 
 def prepared_rows(sheet: str, filled: int) -> int:
     """Return how many rows of an entry sheet, so many of them filled, have rules, lists and a status."""
-    rows = {"Variants": PREPARED_ROWS, "Measurements": _MEASURED_ROWS}
+    few = min(SIDE_ROWS, _FEW_ROWS)
+    rows = {
+        "Variants": PREPARED_ROWS,
+        "Measurements": _MEASURED_ROWS,
+        **dict.fromkeys(("Other sources", "Levers", "Sweep"), few),
+    }
     return max(rows.get(sheet, SIDE_ROWS), filled)
 
 
@@ -118,27 +137,26 @@ def write_lists(workbook: Any, sheet: Any, names: Mapping[str, Sequence[str]]) -
 
     `names` are those in the first column of each sheet of the workbook, row by row.
     """
-    every = [column for columns in ENTRY_SHEETS.values() for column in columns]
-    choices = {column.key: column.choices for column in reversed(every)}
     lists = {
-        "fl_flexspline_types": choices["flexspline_type"],
-        "fl_distributions": choices["distribution"],
-        "fl_dimensions": choices["dimension"],
+        "fl_flexspline_types": _choices("Variants", "flexspline_type"),
+        "fl_distributions": _choices("Tolerances", "distribution"),
+        "fl_dimensions": _choices("Tolerances", "dimension"),
         "fl_grades": _GRADES,
         "fl_deviation_units": _DEVIATION_UNITS,
         "fl_methods": next(column.choices for column in SETTINGS if column.key == "method"),
-        "fl_settings": choices["setting"],
+        "fl_settings": _choices("Settings", "setting"),
         "fl_graded_dimensions": GRADED,
-        "fl_scatters_between": choices["scatters_between"],
-        **({"fl_uses": choices["use_as"]} if "Measurements" in names else {}),
+        "fl_scatters_between": _choices("Tolerances", "scatters_between"),
+        **_optional_lists(names),
     }
     for index, (name, entries) in enumerate(lists.items()):
         letter = xl_col_to_name(index)
         sheet.write_string(0, index, name)
         sheet.write_column(1, index, entries)
         workbook.define_name(name, f"=Lists!${letter}$2:${letter}${len(entries) + 1}")
-    block = _first_column("Materials", names)
-    workbook.define_name("fl_materials", f"={block.partition(':')[0]}:INDEX({block},MAX(1,COUNTA({block})))")
+    workbook.define_name("fl_materials", _filled_part(_first_column("Materials", names)))
+    if "Sweep" in names:
+        workbook.define_name("fl_variant_names", _filled_part(_first_column("Variants", names)))
     for schema, title in _ROWS.items():
         if schema in names:
             workbook.define_name(title, f"={_first_column(schema, names)}")
@@ -149,6 +167,38 @@ def write_lists(workbook: Any, sheet: Any, names: Mapping[str, Sequence[str]]) -
         _write_names(workbook, sheet, index, schema, names)
     sheet.hide()
     sheet.protect()
+
+
+def _choices(sheet: str, key: str) -> Sequence[Any]:
+    return columns_of(sheet)[key].choices
+
+
+def _optional_lists(sheets: Collection[str]) -> dict[str, Sequence[Any]]:
+    """Return the lists of the optional sheets among these; beside the dimensions of levers stand their bounds."""
+    lists: dict[str, Sequence[Any]] = {}
+    if "Measurements" in sheets:
+        lists["fl_uses"] = _choices("Measurements", "use_as")
+    if "Other sources" in sheets:
+        lists["fl_enter_as"] = _choices("Other sources", "enter_as")
+        lists["fl_source_distributions"] = _choices("Other sources", "distribution")
+        lists["fl_sides"] = _choices("Other sources", "side")
+        lists["fl_kinds"] = _choices("Other sources", "kind")
+    if "Levers" in sheets:
+        lists["fl_answers"] = _choices("Levers", "may_change")
+    if "Sweep" in sheets:
+        lists["fl_sizes"] = SIZES
+    if not {"Levers", "Sweep"}.isdisjoint(sheets):
+        bounds = [DIMENSIONS[name] for name in SIZES]
+        lists["fl_levers"] = _choices("Levers", "dimension")
+        lists["fl_lever_least"] = [column.minimum or 0 for column in bounds]
+        lists["fl_lever_above"] = [int(column.exclusive_minimum) for column in bounds]
+        lists["fl_lever_most"] = [_FAR if column.maximum is None else column.maximum for column in bounds]
+    return lists
+
+
+def _filled_part(block: str) -> str:
+    """Return the formula of the cells of a block down to its last entry, where there is no gap."""
+    return f"={block.partition(':')[0]}:INDEX({block},MAX(1,COUNTA({block})))"
 
 
 def _first_column(schema: str, names: Mapping[str, Sequence[str]]) -> str:

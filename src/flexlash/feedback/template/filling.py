@@ -47,15 +47,28 @@ class Filling:
     settings: Mapping[str, Any] = field(default_factory=dict)
     measurements: Sequence[Mapping[str, Any]] = ()
     correlations: Sequence[Mapping[str, Any]] = ()
+    other_sources: Sequence[Mapping[str, Any]] = ()
+    levers: Sequence[Mapping[str, Any]] = ()
+    sweep: Sequence[Mapping[str, Any]] = ()
     optional: Collection[str] = ()
     sheets: Mapping[str, Entries] = field(default_factory=dict)
 
     @property
     def sheet_names(self) -> list[str]:
         """The entry sheets of the template, in their order."""
-        filled = {"Measurements": self.measurements, "Correlations": self.correlations}
-        asked = {*self.optional, *self.sheets, *(name for name, rows in filled.items() if rows)}
+        asked = {*self.optional, *self.sheets, *(name for name, rows in self._of_optional.items() if rows)}
         return [name for name in ENTRY_SHEETS if name not in OPTIONAL_SHEETS or name in asked]
+
+    @property
+    def _of_optional(self) -> dict[str, Sequence[Mapping[str, Any]]]:
+        """The rows of the optional sheets, by name."""
+        return {
+            "Measurements": self.measurements,
+            "Correlations": self.correlations,
+            "Other sources": self.other_sources,
+            "Levers": self.levers,
+            "Sweep": self.sweep,
+        }
 
     def entries(self, sheet: str) -> Entries:
         """Return what an entry sheet is filled with."""
@@ -74,7 +87,7 @@ class Filling:
                 {"setting": column.key, "value": self.settings.get(column.key, column.default)} for column in SETTINGS
             ]
         else:
-            rows = {"Measurements": self.measurements, "Correlations": self.correlations}.get(sheet, ())
+            rows = self._of_optional[sheet]
         return Entries(rows=rows, columns=ENTRY_SHEETS[sheet])
 
 

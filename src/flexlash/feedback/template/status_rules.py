@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from xlsxwriter.utility import quote_sheetname
+
 from flexlash.reading.raw import ErrorCell
 from flexlash.schema.column import Column
 from flexlash.schema.entry_words import inner_name, wrong_number
@@ -23,11 +25,15 @@ __all__ = [
     "Row",
     "Rule",
     "Stage",
+    "count_formula",
+    "entry_number",
     "entry_text",
     "first_text",
+    "given",
     "is_blank",
     "missing",
     "no_number",
+    "not_in_list",
     "row_formula",
     "stage_names",
     "stage_text",
@@ -88,6 +94,21 @@ def entry_text(row: Row, key: str) -> str:
     return str(row.get(key) or "").casefold()
 
 
+def entry_number(row: Row, key: str) -> float:
+    """Return a number, a blank cell as 0, as Excel compares it."""
+    return float(row.get(key) or 0.0)
+
+
+def given(row: Row, *keys: str) -> int:
+    """Return how many of these cells are filled."""
+    return sum(not is_blank(row.get(key)) for key in keys)
+
+
+def count_formula(*keys: str) -> str:
+    """Return the formula of how many of these cells are filled."""
+    return f"({'+'.join(f'({{{key}}}<>{chr(34)}{chr(34)})' for key in keys)})"
+
+
 def missing(column: Column) -> Rule:
     """Return the rule that a required cell is filled."""
     key = column.key
@@ -104,6 +125,16 @@ def unlisted(column: Column) -> Rule:
         text=f"{inner_name(column)} is not one of its list",
         excel=f"AND({differs})",
         holds=lambda row, _: entry_text(row, key).strip() not in listed,
+    )
+
+
+def not_in_list(column: Column, names: str) -> Rule:
+    """Return the rule that an entry is one of a list that is too long for a formula: the range of that name."""
+    key, listed = column.key, column.choices
+    return Rule(
+        text=f"{inner_name(column)} is not one of its list",
+        excel=f'AND({{{key}}}<>"",COUNTIF({names},TRIM({{{key}}}))=0)',
+        holds=lambda row, _: not is_blank(row.get(key)) and entry_text(row, key).strip() not in listed,
     )
 
 
@@ -169,9 +200,11 @@ def stage_names(sheet: str, stages: Sequence[Stage], letters: Mapping[str, str],
     The columns stand under these letters, `block` are the numbers of their prepared rows. References are relative to
     the first row: a name means the row of the cell that uses it.
     """
-    cells = {key: f"{sheet}!${letter}1" for key, letter in letters.items()}
+    quoted = quote_sheetname(sheet)
+    cells = {key: f"{quoted}!${letter}1" for key, letter in letters.items()}
     blocks = {
-        f"{key}_block": f"{sheet}!${letter}${block.start}:${letter}${block.stop - 1}" for key, letter in letters.items()
+        f"{key}_block": f"{quoted}!${letter}${block.start}:${letter}${block.stop - 1}"
+        for key, letter in letters.items()
     }
     first, *_, last = letters.values()
     names = {
@@ -181,7 +214,7 @@ def stage_names(sheet: str, stages: Sequence[Stage], letters: Mapping[str, str],
     status = f'"{COMPLETE}"'
     for name in reversed(names):
         status = f'IF({name}<>"",{name},{status})'
-    before = {ERROR: f"SUMPRODUCT(--ISERROR({sheet}!${first}1:${last}1))>0"}
+    before = {ERROR: f"SUMPRODUCT(--ISERROR({quoted}!${first}1:${last}1))>0"}
     return names | {_status_name(stages): f"={first_text(before, status)}"}
 
 

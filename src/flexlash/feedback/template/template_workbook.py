@@ -10,6 +10,7 @@ from typing import Any
 import xlsxwriter
 
 from flexlash.feedback.template.cell_writer import CellWriter
+from flexlash.feedback.template.decision_status import LEVER_STATUS, SOURCE_STATUS, SWEEP_STATUS
 from flexlash.feedback.template.dictionary_sheet import write_dictionary
 from flexlash.feedback.template.entry_rules import (
     FIRST_ROW,
@@ -44,13 +45,18 @@ TITLES = {
     "Settings": ("Settings", "Blank values take the default."),
     "Other sources": (
         "Other sources",
-        "One row per source of backlash beside the wind-up of the flexspline. One budget for all variants.",
+        "One row per source of backlash beside the wind-up of the flexspline: its play, its deviations, or both. One "
+        "budget for all variants.",
     ),
     "Levers": (
         "Levers",
-        "One row per dimension: whether it may change, how far, in which steps, at which relative cost.",
+        "One row per dimension: whether it may change, how far, in which steps, at which relative cost. No row: the "
+        "built-in defaults.",
     ),
-    "Sweep": ("Sweep", "One row per study: a dimension, or two, from the first value to the last."),
+    "Sweep": (
+        "Sweep",
+        "One row per study: a dimension, or two, from the first value to the last; down where that is the lesser one.",
+    ),
     "Measurements": (
         "Measurements",
         "One row per measured part; blank where it was not measured. Dimensions measured on the same parts give their "
@@ -66,7 +72,14 @@ TITLES = {
 _OUTLINED = ("Refinements", "Process")
 """Groups of columns that can be folded away."""
 
-_PRINTED_ROWS = {"Variants": 100, "Tolerances": 45, "Correlations": 25}
+_PRINTED_ROWS = {
+    "Variants": 100,
+    "Tolerances": 45,
+    "Correlations": 25,
+    "Other sources": 25,
+    "Levers": 30,
+    "Sweep": 25,
+}
 """Rows that are printed at least of a sheet whose formulas reach further down than its entries."""
 
 _OWN_WIDTH = 16
@@ -86,7 +99,10 @@ _WIDTHS = {
     "dimension_1": 24,
     "dimension_2": 24,
     "reason": 56,
+    "enter_as": 16,
+    "second_dimension": 24,
 }
+_WIDTHS_OF_SHEETS = {("Other sources", "source"): 30, ("Other sources", "distribution"): 17}
 
 
 def template_bytes(filling: Filling | None = None) -> bytes:
@@ -118,6 +134,7 @@ class _Template:
         """Write all sheets."""
         write_lists(self.workbook, self.sheets["Lists"], self.names)
         known = {
+            "fl_variants": counted(name for name in self.names["Variants"] if name),
             "fl_materials": counted(self.names["Materials"]),
             "fl_tolerance_rows": counted(self.names["Tolerances"]),
             "fl_tolerance_dimensions": counted_pairs(self.entries["Tolerances"], "tolerance_class", "dimension"),
@@ -127,6 +144,9 @@ class _Template:
             "Variants": VARIANT_STATUS,
             "Tolerances": tolerance_status(has_measurements="Measurements" in self.entries),
             "Correlations": CORRELATION_STATUS,
+            "Other sources": SOURCE_STATUS,
+            "Levers": LEVER_STATUS,
+            "Sweep": SWEEP_STATUS,
         }
         for name, entries in self.entries.items():
             if name == "Settings":
@@ -158,7 +178,7 @@ class _Template:
         sheet.set_row(HEADER_ROW, 62)
         for index, column in enumerate(columns):
             style = "required" if column.required else "header"
-            width = _WIDTHS.get(column.key, 13)
+            width = _WIDTHS_OF_SHEETS.get((name, column.key)) or _WIDTHS.get(column.key, 13)
             sheet.set_column(index, index, width, self._format(column), self._outline(column))
             sheet.write_string(HEADER_ROW, index, column.label, self.formats[style])
             sheet.write_comment(HEADER_ROW, index, header_note(column), {"x_scale": 2, "y_scale": 1.2})

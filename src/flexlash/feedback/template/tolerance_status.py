@@ -9,10 +9,14 @@ from flexlash.feedback.template.status_rules import (
     Row,
     Rule,
     Stage,
+    count_formula,
+    entry_number,
     entry_text,
+    given,
     is_blank,
     missing,
     no_number,
+    not_in_list,
     twice,
     unknown,
     unlisted,
@@ -35,21 +39,6 @@ _NO_NORMAL = ("uniform", "triangular")
 _NO_CLASS = "tolerance class not in Tolerances"
 
 
-def _given(row: Row, *keys: str) -> int:
-    """Return how many of these cells are filled."""
-    return sum(not is_blank(row.get(key)) for key in keys)
-
-
-def _number(row: Row, key: str) -> float:
-    """Return a number, a blank cell as 0, as Excel compares it."""
-    return float(row.get(key) or 0.0)
-
-
-def _count(*keys: str) -> str:
-    """Return the formula of how many of these cells are filled."""
-    return f"({'+'.join(f'({{{key}}}<>{chr(34)}{chr(34)})' for key in keys)})"
-
-
 def _is_no_normal(row: Row) -> bool:
     """Whether the distribution has no mean and standard deviation of its own."""
     return entry_text(row, "distribution").strip() in _NO_NORMAL
@@ -58,16 +47,7 @@ def _is_no_normal(row: Row) -> bool:
 def _has_two_bases(row: Row, known: Known) -> bool:
     """Whether a row and another of its class name what the class is based on: rows without a dimension."""
     return (
-        _given(row, "based_on") == 1 and known["tolerance_class,dimension"][entry_text(row, "tolerance_class"), ""] > 1
-    )
-
-
-def _dimension(key: str) -> Rule:
-    """Return the rule that a dimension is one of the list, which is too long for a formula."""
-    return Rule(
-        text=f"{key.replace('_', ' ')} is not one of its list",
-        excel=f'AND({{{key}}}<>"",COUNTIF(fl_dimensions,TRIM({{{key}}}))=0)',
-        holds=lambda row, _: not is_blank(row.get(key)) and entry_text(row, key).strip() not in DIMENSIONS,
+        given(row, "based_on") == 1 and known["tolerance_class,dimension"][entry_text(row, "tolerance_class"), ""] > 1
     )
 
 
@@ -75,8 +55,8 @@ def _other_deviation(key: str) -> Rule:
     """Return the rule that a deviation does not stand alone."""
     return Rule(
         text=f"{inner_name(_COLUMNS[key])} missing",
-        excel=f'AND({{{key}}}="",{_count(*_DEVIATIONS)}=1)',
-        holds=lambda row, _: is_blank(row.get(key)) and _given(row, *_DEVIATIONS) == 1,
+        excel=f'AND({{{key}}}="",{count_formula(*_DEVIATIONS)}=1)',
+        holds=lambda row, _: is_blank(row.get(key)) and given(row, *_DEVIATIONS) == 1,
     )
 
 
@@ -85,9 +65,9 @@ _ENTRIES = (
     Rule(
         text="dimension missing",
         excel='AND({dimension}="",{based_on}="")',
-        holds=lambda row, _: not _given(row, "dimension", "based_on"),
+        holds=lambda row, _: not given(row, "dimension", "based_on"),
     ),
-    _dimension("dimension"),
+    not_in_list(_COLUMNS["dimension"], "fl_dimensions"),
     *(unlisted(column) for column in TOLERANCES if column.choices and column.key != "dimension"),
     *(no_number(column) for column in TOLERANCES if column.is_number),
 )
@@ -95,18 +75,18 @@ _BASE = (
     Rule(
         text="based on class needs a row without a dimension",
         excel='AND({based_on}<>"",{dimension}<>"")',
-        holds=lambda row, _: _given(row, "based_on", "dimension") == 2,  # noqa: PLR2004
+        holds=lambda row, _: given(row, "based_on", "dimension") == 2,  # noqa: PLR2004
     ),
     Rule(
         text="based on class stands alone: nothing else in its row",
-        excel=f'AND({{based_on}}<>"",{_count(*_BESIDE_BASE)}>0)',
-        holds=lambda row, _: _given(row, "based_on") == 1 and _given(row, *_BESIDE_BASE) > 0,
+        excel=f'AND({{based_on}}<>"",{count_formula(*_BESIDE_BASE)}>0)',
+        holds=lambda row, _: given(row, "based_on") == 1 and given(row, *_BESIDE_BASE) > 0,
     ),
     Rule(
         text="a class based on itself",
         excel='AND({based_on}<>"",{based_on}={tolerance_class})',
         holds=lambda row, _: (
-            _given(row, "based_on") == 1 and entry_text(row, "based_on") == entry_text(row, "tolerance_class")
+            given(row, "based_on") == 1 and entry_text(row, "based_on") == entry_text(row, "tolerance_class")
         ),
     ),
     unknown("based_on", "based on class not in Tolerances", "fl_tolerance_rows", "standard"),
@@ -121,64 +101,64 @@ _DRAWING = (
     Rule(
         text="grade is not one of its list",
         excel='AND({grade}<>"",SUMPRODUCT(--EXACT(fl_grades,SUBSTITUTE(TRIM({grade}),"JS","js")))=0)',
-        holds=lambda row, _: _given(row, "grade") == 1 and not is_grade(str(row["grade"]).strip()),
+        holds=lambda row, _: given(row, "grade") == 1 and not is_grade(str(row["grade"]).strip()),
     ),
     Rule(
         text="a grade for a dimension that has none",
         excel='AND({grade}<>"",COUNTIF(fl_graded_dimensions,TRIM({dimension}))=0)',
-        holds=lambda row, _: _given(row, "grade") == 1 and entry_text(row, "dimension").strip() not in GRADED,
+        holds=lambda row, _: given(row, "grade") == 1 and entry_text(row, "dimension").strip() not in GRADED,
     ),
     Rule(
         text="grade and deviations are both given",
-        excel=f'AND({{grade}}<>"",{_count(*_DEVIATIONS)}>0)',
-        holds=lambda row, _: _given(row, "grade") == 1 and _given(row, *_DEVIATIONS) > 0,
+        excel=f'AND({{grade}}<>"",{count_formula(*_DEVIATIONS)}>0)',
+        holds=lambda row, _: given(row, "grade") == 1 and given(row, *_DEVIATIONS) > 0,
     ),
     Rule(
         text="neither grade nor deviations are given",
-        excel=f'AND({{dimension}}<>"",{{grade}}="",{_count(*_DEVIATIONS)}=0)',
-        holds=lambda row, _: _given(row, "dimension") == 1 and not _given(row, "grade", *_DEVIATIONS),
+        excel=f'AND({{dimension}}<>"",{{grade}}="",{count_formula(*_DEVIATIONS)}=0)',
+        holds=lambda row, _: given(row, "dimension") == 1 and not given(row, "grade", *_DEVIATIONS),
     ),
     *(_other_deviation(key) for key in _DEVIATIONS),
     Rule(
         text="lower deviation is above upper deviation",
         excel="{lower_deviation}>{upper_deviation}",
-        holds=lambda row, _: _number(row, "lower_deviation") > _number(row, "upper_deviation"),
+        holds=lambda row, _: entry_number(row, "lower_deviation") > entry_number(row, "upper_deviation"),
     ),
 )
 _PROCESS = (
     Rule(
         text="only one of limits at ± sigma, standard deviation, Cp and sample counts",
-        excel=f"{_count(*_SPREADS)}>1",
-        holds=lambda row, _: _given(row, *_SPREADS) > 1,
+        excel=f"{count_formula(*_SPREADS)}>1",
+        holds=lambda row, _: given(row, *_SPREADS) > 1,
     ),
     Rule(
         text="Cpk without Cp",
         excel='AND({cpk}<>"",{cp}="")',
-        holds=lambda row, _: _given(row, "cpk") == 1 and not _given(row, "cp"),
+        holds=lambda row, _: given(row, "cpk") == 1 and not given(row, "cp"),
     ),
     Rule(
         text="Cpk is above Cp",
         excel='AND({cpk}<>"",{cpk}>{cp})',
-        holds=lambda row, _: _given(row, "cpk") == 1 and _number(row, "cpk") > _number(row, "cp"),
+        holds=lambda row, _: given(row, "cpk") == 1 and entry_number(row, "cpk") > entry_number(row, "cp"),
     ),
     Rule(
         text="a uniform or triangular distribution has no process of its own",
-        excel=f'AND(OR(TRIM({{distribution}})="uniform",TRIM({{distribution}})="triangular"),{_count(*_OF_A_PROCESS)}>0)',
-        holds=lambda row, _: _is_no_normal(row) and _given(row, *_OF_A_PROCESS) > 0,
+        excel=f'AND(OR(TRIM({{distribution}})="uniform",TRIM({{distribution}})="triangular"),{count_formula(*_OF_A_PROCESS)}>0)',
+        holds=lambda row, _: _is_no_normal(row) and given(row, *_OF_A_PROCESS) > 0,
     ),
     Rule(
         text="both deviations are alike: no process scatters between them",
-        excel=f'AND({{lower_deviation}}<>"",{{lower_deviation}}={{upper_deviation}},{_count(*_OF_A_PROCESS)}>0)',
+        excel=f'AND({{lower_deviation}}<>"",{{lower_deviation}}={{upper_deviation}},{count_formula(*_OF_A_PROCESS)}>0)',
         holds=lambda row, _: (
-            _given(row, *_DEVIATIONS) == 2  # noqa: PLR2004
+            given(row, *_DEVIATIONS) == 2  # noqa: PLR2004
             and row["lower_deviation"] == row["upper_deviation"]
-            and _given(row, *_OF_A_PROCESS) > 0
+            and given(row, *_OF_A_PROCESS) > 0
         ),
     ),
     Rule(
         text="a sample has its own mean: no mean shift, no Cpk",
-        excel=f'AND({{sample}}<>"",{_count("mean_shift", "cpk")}>0)',
-        holds=lambda row, _: _given(row, "sample") == 1 and _given(row, "mean_shift", "cpk") > 0,
+        excel=f'AND({{sample}}<>"",{count_formula("mean_shift", "cpk")}>0)',
+        holds=lambda row, _: given(row, "sample") == 1 and given(row, "mean_shift", "cpk") > 0,
     ),
     Rule(
         text="a measured distribution without a sample",
@@ -194,7 +174,7 @@ def tolerance_status(*, has_measurements: bool) -> Sequence[Stage]:
     without = Rule(
         text="sample without a sheet Measurements",
         excel='{sample}<>""',
-        holds=lambda row, _: _given(row, "sample") == 1,
+        holds=lambda row, _: given(row, "sample") == 1,
     )
     sample = unknown("sample", "sample not in Measurements", "fl_sample_rows") if has_measurements else without
     return (
@@ -242,7 +222,7 @@ def _required(column: Column) -> Sequence[Rule]:
     """Return the rules of a column of Correlations."""
     rules = [missing(column)] if column.required else []
     if column.choices:
-        return [*rules, _dimension(column.key)]
+        return [*rules, not_in_list(column, "fl_dimensions")]
     return [*rules, no_number(column)] if column.is_number else rules
 
 
