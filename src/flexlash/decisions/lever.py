@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from statistics import NormalDist
 from typing import Literal
 
 from flexlash.schema.decision_rows import LeverRow
@@ -31,6 +32,11 @@ class Terms:
     rows: Mapping[str, LeverRow] = field(default_factory=dict)
     plan: SamplingPlan
     target: float
+
+    @property
+    def level(self) -> float:
+        """The level of Φ up to which units are to be within the limit."""
+        return NormalDist().inv_cdf(1 - self.target)
 
     def may_change(self, dimension: str) -> bool:
         """Return whether the nominal value of a dimension, or the material, may change: the torque only if told so."""

@@ -14,14 +14,15 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ndtri
 
-from flexlash.decisions.changed_rows import limits_as_submitted, over_limit, toleranced
+from flexlash.decisions.changed_rows import limits_as_submitted, run_plan, toleranced
 from flexlash.decisions.changes import with_sizes
 from flexlash.decisions.lever import Present, Terms
-from flexlash.decisions.predicted_scores import ChangedAlike
+from flexlash.decisions.predicted_scores import ChangedAlike, Moments
 from flexlash.schema.arrays import Array
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.units import as_entered
 from flexlash.schema.variant_arrays import Indices
+from flexlash.tolerance.row_probabilities import probabilities_over
 
 __all__ = ["LimitSearch", "Solution", "level_of"]
 
@@ -44,16 +45,16 @@ _SAME = 1e-9
 """Part of a value by which it no longer moves."""
 
 
-def level_of(presents: Sequence[Present], unchanged: ChangedAlike, target: float) -> tuple[Array, Array]:
-    """Return the score (variants,) at which the target is met, and how it rises with levels of Φ, as they are now."""
-    mean, sd = (one[:, 0] for one in unchanged.moments(unchanged.present[:, None]))
+def level_of(presents: Sequence[Present], unchanged: ChangedAlike, wanted: float) -> tuple[Array, Array]:
+    """Return the score (variants,) at a wanted level of Φ, and how it rises with levels, as they are now."""
+    moments = Moments(*(one[:, 0] for one in unchanged.moments(unchanged.present[:, None])))
     known = np.array(sorted(presents[0].quantiles))
     outputs = np.array([[one.quantiles[probability] for probability in known.tolist()] for one in presents])
-    scores, levels = (outputs - mean[:, None]) / sd[:, None], ndtri(known)
-    wanted = float(ndtri(1 - target))
+    scores, levels = (outputs - moments.mean[:, None]) / moments.sd[:, None], ndtri(known)
     above = int(np.clip(np.searchsorted(levels, wanted), 1, len(levels) - 1))
     rise = (scores[:, above] - scores[:, above - 1]) / (levels[above] - levels[above - 1])
-    return scores[:, above] + rise * (wanted - levels[above]), np.where(rise > 0, rise, 1.0)
+    level = scores[:, above] + rise * (wanted - levels[above]) - moments.bend(wanted)
+    return level, np.where(rise > 0, rise, 1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,7 +87,7 @@ class LimitSearch:
         self._rise = rise
         self._unit = DIMENSIONS[alike.change.dimension].si_unit.si
         self._wanted = np.array([present.direction(terms.target) == "meet" for present in presents])
-        self._target = float(ndtri(1 - terms.target))
+        self._target = terms.level
         self._crossing = alike.crossing(level, wanted=self._wanted)
 
     def solution(self, rounded: Rounded) -> Solution:
@@ -113,20 +114,24 @@ class LimitSearch:
 
     def _shares(self, rows: Indices, values: Array, *, by_lines: bool = True) -> Array:
         """Return the shares over the limit of some variants with values [SI]; NaN where these make no part."""
-        over, spread, places = np.full(len(rows), np.nan), [], []
-        for place, (row, value) in enumerate(zip(rows.tolist(), values.tolist(), strict=True)):
-            present = self._presents[row]
-            if not np.isfinite(value):
-                continue
-            sizes = self._alike.change.sizes(present.variant.dimensions, value)
-            changed = with_sizes(present.variant, sizes)
+        over = np.full(len(rows), np.nan)
+        plan, own = run_plan(self._terms, by_lines=by_lines), self._alike.take(rows)
+        fine = own.makes_a_part(values[:, None])[:, 0]
+        if plan.method == "line":
+            over = own.over_limit(values, plan)
+        left = np.flatnonzero(fine & np.isnan(over))
+        spread, places = [], []
+        for place in left.tolist():
+            present = self._presents[rows[place]]
+            changed = with_sizes(
+                present.variant, self._alike.change.sizes(present.variant.dimensions, float(values[place]))
+            )
             limits, problems = limits_as_submitted(changed, self._terms)
             if not any(problem.kind in {"impossible", "untabulated"} for problem in problems):
                 spread.append(toleranced(changed, limits, present.limit, self._terms))
                 places.append(place)
-        over[places] = over_limit(spread, self._terms, by_lines=by_lines)
-        fine = self._alike.take(rows).makes_a_part(values[:, None])[:, 0] if len(rows) else np.empty(0, dtype=bool)
-        return np.where(fine, over, np.nan)
+        over[places] = [one.probability for one in probabilities_over(spread, plan)]
+        return over
 
     def _levels(self, over: Array) -> Array:
         """Return the levels of Φ of shares over the limit."""

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
-from flexlash.decisions.changed_rows import limits_as_submitted, over_limit, toleranced
-from flexlash.decisions.changes import in_material
+from flexlash.decisions.changed_rows import limits_as_submitted, run_plan, toleranced
+from flexlash.decisions.changes import Change, in_material
 from flexlash.decisions.lever import Lever, Present, Terms
-from flexlash.decisions.why_not import share_of_units
+from flexlash.decisions.nominal_levers import changed_alike, presents_alike
+from flexlash.decisions.why_not import softer, still_over
 from flexlash.schema.decision_columns import MATERIAL
 from flexlash.schema.spellings import plain
 from flexlash.schema.variant import Variant
+from flexlash.tolerance.row_probabilities import probabilities_over
 
 __all__ = ["material_levers"]
 
@@ -19,36 +22,53 @@ def material_levers(presents: Sequence[Present], terms: Terms) -> Iterator[tuple
     """Yield a lever for each other material of variants that miss their limit, possible or not, as `nominal_levers`."""
     if not terms.may_change(MATERIAL):
         return
-    missing = [index for index, one in enumerate(presents) if one.direction(terms.target) == "meet"]
+    failing = [index for index, one in enumerate(presents) if one.direction(terms.target) == "meet"]
     pairs = [
         (index, in_material(presents[index].variant, material))
-        for index in missing
+        for index in failing
         for name, material in terms.materials.items()
         if name != plain(presents[index].variant.material)
     ]
-    row = terms.rows.get(MATERIAL)
-    cost = 1.0 if row is None else row.cost_per_step
-    for (index, changed), over in zip(pairs, _shares(pairs, presents, terms), strict=True):
-        variant = presents[index].variant
-        reason = "" if over <= terms.target else f"with {changed.material} {share_of_units(over)} are over the limit"
+    changed = [replace(presents[index], variant=variant) for index, variant in pairs]
+    for (index, variant), (over, reason) in zip(pairs, _shares(changed, terms), strict=True):
+        row = terms.rows.get(MATERIAL)
         lever = Lever(
-            variant=variant,
+            variant=presents[index].variant,
             dimension=MATERIAL,
             what="material",
             direction="meet",
             unit="",
-            to_material=changed.material,
+            to_material=variant.material,
             reason=reason,
-            over=None if reason else over,
-            relative_cost=None if reason else cost,
+            over=over,
+            relative_cost=None if reason else 1.0 if row is None else row.cost_per_step,
         )
-        yield index, lever, None if reason else changed
+        yield index, lever, None if reason else variant
 
 
-def _shares(pairs: Sequence[tuple[int, Variant]], presents: Sequence[Present], terms: Terms) -> list[float]:
-    """Return the share over the limit of each variant in another material."""
+def _shares(changed: Sequence[Present], terms: Terms) -> list[tuple[float | None, str]]:
+    """Return of each variant in another material the share over the limit, or why it does not meet that.
+
+    The share is not asked for where the mean backlash alone is over the limit.
+    """
+    found: list[tuple[float | None, str]] = [(None, "")] * len(changed)
+    hopeful = []
+    for indices in presents_alike(changed):
+        group = [changed[index] for index in indices]
+        alike = changed_alike(group, Change(dimension="wall_thickness"), terms)
+        means = alike.moments(alike.present[:, None]).mean[:, 0].tolist()
+        for index, present, mean in zip(indices, group, means, strict=True):
+            if mean > present.limit:
+                found[index] = None, softer(present.variant.material, mean, present.limit)
+            else:
+                hopeful.append(index)
     rows = []
-    for index, changed in pairs:
-        limits, _ = limits_as_submitted(changed, terms)
-        rows.append(toleranced(changed, limits, presents[index].limit, terms))
-    return over_limit(rows, terms)
+    for present in (changed[index] for index in hopeful):
+        limits, _ = limits_as_submitted(present.variant, terms)
+        rows.append(toleranced(present.variant, limits, present.limit, terms))
+    for index, one in zip(hopeful, probabilities_over(rows, run_plan(terms)), strict=True):
+        meets = one.probability <= terms.target
+        found[index] = (
+            (one.probability, "") if meets else (None, still_over(changed[index].variant.material, one.probability))
+        )
+    return found

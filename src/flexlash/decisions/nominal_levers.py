@@ -29,7 +29,7 @@ def nominal_levers(presents: Sequence[Present], terms: Terms) -> Iterator[tuple[
     for indices in presents_alike(presents):
         group = [presents[index] for index in indices]
         unchanged = changed_alike(group, Change(dimension="wall_thickness"), terms)
-        level, rise = level_of(group, unchanged, terms.target)
+        level, rise = level_of(group, unchanged, terms.level)
         for change in changes_of(group[0].variant, terms.may_change):
             alike = changed_alike(group, change, terms)
             step = drawing_step(change.dimension, terms.rows.get(change.dimension))
@@ -63,6 +63,7 @@ def changed_alike(group: Sequence[Present], change: Change, terms: Terms) -> Cha
         sizes={name: np.array([one.variant.dimensions[name] for one in group]) for name in first.dimensions},
         limit=np.array([one.limit for one in group]),
         rows=terms.classes[owner],
+        target=terms.level,
         ties=terms.correlations.get(owner, {}),
     )
 

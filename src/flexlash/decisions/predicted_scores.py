@@ -1,6 +1,7 @@
 """About where a changed dimension meets the limit: by moments of second order, for many variants at once.
 
-score k         (limit − mean)/sd of the backlash: how many standard deviations the limit lies above the mean
+score           how many standard deviations the limit lies above the mean of the backlash, as a normal one would count
+                them: what skewness and kurtosis change at the target is taken off
 level           the score at which the share of units over the limit is the target; it hardly changes with a dimension,
                 which is what makes a prediction sharp
 """
@@ -10,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -18,11 +20,14 @@ from flexlash.analysis.backlash_models import BACKLASH_OF
 from flexlash.decisions.changes import Change
 from flexlash.decisions.part_range import makes_a_part, reach_of
 from flexlash.schema.arrays import Array
+from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.variant import ToleranceRow
 from flexlash.schema.variant_arrays import Indices
-from flexlash.tolerance.limit_arrays import LimitArrays, limits_alike
+from flexlash.tolerance.limit_arrays import LimitArrays, beyond_doubt, limits_alike
+from flexlash.tolerance.row_probabilities import SCALED_SHAPES, probabilities_alike
+from flexlash.tolerance.sampling import SamplingPlan
 
-__all__ = ["ChangedAlike", "Crossing"]
+__all__ = ["ChangedAlike", "Crossing", "Moments"]
 
 Bools = npt.NDArray[np.bool_]
 
@@ -33,8 +38,30 @@ _HALVINGS, _CHORDS, _FALSE_POSITIONS = 44, 4, 12
 _SMALL = 1e-12
 """Part of the mean backlash below which its standard deviation is none."""
 
-_UNIFORM, _TRIANGULAR = 3**-0.5, 6**-0.5
-"""Standard deviations beside half the width of the limits."""
+_SHAPES = {"uniform": (3**-0.5, 1.8), "triangular": (6**-0.5, 2.4)}
+"""Standard deviation beside half the width of the limits, and fourth moment of the standard score."""
+
+_NORMAL = 3.0
+"""Fourth moment of a normal score."""
+
+
+class Moments(NamedTuple):
+    """Mean, standard deviation, skewness and excess kurtosis of the backlash, each of the shape of the values."""
+
+    mean: Array
+    sd: Array
+    skewness: Array
+    excess: Array
+
+    def bend(self, level: float) -> Array:
+        """Return by how many standard deviations a quantile lies above that of a normal distribution.
+
+        Equation: γ₁ (z² − 1)/6 + γ₂ (z³ − 3 z)/24 − γ₁² (2 z³ − 5 z)/36
+        Source: Cornish and Fisher 1938.
+        """
+        square, cube = level * level, level * level * level
+        skew = self.skewness * ((square - 1) / 6) - self.skewness**2 * ((2 * cube - 5 * level) / 36)
+        return skew + self.excess * ((cube - 3 * level) / 24)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +80,8 @@ class Crossing:
 class ChangedAlike:
     """One change of variants of one type and class that have the same dimensions [SI], each array (variants,).
 
-    `limit` is the greatest backlash [rad]; `ties` are correlations of the scores of pairs of dimensions.
+    `limit` is the greatest backlash [rad]; `ties` are correlations of the scores of pairs of dimensions; `target` is
+    the level of Φ up to which units are to be within the limit.
     """
 
     kind: str
@@ -61,6 +89,7 @@ class ChangedAlike:
     sizes: Mapping[str, Array]
     limit: Array
     rows: Sequence[ToleranceRow]
+    target: float
     ties: Mapping[tuple[str, str], float] = field(default_factory=dict)
 
     def take(self, indices: Indices) -> ChangedAlike:
@@ -105,15 +134,47 @@ class ChangedAlike:
             limits |= {one: LimitArrays(*(end.reshape(values.shape) for end in limit)) for one, limit in found.items()}
         return sizes, limits
 
+    def inputs(self, values: Array) -> tuple[dict[str, Array], dict[str, LimitArrays], Bools]:
+        """Return dimensions and limits (variants,) at values (variants,), and where nothing is to be said of these."""
+        sizes, limits = self._at(values[:, None])
+        flat = {name: np.broadcast_to(size[:, 0], values.shape) for name, size in sizes.items()}
+        ends = {name: LimitArrays(*(end[:, 0] for end in limits[name])) for name in DIMENSIONS if name in limits}
+        with np.errstate(all="ignore"):
+            sure = self.makes_a_part(values[:, None])[:, 0] & beyond_doubt(self.kind, flat, ends)
+        return flat, ends, sure
+
+    def over_limit(self, values: Array, plan: SamplingPlan) -> Array:
+        """Return the shares over the limit (variants,) at values (variants,) by lines.
+
+        NaN where limits may reach what makes no part, or cut their tails, or where lines do not serve.
+        """
+        sizes, limits, sure = self.inputs(values)
+        shapes = {row.dimension: row.distribution for row in self.rows}
+        scatters = {name: one.low < one.high for name, one in limits.items()}
+        known = all(shapes[name] in SCALED_SHAPES for name in limits)
+        over, rows = np.full(values.shape, np.nan), np.flatnonzero(sure)
+        if known and len(rows) and all(one[rows].all() or not one[rows].any() for one in scatters.values()):
+            varied = {name for name, one in scatters.items() if one[rows].all()}
+            over[rows] = probabilities_alike(
+                BACKLASH_OF[self.kind],
+                {name: size[rows] for name, size in sizes.items()},
+                {name: (LimitArrays(*(end[rows] for end in one)), shapes[name]) for name, one in limits.items()},
+                self.limit[rows],
+                plan=plan,
+                ties=[(*pair, tie) for pair, tie in self.ties.items() if tie and varied.issuperset(pair)],
+            )
+        return over
+
     def makes_a_part(self, values: Array) -> Bools:
         """Return whether values (variants, k), and all between their limits, make parts."""
         return np.broadcast_to(makes_a_part(self.kind, *self._at(values)), values.shape)
 
-    def moments(self, values: Array) -> tuple[Array, Array]:
-        """Return mean and standard deviation of the backlash (variants, k) at values of that shape.
+    def moments(self, values: Array) -> Moments:
+        """Return the moments of the backlash (variants, k) at values of that shape.
 
-        Equation: μ = y + Σ cᵢ, σ² = Σ (dᵢ² + 2 cᵢ²) + 2 Σ ρᵢⱼ dᵢ dⱼ, with dᵢ = (y₊ − y₋)/2 and cᵢ = (y₊ + y₋)/2 − y of
-            the backlash one standard deviation of an input above and below its mean
+        Equation: μ = y + Σ cᵢ, σ² = Σ (dᵢ² + (mᵢ − 1) cᵢ²) + 2 Σ ρᵢⱼ dᵢ dⱼ, γ₁ σ³ = 3 Σ dᵢ² cᵢ (mᵢ − 1),
+            γ₂ σ⁴ = Σ dᵢ⁴ (mᵢ − 3), with dᵢ = (y₊ − y₋)/2 and cᵢ = (y₊ + y₋)/2 − y of the backlash one standard
+            deviation of an input above and below its mean, m the fourth moment of its standard score
         """
         sizes, limits = self._at(values)
         model, shapes = BACKLASH_OF[self.kind], {row.dimension: row.distribution for row in self.rows}
@@ -121,22 +182,28 @@ class ChangedAlike:
         with np.errstate(all="ignore"):
             centre = sizes | {name: mean for name, (mean, _) in inputs.items()}
             middle = np.broadcast_to(model(centre), values.shape)
-            mean, variance, slopes = middle, np.zeros(values.shape), {}
+            mean, slopes = middle, {}
+            variance = third = fourth = np.zeros(values.shape)
             for name, (own, sd) in inputs.items():
                 above, below = model({**centre, name: own + sd}), model({**centre, name: own - sd})
                 slope, curve = (above - below) / 2, (above + below) / 2 - middle
-                mean, slopes[name] = mean + curve, slope
-                variance = variance + slope * slope + 2 * curve * curve
+                mean, slopes[name], square = mean + curve, slope, slope * slope
+                moment = _SHAPES.get(shapes[name], (0.0, _NORMAL))[1]
+                variance = variance + square + (moment - 1) * curve * curve
+                third = third + 3 * (moment - 1) * square * curve
+                fourth = fourth + (moment - _NORMAL) * square * square
             for (first, second), tie in self.ties.items():
                 if first in slopes and second in slopes:
                     variance = variance + 2 * tie * slopes[first] * slopes[second]
-            return mean, np.maximum(np.sqrt(np.maximum(variance, 0.0)), _SMALL * np.abs(mean))
+            sd = np.maximum(np.sqrt(np.maximum(variance, 0.0)), _SMALL * np.abs(mean))
+            cube = sd * sd * sd
+            return Moments(mean, sd, third / cube, fourth / (cube * sd))
 
     def scores(self, values: Array) -> Array:
         """Return the scores (variants, k) at values of that shape."""
-        mean, sd = self.moments(values)
+        moments = self.moments(values)
         with np.errstate(all="ignore"):
-            return np.asarray((self.limit[:, None] - mean) / sd)
+            return np.asarray((self.limit[:, None] - moments.mean) / moments.sd - moments.bend(self.target))
 
     def score(self, values: Array) -> Array:
         """Return the scores (variants,) at values (variants,)."""
@@ -212,7 +279,6 @@ class ChangedAlike:
 
 def _moments(limits: LimitArrays, shape: str) -> tuple[Array, Array]:
     """Return mean and standard deviation of a dimension, before any cut."""
-    half = (limits.high - limits.low) / 2
-    if shape == "uniform":
-        return limits.mean, _UNIFORM * half
-    return limits.mean, _TRIANGULAR * half if shape == "triangular" else limits.sd
+    if shape in _SHAPES:
+        return limits.mean, _SHAPES[shape][0] * (limits.high - limits.low) / 2
+    return limits.mean, limits.sd
