@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from flexlash.analysis.backlash_models import BACKLASH_OF
@@ -11,9 +11,10 @@ from flexlash.schema.spellings import plain
 from flexlash.schema.variant import Limits, Variant
 from flexlash.tolerance.dimension_limits import LimitsProblem, limits_of, shape_problems
 from flexlash.tolerance.row_batches import TolerancedRow
+from flexlash.tolerance.row_probabilities import probabilities_over
 from flexlash.tolerance.sampling import SamplingPlan
 
-__all__ = ["limits_as_submitted", "run_plan", "toleranced"]
+__all__ = ["limits_as_submitted", "over_limit", "run_plan", "toleranced"]
 
 
 def limits_as_submitted(variant: Variant, terms: Terms) -> tuple[dict[str, Limits], tuple[LimitsProblem, ...]]:
@@ -41,3 +42,8 @@ def run_plan(terms: Terms, *, by_lines: bool = False) -> SamplingPlan:
     """Return the plan of the run, or that of lines whatever the run's is."""
     plan = terms.plan
     return replace(plan, method="line", samples=None) if by_lines and plan.method != "line" else plan
+
+
+def over_limit(rows: Sequence[TolerancedRow], terms: Terms, *, by_lines: bool = False) -> list[float]:
+    """Return the share of units over the limit of each row, by the run's own plan, or by lines whatever that is."""
+    return [one.probability for one in probabilities_over(rows, run_plan(terms, by_lines=by_lines))]

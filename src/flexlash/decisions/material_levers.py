@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from flexlash.decisions.changed_rows import limits_as_submitted, run_plan, toleranced
+from flexlash.decisions.changed_rows import limits_as_submitted, over_limit, toleranced
 from flexlash.decisions.changes import Change, in_material
 from flexlash.decisions.lever import Lever, Present, Terms
 from flexlash.decisions.nominal_levers import changed_alike, presents_alike
@@ -13,7 +13,6 @@ from flexlash.decisions.why_not import softer, still_over
 from flexlash.schema.decision_columns import MATERIAL
 from flexlash.schema.spellings import plain
 from flexlash.schema.variant import Variant
-from flexlash.tolerance.row_probabilities import probabilities_over
 
 __all__ = ["material_levers"]
 
