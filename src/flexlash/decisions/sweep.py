@@ -21,9 +21,18 @@ from flexlash.schema.result_columns import RESULTS
 from flexlash.validation.replaced_rows import Replacement
 from flexlash.validation.swept_variants import swept_variants
 
-__all__ = ["MARGINAL_PERCENT", "Crossing", "Study", "percentile_key", "sweep_levels", "sweep_table", "sweeps_of"]
+__all__ = [
+    "_MARGINAL_PERCENT",
+    "Crossing",
+    "Study",
+    "level_margin",
+    "percentile_key",
+    "sweep_levels",
+    "sweep_table",
+    "sweeps_of",
+]
 
-MARGINAL_PERCENT = 97.5
+_MARGINAL_PERCENT = 97.5
 """Share of units in per cent within the limit from which on a variant is no failing one."""
 
 _CAPABLE_PERCENT = 99.865
@@ -138,7 +147,7 @@ def sweep_levels(target: float) -> list[float | None]:
     >>> sweep_levels(99.865), sweep_levels(99)
     ([None, 97.5, 99.865], [None, 97.5, 99, 99.865])
     """
-    return [None, *sorted({MARGINAL_PERCENT, target, _CAPABLE_PERCENT})]
+    return [None, *sorted({_MARGINAL_PERCENT, target, _CAPABLE_PERCENT})]
 
 
 def percentile_key(percent: float | None) -> str | None:
@@ -184,7 +193,7 @@ def _with_crossings(outcome: Outcome, studies: Sequence[Study], rows: Sequence[i
             beside = {} if second is None or line.second is None else {second.key: line.second}
             points.append(Replacement(row=rows[line.study], values={first.key: value} | beside))
         found = point_levels(outcome, points, keys).iter_rows(named=True)
-        return [_margin(result, line.level) for result, (line, _) in zip(found, asked, strict=True)]
+        return [level_margin(result, line.level) for result, (line, _) in zip(found, asked, strict=True)]
 
     found: dict[int, list[Crossing]] = {number: [] for number in range(len(studies))}
     for bracket, value in zip(brackets, crossings(brackets, margins, _SMALL), strict=True):
@@ -201,7 +210,7 @@ def _brackets(number: int, study: Study, level: float | None) -> Iterator[Bracke
     lines: dict[float | None, list[tuple[float, float | None]]] = {}
     for result in study.results.iter_rows(named=True):
         beside = None if second is None else result[second]
-        lines.setdefault(beside, []).append((result[study.first.key], _margin(result, level)))
+        lines.setdefault(beside, []).append((result[study.first.key], level_margin(result, level)))
     for beside, line in lines.items():
         for (low, at_low), (high, at_high) in pairwise(line):
             if at_low is not None and at_high is not None and (at_low > 0) != (at_high > 0):
@@ -209,8 +218,8 @@ def _brackets(number: int, study: Study, level: float | None) -> Iterator[Bracke
                 yield Bracket(whose=whose, low=low, high=high, at_low=at_low, at_high=at_high)
 
 
-def _margin(result: Mapping[str, Any], level: float | None) -> float | None:
-    """Return by how much a level of a point is over its limit, as a part of that; None without limit or numbers.
+def level_margin(result: Mapping[str, Any], level: float | None) -> float | None:
+    """Return by how much a level of a row of Results is over the limit, as a part of that; None without either.
 
     Of a share of units whose backlash is not among Results it is how far the normal score of the share over the limit
     lies above the one that is allowed.

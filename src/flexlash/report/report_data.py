@@ -13,6 +13,7 @@ from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.recommendations import Recommendation, recommendations_of
 from flexlash.analysis.tolerance_spread import drawn_curves
 from flexlash.analysis.whole_batch import DRAWN, worst_rows
+from flexlash.decisions.sweep import Study, sweeps_of
 from flexlash.schema.limit_verdict import BOUNDS
 from flexlash.tolerance.distribution_curves import Curve
 
@@ -42,12 +43,14 @@ class ReportData:
     """What the report draws beside an outcome.
 
     `drawn` are the variants that it shows, worst first; `pictured` the elasticity checks of the worst, with their
-    stress fields, by name; `recommendations` what would bring the worst failing variants within their limit.
+    stress fields, by name; `recommendations` what would bring the worst failing variants within their limit; `studies`
+    the sweeps that were asked for.
     """
 
     drawn: Sequence[Drawn]
     pictured: Mapping[str, ElasticityCheck] = field(default_factory=dict)
     recommendations: Sequence[Recommendation] = ()
+    studies: Sequence[Study] = ()
 
 
 def report_data(outcome: Outcome) -> ReportData:
@@ -57,6 +60,7 @@ def report_data(outcome: Outcome) -> ReportData:
         drawn=_drawn(outcome, worst),
         pictured=_pictured(outcome, worst),
         recommendations=_recommendations(outcome, worst),
+        studies=sweeps_of(outcome),
     )
 
 

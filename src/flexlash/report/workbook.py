@@ -28,6 +28,8 @@ from flexlash.report.sensitivity_sheet import write_sensitivity
 from flexlash.report.strength_sheet import write_strength
 from flexlash.report.submission_sheets import write_submission
 from flexlash.report.summary.summary_sheet import write_summary
+from flexlash.report.sweeps.sweep_curves import SWEPT_NOTE, stored_sweeps
+from flexlash.report.sweeps.sweep_sheet import MOST_STUDIES, write_sweep
 from flexlash.report.trace.inputs import INPUTS_NOTE, stored_inputs
 from flexlash.report.trace.scatter import SCATTER_NOTE, TIED_NOTE, stored_scatter
 from flexlash.report.trace.trace_sheet import trace_sheet, write_trace
@@ -60,6 +62,8 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     write_compare(book, outcome, drawn, compared)
     write_ranking(book, outcome, drawn, compared)
     write_contributions(book, outcome, drawn, compared)
+    swept = stored_sweeps(data.studies[:MOST_STUDIES])
+    write_sweep(book, outcome, data.studies, swept)
     trace, trace_spread = trace_sheet(book), trace_spread_sheet(book)
     write_sensitivity(book, outcome, drawn)
     write_used(book, outcome, drawn)
@@ -75,7 +79,8 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     inputs = stored_inputs(computed, outcome.settings.lost_motion_percent)
     scatter, tied = stored_scatter(computed)
     behind = [(scatter, SCATTER_NOTE), *([(tied, TIED_NOTE)] if tied.rows else [])]
-    noted = [(curves, CURVES_NOTE), (compared, COMPARED_NOTE), (inputs, INPUTS_NOTE), *behind]
+    charted = [(swept, SWEPT_NOTE)] if swept.rows else []
+    noted = [(curves, CURVES_NOTE), (compared, COMPARED_NOTE), *charted, (inputs, INPUTS_NOTE), *behind]
     steps = [STEPS] * bool(inputs.rows) + [SLOPE] * bool(scatter.rows)
     write_about(book, outcome, later=(*(stored.name for stored, _ in noted), *steps))
     part = f"{extent.note} " if extent.large and extent.note else ""

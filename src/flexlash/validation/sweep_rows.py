@@ -18,7 +18,7 @@ from flexlash.validation.meant_names import MeantNames
 from flexlash.validation.relations import numbers_of
 from flexlash.validation.validated import Table
 
-__all__ = ["Sweeps", "sweep_rows_of"]
+__all__ = ["Sweeps", "sweep_rows_of", "why_no_part"]
 
 _COLUMNS = columns_of("Sweep")
 _FIRST = ("dimension", "from", "to", "step")
@@ -152,7 +152,7 @@ class _Reader:
         refused, judged = {}, 0
         for record in self._variants_of(study):
             judged += 1
-            if words := _why_no_part(study, record):
+            if words := why_no_part(study, record):
                 refused[record["variant"]] = words
         if not refused:
             return True
@@ -171,7 +171,7 @@ class _Reader:
                 yield record
 
 
-def _why_no_part(study: SweepRow, record: Mapping[str, Any]) -> str:
+def why_no_part(study: SweepRow, record: Mapping[str, Any]) -> str:
     """Return why no value of a study makes a part of a variant, in words; an empty text where one does."""
     part, words = numbers_of(record), ""
     swept = [one for one in (study.first, study.second) if one]

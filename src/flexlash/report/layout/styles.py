@@ -158,11 +158,16 @@ class Book:
         """Return a format by name, optionally with a number format by name or in Excel's letters."""
         key = f"{name} {number}"
         if key not in self._formats:
-            properties = {**_BASE, **_FORMATS[name]}
+            properties = self.properties(name)
             if number:
                 properties["num_format"] = number_code(number)
             self._formats[key] = self.workbook.add_format(properties)
         return self._formats[key]
+
+    @staticmethod
+    def properties(name: str) -> dict[str, Any]:
+        """Return what a format of this name is made of, for one that has borders of its own."""
+        return {**_BASE, **_FORMATS[name]}
 
     def sheet(
         self,

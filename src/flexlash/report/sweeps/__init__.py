@@ -1,0 +1,1 @@
+"""Parametric studies: how backlash, its spread and the stress go with one dimension, or with two."""
