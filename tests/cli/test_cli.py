@@ -429,10 +429,13 @@ def test_template_upgrade_with_optional_sheets(tmp_path, table, sound, main_in):
 @pytest.mark.parametrize(
     ("named", "words"),
     [
-        ("measurement", "there is no optional sheet measurement. There are measurements, correlations and all."),
-        ("all,sweep", "the sheet sweep comes with a later version of flexlash. There are measurements,"),
-        ("other-sources", "the sheet other-sources comes with a later version"),
-        ("levers", "the sheet levers comes with a later version"),
+        (
+            "measurement",
+            "there is no optional sheet measurement. There are measurements, correlations, other-sources, levers, "
+            "sweep and all.",
+        ),
+        ("all,sweeps", "there is no optional sheet sweeps."),
+        ("other sources", "there is no optional sheet other sources."),
     ],
 )
 def test_template_says_which_optional_sheets_there_are(tmp_path, main_in, capsys, named, words):

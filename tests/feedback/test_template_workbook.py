@@ -11,6 +11,7 @@ import pytest
 import regenerate
 from libreoffice import convert, needs_libreoffice, needs_pages
 
+from flexlash.feedback.template.decision_status import LEVER_STATUS, SOURCE_STATUS, SWEEP_STATUS
 from flexlash.feedback.template.entry_rules import FIRST_ROW, HEADER_ROW
 from flexlash.feedback.template.template_workbook import Filling, study, template_bytes
 from flexlash.feedback.template.tolerance_status import CORRELATION_STATUS, tolerance_status
@@ -158,8 +159,8 @@ def test_headers_are_the_labels(empty, name):
 def test_optional_sheets_are_there_where_they_are_asked_for(plain):
     """The plain template has none of them and says in its dictionary how to get them; others have what is named."""
     assert plain.sheetnames == ["Variants", "Materials", "Tolerances", "Settings", "Dictionary", "Lists"]
-    told = {row[0].value: row[-1].value for row in plain["Dictionary"]["A2:G90"] if row[0].value in OPTIONAL_SHEETS}
-    assert {name: f"--with {name.lower()}" in text for name, text in told.items()} == dict.fromkeys(
+    told = {row[0].value: row[-1].value for row in plain["Dictionary"]["A2:G99"] if row[0].value in OPTIONAL_SHEETS}
+    assert {name: f"--with {name.lower().replace(' ', '-')}" in text for name, text in told.items()} == dict.fromkeys(
         OPTIONAL_SHEETS, True
     )
     book = openpyxl.load_workbook(io.BytesIO(template_bytes(Filling(optional=["Correlations"]))))
@@ -234,6 +235,8 @@ def test_lists_come_from_defined_names(empty):
     assert used == {
         "fl_flexspline_types", "fl_materials", "fl_tolerance_classes", "fl_dimensions", "fl_grades",
         "fl_deviation_units", "fl_distributions", "fl_methods", "fl_samples", "fl_scatters_between", "fl_uses",
+        "fl_enter_as", "fl_source_distributions", "fl_sides", "fl_kinds", "fl_levers", "fl_answers", "fl_sizes",
+        "fl_variant_names",
     }  # fmt: skip
     assert used <= set(empty.defined_names)
     assert empty["Lists"].sheet_state == "hidden"
@@ -244,7 +247,7 @@ def test_variants_is_not_protected_and_the_header_is_guarded(empty):
     sheet = empty["Variants"]
     assert not sheet.protection.sheet
     guards = [rule for rule in sheet.data_validations.dataValidation if rule.formula1 == "FALSE"]
-    assert [str(rule.sqref) for rule in guards] == [f"A{HEADER_ROW + 1}:AB{HEADER_ROW + 1}"]
+    assert [str(rule.sqref) for rule in guards] == [f"A{HEADER_ROW + 1}:AC{HEADER_ROW + 1}"]
     assert sheet.freeze_panes == f"B{FIRST_ROW + 1}"
 
 
@@ -326,9 +329,10 @@ def test_every_rule_of_the_book_has_a_row():
 
 def test_the_status_stays_within_what_excel_takes(empty):
     """Each formula of the status is shorter and less deeply nested than Excel allows: 8,192 characters, 64 levels."""
-    stages = [*VARIANT_STATUS, *tolerance_status(has_measurements=True), *CORRELATION_STATUS]
+    decided = (*SOURCE_STATUS, *LEVER_STATUS, *SWEEP_STATUS)
+    stages = [*VARIANT_STATUS, *tolerance_status(has_measurements=True), *CORRELATION_STATUS, *decided]
     names = {name for name in empty.defined_names if name.endswith("_status")} | {stage.name for stage in stages}
-    assert len(names) == len(stages) + 3
+    assert len(names) == len(stages) + 6
     for name in names:
         formula = empty.defined_names[name].attr_text
         assert len(formula) < 8000

@@ -125,7 +125,7 @@ def test_version_one_gains_its_columns_and_keeps_its_meaning(tmp_path):
     _assert_same(old, new)
     assert (upgrade.version, upgrade.rows, upgrade.remarks) == (1, 3, (FORMATS,))
     assert [cell.value for cell in _cells(new)[4]][: len(VARIANTS)] == [column.label for column in VARIANTS]
-    settings_ = {row[0].value: row[1].value for row in _cells(new, "Settings")["A5:B12"]}
+    settings_ = {row[0].value: row[1].value for row in _cells(new, "Settings")["A5:B14"]}
     assert settings_ == {column.key: column.default for column in SETTINGS} | {
         "seed": 7,
         "coverage_percent": 90,
@@ -240,11 +240,11 @@ def test_settings_out_of_order_unknown_and_doubled(tmp_path):
     sheet["D4"], sheet["D6"] = "Why", "agreed"
     old = _saved(book, tmp_path)
     new, _ = _moved(old)
-    after = [[cell.value for cell in row] for row in _cells(new, "Settings")["A5:B14"]]
+    after = [[cell.value for cell in row] for row in _cells(new, "Settings")["A5:B16"]]
     assert after == [
         ["Seed ", 3], ["coverage_percent", 95], ["method", "sobol"], ["samples", None], ["lost_motion_percent", 4],
-        ["cylinder_calibration", 1], ["disk_calibration", 0.9], ["acceptable_ppm", 1350], ["colour", "red"],
-        ["seed", 4],
+        ["cylinder_calibration", 1], ["disk_calibration", 0.9], ["acceptable_ppm", 1350],
+        ["target_percent", 99.865], ["mean_shift_factor", 0.3], ["colour", "red"], ["seed", 4],
     ]  # fmt: skip
     assert [_cells(new, "Settings")[cell].value for cell in ("D4", "D5", "D6")] == ["Why", "agreed", None]
     assert {one.code for one in check(old).findings} == {one.code for one in check(new).findings}

@@ -135,14 +135,14 @@ def test_other_sheets_of_the_engineer_are_not_carried(outcome):
     assert {sheet["name"]: len(sheet["rows"]) for sheet in sheets} == {"variants": 39, "Variants (2)": 15}
 
 
-@pytest.mark.parametrize("name", ["a copied sheet", "settings"])
+@pytest.mark.parametrize("name", ["a copied sheet", "a sheet of notes"])
 def test_findings_on_other_sheets_are_found_again(name, tmp_path):
-    """W428 and W406, which speak of sheets that are not read, come again from what is carried of them."""
+    """W428 and W452, which speak of sheets that are not read, come again from what is carried of them."""
     path, options = SUBMISSIONS[name](tmp_path)
     outcome = run(path, **options, **OPTIONS)
     found = carried_submission(json.loads(carried_text(outcome)), ReadingLimits())
     again = run(_ready(found), **OPTIONS)
-    assert [one.code for one in again.findings if one.code in {"W428", "W406"}]
+    assert [one.code for one in again.findings if one.code in {"W428", "W452"}]
     assert again.findings == outcome.findings
 
 

@@ -9,10 +9,13 @@ from flexlash.schema.columns import (
     CORRELATIONS,
     DIMENSIONS,
     ENTRY_SHEETS,
+    LEVERS,
     MATERIALS,
     MEASUREMENTS,
     OPTIONAL_SHEETS,
+    OTHER_SOURCES,
     SETTINGS,
+    SWEEP,
     TOLERANCES,
     VARIANTS,
     Column,
@@ -47,6 +50,7 @@ VARIANT_LABELS = {
     "rated_torque_Nm": "Rated torque [N·m]",
     "load_inertia_kg_m2": "Load inertia J [kg·m²]",
     "backlash_limit_arcmin": "Backlash limit [arcmin]",
+    "system_limit_arcmin": "System backlash limit [arcmin]",
     "tolerance_class": "Tolerance class",
     "notes": "Notes",
 }
@@ -85,6 +89,8 @@ SETTING_DEFAULTS = {
     "cylinder_calibration": 1,
     "disk_calibration": 1,
     "acceptable_ppm": 1350,
+    "target_percent": 99.865,
+    "mean_shift_factor": 0.3,
 }
 DIMENSION_NAMES = [
     "torque",
@@ -209,6 +215,12 @@ FURTHER_KEYS = [
     "spread_method",
     "spread_points",
     "spread_note",
+    *(
+        f"system_{name}_arcmin"
+        for name in ("mean", "rss_high", "bender_high", "mean_shift_high", "worst_case_high", "p99_865", "limit")
+    ),
+    "system_p99_865_standard_error_arcmin",
+    *(f"system_probability_over_limit{error}" for error in ("", "_standard_error")),
     "notes",
     "findings",
 ]
@@ -254,8 +266,8 @@ def _key(column):
 
 def test_entry_sheets():
     """The sheets are Variants, Materials, Tolerances and Settings, in this order, then the optional ones."""
-    assert list(ENTRY_SHEETS) == ["Variants", "Materials", "Tolerances", "Settings", "Measurements", "Correlations"]
-    assert OPTIONAL_SHEETS == ("Measurements", "Correlations")
+    assert OPTIONAL_SHEETS == ("Measurements", "Correlations", "Other sources", "Levers", "Sweep")
+    assert list(ENTRY_SHEETS) == ["Variants", "Materials", "Tolerances", "Settings", *OPTIONAL_SHEETS]
 
 
 def test_variants():
@@ -294,6 +306,35 @@ def test_correlations():
     keys = ["tolerance_class", "dimension_1", "dimension_2", "correlation", "reason"]
     assert [column.key for column in CORRELATIONS] == keys
     assert [column.key for column in CORRELATIONS if not column.required] == ["reason"]
+
+
+def test_other_sources():
+    """Other sources has the contract's keys, then its own; only the name is required, a value may be blank."""
+    keys = [
+        "source", "enter_as", "value_arcmin", "radius_mm", "pressure_angle_deg", "lower_deviation", "upper_deviation",
+        "distribution", "limits_sigma", "side", "ratio", "kind",
+    ]  # fmt: skip
+    assert [column.key for column in OTHER_SOURCES] == keys
+    assert [column.key for column in OTHER_SOURCES if column.required] == ["source"]
+    assert columns_of("Other sources")["value_arcmin"].label == "Value"
+    choices = {column.key: column.choices for column in OTHER_SOURCES if column.choices}
+    assert choices == {
+        "enter_as": ("arcmin", "mm at radius", "mm radial play"),
+        "distribution": ("normal", "truncated normal", "uniform", "triangular"),
+        "side": ("output", "input"),
+        "kind": ("systematic", "random"),
+    }
+
+
+def test_levers_and_sweep():
+    """Both name dimensions of Variants, Levers another material too; the contract's keys stand in its order."""
+    sizes = [column.dimension for column in VARIANTS if column.role == "dimension"]
+    keys = ["dimension", "may_change", "lowest", "highest", "step", "cost_per_step"]
+    assert [column.key for column in LEVERS][: len(keys)] == keys
+    assert columns_of("Levers")["dimension"].choices == (*sizes, "material")
+    first = ["dimension", "from", "to", "step"]
+    assert [column.key for column in SWEEP] == ["variant", *first, *(f"second_{key}" for key in first)]
+    assert columns_of("Sweep")["dimension"].choices == columns_of("Sweep")["second_dimension"].choices == tuple(sizes)
 
 
 def test_settings():

@@ -54,7 +54,8 @@ def entry_book(path: Path, **sheets: Rows) -> Path:
     book = openpyxl.Workbook()
     book.remove(book.active)
     for name, rows in sheets.items():
-        sheet, columns = book.create_sheet(name.title()), columns_of(name.title())
+        title = name.capitalize().replace("_", " ")
+        sheet, columns = book.create_sheet(title), columns_of(title)
         keys = list(dict.fromkeys(key for row in rows for key in row))
         sheet.append([columns[key].label for key in keys])
         for row in rows:

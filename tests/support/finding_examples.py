@@ -260,9 +260,47 @@ def _together(folder: Path) -> Made:
 
 
 def _settings(folder: Path) -> Made:
-    """Write settings with faults and a sheet of later versions."""
+    """Write settings with faults."""
     settings = [["Setting", "Value"], ["samples", 1.5], ["seed", 1], ["seed", 2]]
-    return _book(folder, {"Variants": _lines([CUP]), "Settings": settings, "Other sources": [["Source"], ["bearing"]]})
+    return _book(folder, {"Variants": _lines([CUP]), "Settings": settings})
+
+
+def _decided(folder: Path) -> Made:
+    """Write Other sources, Levers and Sweep with a fault in each row."""
+    clearance = {"enter_as": "mm at radius", "value_arcmin": 0.01, "radius_mm": 80}
+    sources: list[dict[str, Any]] = [
+        {"source": "tooth clearance", **clearance},
+        {"source": "Tooth clearance", **clearance},
+        {"source": "coupling", "value_arcmin": 20, "ratio": 100},
+        {"source": "key", "side": "output"},
+        {"source": "bearing", **clearance, "lower_deviation": -0.03, "upper_deviation": 0.005},
+        {"source": "spline", **clearance, "lower_deviation": -0.02, "upper_deviation": 0.02},
+        {"source": "runout", "value_arcmin": 0.2, "kind": "random", "lower_deviation": -0.2, "upper_deviation": 0.2},
+    ]
+    levers: list[dict[str, Any]] = [
+        {"dimension": "cylinder_length", "lowest": 200, "highest": 100},
+        {"dimension": "wall_thickness", "lowest": 1.2, "highest": 2, "step": 10},
+        {"dimension": "disk_inner_radius", "lowest": 0.03, "highest": 0.05},
+    ]
+    length = {"dimension": "cylinder_length", "from": 100, "to": 200, "step": 20}
+    second = dict(zip(("second_from", "second_to", "second_step"), (100, 200, 20), strict=True))
+    sweep: list[dict[str, Any]] = [
+        length | {"variant": "C-3"},
+        length | {"second_dimension": "cylinder_length", **second},
+        length | {"step": 150},
+        length | {"step": 0.01},
+        {"variant": "C-1", "dimension": "bore_diameter", "from": 150, "to": 160, "step": 5},
+        {"dimension": "disk_inner_radius", "from": 40, "to": 50, "step": 5},
+    ]
+    cylinder = {"flexspline_type": "cylinder", "disk_inner_radius_mm": None}
+    return entry_book(
+        folder / "study.xlsx", variants=_numbered({}, cylinder), other_sources=sources, levers=levers, sweep=sweep
+    ), {}
+
+
+def _without_sources(folder: Path) -> Made:
+    """Write a limit of a system that has no sources."""
+    return _file(folder, _text(_numbered({"system_limit_arcmin": 5})))
 
 
 def _calibrated(folder: Path) -> Made:
@@ -396,6 +434,8 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "parts of one file": _by_machine,
     "variants": _variants,
     "settings": _settings,
+    "decided": _decided,
+    "without sources": _without_sources,
     "calibrated": _calibrated,
     "headers": _headers,
     "overlooked": _overlooked,
@@ -427,6 +467,7 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "no rows": _sheets(Variants=_lines([CUP])[:1]),
     "two sheets": _sheets(Variants=_lines([CUP]), Variants_=_lines([CUP])),
     "a copied sheet": _sheets(Variants=_lines([CUP]), Variants_copy=_lines([CUP])),
+    "a sheet of notes": _sheets(Variants=_lines([CUP]), Levers=[["to be agreed"]]),
     "sheets of other names": _sheets(Sheet1=_lines([CUP])),
     "two sheets of one kind": _sheets(
         Variants=_lines([CUP]),

@@ -79,6 +79,7 @@ def test_built_in_materials():
         name="20Cr2Ni4",
         constants={"youngs_modulus": 211e9, "poisson_ratio": 0.3},
         yield_strength=1080e6,
+        density=7850,
     )
     for material in materials.values():
         assert set(material.constants) == {"youngs_modulus", "poisson_ratio"}
@@ -114,7 +115,10 @@ def test_a_material_in_si():
     materials, ledger = _materials(["My Steel", 211, 0.3, None, 7850, 900], ["G only", None, None, 80.5, None, None])
     assert materials == {
         "mysteel": Material(
-            name="My Steel", constants={"youngs_modulus": 211e9, "poisson_ratio": 0.3}, yield_strength=900e6
+            name="My Steel",
+            constants={"youngs_modulus": 211e9, "poisson_ratio": 0.3},
+            yield_strength=900e6,
+            density=7850,
         ),
         "gonly": Material(name="G only", constants={"shear_modulus": 80.5e9}),
     }

@@ -48,7 +48,7 @@ def test_rows_keep_their_numbers():
 def test_every_column_is_there_with_its_type():
     """The table has a column for every key, of numbers or of texts, also where the sheet has none."""
     table, _ = _tabulate({1: HEADERS, 2: ROW})
-    assert table.frame.width == 28
+    assert table.frame.width == 29
     assert table.frame.schema["torque_Nm"] == table.frame.schema["bore_diameter_mm"] == pl.Float64
     assert table.frame.schema["notes"] == pl.String
     assert table.frame["torque_Nm"].to_list() == [800.0]

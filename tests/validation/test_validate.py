@@ -268,7 +268,7 @@ def test_only_findings_of_a_row_name_its_variant():
     headers = [("notes", "Customer")]
     validated = validate(_submission([ROW | {"torque_Nm": 0}], headers=headers, Materials=materials))
     named = {found.place: found.variant for found in consolidated(validated) if found.cell}
-    assert named == {"Variants!AA1": "", "Variants!D2": "A", "Materials!B2": ""}
+    assert named == {"Variants!AB1": "", "Variants!D2": "A", "Materials!B2": ""}
 
 
 @pytest.mark.parametrize("name", [" A ", "a", "A\u200b"], ids=ascii)
@@ -392,7 +392,7 @@ def test_case_and_spaces_of_a_sheets_name_do_not_matter(name):
 
 @pytest.mark.parametrize(
     ("version", "refused"),
-    [("", False), ("0", False), ("1", False), ("5", False), ("6", True), ("10", True), ("x", False)],
+    [("", False), ("0", False), ("1", False), ("6", False), ("7", True), ("10", True), ("x", False)],
 )
 def test_a_newer_template_is_refused(version, refused):
     """A template of a later version is refused, naming both versions; of this or an earlier one it is read."""
@@ -404,7 +404,7 @@ def test_a_newer_template_is_refused(version, refused):
         return
     with pytest.raises(Refusal) as caught:
         validate(submission)
-    assert (caught.value.code, caught.value.facts) == ("E116", {"found": version, "known": 5})
+    assert (caught.value.code, caught.value.facts) == ("E116", {"found": version, "known": 6})
 
 
 def test_built_in_tables_are_told_of_a_workbook_alone():
@@ -426,19 +426,14 @@ def test_a_class_beside_the_built_in_one():
     assert {name: len(rows) for name, rows in validated.classes.items()} == {"fine": 1, "standard": 14}
 
 
-@pytest.mark.parametrize(
-    ("rows", "told"),
-    [
-        ([["Source", "Value [arcmin]"], ["bearing", 0.5]], True),
-        ([["Source", "Value [arcmin]"]], False),
-        ([], False),
-    ],
-)
-def test_other_sources_are_not_used_yet(rows, told):
-    """A filled sheet Other sources is a warning; an empty one is not worth a word."""
-    validated = validate(_submission([ROW], **{"Other sources": rows}))
-    assert [place for code, place in _told(validated) if code == "W406"] == ["Other sources!A1"][:told]
-    assert _kept(validated) == ["A"]
+def test_other_sources_are_read_with_a_unit_in_the_header():
+    """A filled sheet Other sources is read; one that has no more than headers is not worth a word."""
+    filled = [["Source", "Value"], ["bearing", 0.5]]
+    validated = validate(_submission([ROW], **{"Other sources": filled}))
+    assert [source.name for source in validated.other_sources] == ["bearing"]
+    empty = validate(_submission([ROW], **{"Other sources": filled[:1]}))
+    for one in (validated, empty):
+        assert (_told(one), _kept(one)) == (_told(validate(_submission([ROW]))), ["A"])
 
 
 def test_findings_stand_in_the_order_of_the_file(book):
@@ -454,7 +449,7 @@ def test_findings_stand_in_the_order_of_the_file(book):
     assert outcome.exit_code == 4
     assert [found.place for found in outcome.findings if found.code != "I505"] == [
         "Settings!B2",
-        *(f"Variants!A{letter}1" for letter in "BCDEFGHIJKL"),
+        *(f"Variants!A{letter}1" for letter in "CDEFGHIJKLM"),
         "Variants!D2",
         "Variants!H2",
         "Variants!C3",
@@ -555,7 +550,7 @@ def test_csv_and_parquet_agree(table, tmp_path, sound):
 def test_a_reference_to_a_bad_cell_is_not_judged_twice():
     """A material or class that is a date or an error is not also unknown."""
     row = ROW | {"material": True, "tolerance_class": False}
-    assert _told(validate(_submission([row])), "error") == [("E204", "Variants!C2"), ("E204", "Variants!Z2")]
+    assert _told(validate(_submission([row])), "error") == [("E204", "Variants!C2"), ("E204", "Variants!AA2")]
 
 
 def test_defaults_without_a_settings_sheet():

@@ -91,7 +91,8 @@ class NoEntries:
         if index != self.first or any(_has_digits(cells[number]) for number in self.numbers & cells.keys()):
             return None
         is_alone = self.others.isdisjoint(cells)
-        is_note = _begins_like_a_note(value) and self.texts.isdisjoint(cells)
+        # A source may be called Key; a note has nothing beside it.
+        is_note = _begins_like_a_note(value) and (self.texts or self.others).isdisjoint(cells)
         # A material or a source may have a name of many words; without numbers it is told as one that lacks them.
         reads_like_one = self.schema not in {"Materials", "Other sources"} and len(value.split()) >= _SENTENCE
         if is_note or (is_alone and (apart or reads_like_one)):
