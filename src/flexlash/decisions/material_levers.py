@@ -65,9 +65,7 @@ def _shares(changed: Sequence[Present], terms: Terms) -> list[tuple[float | None
     for present in (changed[index] for index in hopeful):
         limits, _ = limits_as_submitted(present.variant, terms)
         rows.append(toleranced(present.variant, limits, present.limit, terms))
-    for index, one in zip(hopeful, probabilities_over(rows, run_plan(terms)), strict=True):
-        meets = one.probability <= terms.target
-        found[index] = (
-            (one.probability, "") if meets else (None, still_over(changed[index].variant.material, one.probability))
-        )
+    for index, over in zip(hopeful, over_limit(rows, terms), strict=True):
+        material = changed[index].variant.material
+        found[index] = (over, "") if over <= terms.target else (None, still_over(material, over))
     return found
