@@ -21,6 +21,7 @@ __all__ = [
     "drive_lost_motion",
     "lost_motion",
     "natural_frequency",
+    "nearest_size",
     "resonance_speed",
     "torsional_stiffness",
 ]
@@ -112,7 +113,7 @@ def catalogue_stiffness(mean_radius: float) -> WholeDrive | None:
     (WholeDrive(size=14, stiffness=3400.0), None)
     """
     listed = _least_stiffness()
-    nearest = _nearest(mean_radius, listed)
+    nearest = nearest_size(mean_radius, listed)
     stiffness = None if nearest is None else listed[nearest]
     return None if nearest is None or stiffness is None else WholeDrive(size=nearest, stiffness=stiffness)
 
@@ -136,7 +137,7 @@ def catalogue_torque(mean_radius: float) -> DriveTorque | None:
     (DriveTorque(size=65, torque=6175.0), None)
     """
     listed = _greatest_torque()
-    nearest = _nearest(mean_radius, listed)
+    nearest = nearest_size(mean_radius, listed)
     torque = None if nearest is None else listed[nearest]
     return None if nearest is None or torque is None else DriveTorque(size=nearest, torque=torque)
 
@@ -153,14 +154,14 @@ def drive_lost_motion(mean_radius: float, torque: float) -> float | None:
     ('1.4545e-04', None)
     """
     listed = _first_slopes()
-    nearest = _nearest(mean_radius, listed)
+    nearest = nearest_size(mean_radius, listed)
     if nearest is None:
         return None
     stiffness, most = listed[nearest]
     return 2 * torque / stiffness if torque <= most else None
 
 
-def _nearest(mean_radius: float, listed: Iterable[int]) -> int | None:
+def nearest_size(mean_radius: float, listed: Iterable[int]) -> int | None:
     """Return the size nearest to a mean radius [m] of those listed, which rise; the smaller of two, None beyond all."""
     size, sizes = 2 * mean_radius / _METRES_PER_SIZE, list(listed)
     if not sizes[0] - _SLACK <= size <= sizes[-1] + _SLACK:
