@@ -14,6 +14,7 @@ import polars as pl
 from flexlash.analysis.backlash_models import BACKLASH_OF
 from flexlash.analysis.class_correlations import class_correlations
 from flexlash.analysis.computed import ComputedRows, Nominal
+from flexlash.analysis.drive_checks import report_system_limit, system_limits_are_fine
 from flexlash.analysis.process_checks import processes_are_usual, report_processes
 from flexlash.analysis.sample_findings import report_samples
 from flexlash.mechanics.bending import ENDURANCE
@@ -75,9 +76,13 @@ def assess(validated: Validated, settings: Settings) -> Nominal:
     numbers = numbers.hstack(nominal_numbers(arrays, settings.lost_motion_percent / 100))
     computed = ComputedRows(validated=validated, numbers=numbers, correlations=correlations)
     mistakes = _by_owner(validated.unit_mistakes.values())
-    doubtful = np.flatnonzero(~_numbers_are_fine(arrays, numbers))
+    fine = _numbers_are_fine(arrays, numbers)
+    fine &= system_limits_are_fine(validated, arrays, numbers["backlash"].to_numpy())
+    doubtful = np.flatnonzero(~fine)
     for place, variant in zip(doubtful.tolist(), variants.some(sound[doubtful].tolist()), strict=True):
-        _report_numbers(ledger, variant, computed.nominal(place), mistakes)
+        nominal = computed.nominal(place)
+        _report_numbers(ledger, variant, nominal, mistakes)
+        report_system_limit(ledger, validated, variant, nominal.backlash)
     kept = numbers.filter(~np.isin(rows[sound], list(ledger.rows)))
     # What no variant has takes as much room as what all have.
     kept = kept.select(column.name for column in kept if column.null_count() < kept.height)

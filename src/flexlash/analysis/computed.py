@@ -164,10 +164,14 @@ class Nominal:
 
 @dataclass(frozen=True, kw_only=True)
 class Spread:
-    """The spread of each variant by row number; `cross_checked` says that plain Monte Carlo stands beside it."""
+    """The spread of each variant by row number, and what it shows of whole drives.
+
+    `cross_checked` says that plain Monte Carlo stands beside it.
+    """
 
     statistics: SpreadRows
     cross_checked: bool = False
+    findings: tuple[Finding, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -23,7 +23,10 @@ from flexlash.tolerance.spread_statistics import SpreadStatistics
 from flexlash.tolerance.tolerance_chains import Contribution, combined
 from flexlash.validation.validated import Validated
 
-__all__ = ["WINDUP_SIGMAS", "DriveBudget", "DriveShares", "budget_of", "drive_shares"]
+__all__ = ["WINDUP", "WINDUP_SIGMAS", "DriveBudget", "DriveShares", "budget_of", "drive_shares", "plays_of"]
+
+WINDUP = "wind-up"
+"""What the wind-up of the flexspline is called among the sources."""
 
 WINDUP_SIGMAS = 3.0
 """Standard deviations of the wind-up's backlash that count as its tolerance T."""
@@ -83,11 +86,15 @@ class DriveBudget:
         return {"system_mean": mean, **high}
 
 
+def plays_of(validated: Validated) -> tuple[OutputPlay, ...]:
+    """Return the other sources at the output; none where one of them has an error, since a sum would lack it."""
+    return () if validated.sources_are_faulty else output_plays(validated.other_sources)
+
+
 def budget_of(validated: Validated, settings: Settings) -> DriveBudget | None:
     """Return the budget of the whole drive; None without other sources, and where one of them has an error."""
-    if not validated.other_sources or validated.sources_are_faulty:
-        return None
-    return DriveBudget(plays=output_plays(validated.other_sources), shift=settings.mean_shift_factor)
+    plays = plays_of(validated)
+    return DriveBudget(plays=plays, shift=settings.mean_shift_factor) if plays else None
 
 
 def _drawn_numbers(drive: SpreadStatistics) -> dict[str, float | None]:
@@ -126,7 +133,7 @@ def drive_shares(budget: DriveBudget, mean: float, sd: float) -> list[DriveShare
     sds = np.array([sd, *(play.sd for play in budget.plays)])
     tolerances = np.array([float(one.tolerance) for one in budget.contributions(sd)])
     parts = [_shares(values).tolist() for values in (means, sds**2, tolerances)]
-    names = ("wind-up", *(play.name for play in budget.plays))
+    names = (WINDUP, *(play.name for play in budget.plays))
     return [
         DriveShares(name=name, of_mean=of_mean, of_variance=of_variance, of_worst_case=of_worst_case)
         for name, of_mean, of_variance, of_worst_case in zip(names, *parts, strict=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import chain
 
 from flexlash.analysis.computed import Spread, Verified
 from flexlash.analysis.examination import Examined
@@ -27,7 +28,8 @@ def outcome_of(
         why = () if examined.refusal is None else (examined.refusal,)
         skipped = any(found.level == "info" for found in why)
         return Outcome(submission=submission, results=empty_results(), findings=why, skipped=skipped)
-    findings = consolidated(validated, (*nominal.findings, *(verified.findings if verified else ())), nominal.blocked)
+    later = [stage.findings for stage in (spread, verified) if stage]
+    findings = consolidated(validated, (*nominal.findings, *chain(*later)), nominal.blocked)
     computed = replace(
         nominal.computed,
         statistics=spread.statistics if spread else None,

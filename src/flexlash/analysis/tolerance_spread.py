@@ -10,6 +10,7 @@ from typing import NamedTuple, TypeAlias, overload
 from flexlash.analysis.backlash_models import BACKLASH_OF
 from flexlash.analysis.computed import Computed, ComputedRows, Spread
 from flexlash.analysis.drive_budget import DriveBudget, budget_of
+from flexlash.analysis.drive_checks import drives_over_limit
 from flexlash.analysis.measured_uncertainty import with_measured_uncertainty
 from flexlash.analysis.options import Options
 from flexlash.analysis.spread_rows import SpreadRows
@@ -58,7 +59,12 @@ def spread_of(computed: ComputedRows, settings: Settings, options: Options) -> S
         lambda numbers: _piece([computed[number] for number in numbers], budget), computed.alike(_TOGETHER)
     )
     found = _told(_found(pieces, sampling_plan(settings, options), options.jobs, budget), options, len(computed))
-    return Spread(statistics=SpreadRows.of(found), cross_checked=bool(options.cross_check))
+    statistics = SpreadRows.of(found)
+    return Spread(
+        statistics=statistics,
+        cross_checked=bool(options.cross_check),
+        findings=drives_over_limit(computed, statistics.frame, settings),
+    )
 
 
 def _told(found: Iterable[Found], options: Options, rows: int) -> Iterator[Found]:

@@ -42,7 +42,7 @@ def later_slope(torque: Quantity, begin: Quantity, end: Quantity, stiffness: Qua
 
 
 class CatalogueCurve(NamedTuple):
-    """The slopes of a catalogue drive: its size, the ratio from which on they hold, T1 and T2 [N·m], K1 to K3 [N·m/rad].
+    """The slopes of a catalogue drive: its size, the ratio from which on they hold, T1, T2 [N·m], K1 to K3 [N·m/rad].
 
     The third one is None where the catalogue does not list it.
     """
@@ -82,7 +82,7 @@ def catalogue_curve(mean_radius: float, ratio: float | None = None) -> Catalogue
     """Return the slopes of the nearest drive of a maker's catalogue; None beyond its sizes.
 
     Equation: size = 2 r_m / 2.54 mm; of the listed ratios the greatest up to that of the drive, or else the least
-    Arguments: mean_radius r_m of the wall [m]; ratio of the drive, None where it is not known: then the least stiff one.
+    Arguments: mean_radius r_m of the wall [m]; ratio of the drive, None where it is not known: then the least stiff.
     Valid: sizes 14 to 100.
     Source: a maker's catalogue, `tables/catalogue_stiffness.csv`.
 

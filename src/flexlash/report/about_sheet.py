@@ -43,6 +43,7 @@ SHEETS = {
     "Samples": "What the measured parts tell of each dimension: mean, scatter, Cp, Cpk with 95 % intervals, normality.",
     "Sections": "Where along the part the nominal backlash arises.",
     "Strength": "Stress in each section, when it yields or buckles, how stiff the part is.",
+    "Drive": "The whole drive: wind-up and other sources added up in formulas by five rules; the catalogue's curve.",
     "Elasticity": "The formula beside two-dimensional elasticity, and the bounds under two lobes.",
     "Stress": "Shear stress in the half-section of the worst checked variants, as pictures.",
     "Findings": "What was found in the submission: each rule with its mend, then every cell.",
@@ -59,6 +60,7 @@ SHEETS = {
     "Inputs": "What was entered and what the program found, behind Trace.",
     "Scatter": "How each dimension scatters, behind Trace spread.",
     "Tied": "Which dimensions scatter together, behind Trace spread.",
+    "Drives": "Stored figures behind Drive.",
     "Trace slope": "The formulas of Trace in the middle of the tolerances, with one dimension moved.",
 }
 """What each sheet is for, in one line."""
@@ -102,7 +104,8 @@ LEFT_OUT = (
     "The wave generator's fit: radial play of a few µm, or a soft bearing, can add 20 to 130 %, most without a "
     "thickened tooth rim. It is not known from a drawing of the flexspline, and in no number here.",
     "Hub bolts, wave generator bearing and teeth: the wind-up is a lower bound on the drive's total compliance.",
-    "Tooth clearance, radial play, couplings and hysteresis: they come on top of this backlash.",
+    "Tooth clearance, radial play, couplings and hysteresis: they come on top of this backlash, except what is entered "
+    "in Other sources: that counts in the columns System, which no verdict judges.",
     "Plastic deformation: a von Mises stress above yield is flagged, the number stays elastic.",
     "What ties dimensions together beyond the correlations that are entered or measured; a process that drifts.",
 )

@@ -14,6 +14,8 @@ from flexlash.report.compare.compare_sheet import write_compare
 from flexlash.report.compare.compared import COMPARED_NOTE, compared_variants
 from flexlash.report.compare.contributions_sheet import write_contributions
 from flexlash.report.compare.ranking_sheet import write_ranking
+from flexlash.report.drive.drive_sheet import write_drive
+from flexlash.report.drive.stored_drives import DRIVES_NOTE
 from flexlash.report.elasticity_sheet import write_elasticity, write_stress
 from flexlash.report.explorer.curves_sheet import CURVES_NOTE, stored_curves
 from flexlash.report.explorer.explorer_sheet import write_explorer
@@ -70,6 +72,7 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     write_samples(book, outcome, drawn)
     write_sections(book, drawn, extent)
     write_strength(book, drawn, extent)
+    drives = write_drive(book, outcome, drawn)
     if "elasticity_windup_rad" in outcome.results.columns:
         write_elasticity(book, outcome, drawn)
         write_stress(book, data)
@@ -80,7 +83,8 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     scatter, tied = stored_scatter(computed)
     behind = [(scatter, SCATTER_NOTE), *([(tied, TIED_NOTE)] if tied.rows else [])]
     charted = [(swept, SWEPT_NOTE)] if swept.rows else []
-    noted = [(curves, CURVES_NOTE), (compared, COMPARED_NOTE), *charted, (inputs, INPUTS_NOTE), *behind]
+    driven = [(drives, DRIVES_NOTE)] if drives else []
+    noted = [(curves, CURVES_NOTE), (compared, COMPARED_NOTE), *charted, *driven, (inputs, INPUTS_NOTE), *behind]
     steps = [STEPS] * bool(inputs.rows) + [SLOPE] * bool(scatter.rows)
     write_about(book, outcome, later=(*(stored.name for stored, _ in noted), *steps))
     part = f"{extent.note} " if extent.large and extent.note else ""

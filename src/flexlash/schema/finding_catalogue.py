@@ -1238,6 +1238,30 @@ CATALOGUE = _rules(
         "together.",
     ),
     (
+        "W470",
+        "system limit below the average",
+        "{place} {name} = {value} arcmin: wind-up and other sources make {other} arcmin on average, so that about half "
+        "of the drives or more exceed it.",
+        "Raise the limit, or lower the backlash: the sheet Drive of the report shows whose share is whose.",
+        "The average is the nominal backlash of the wind-up and the middle of every source of the sheet Other sources.",
+    ),
+    (
+        "W471",
+        "drives over the system limit",
+        "{place} {name} = {value} arcmin: only {detail} % of drives are within it; {other} % are wanted.",
+        "Narrow the deviations of the source, or of the dimension, that has most of the variance: the sheet Drive of "
+        "the report shows it.",
+        "Wind-up and other sources are drawn together by the method of the run. The wanted share is target_percent of "
+        "Settings. Verdicts and exit codes judge the backlash limit of the flexspline alone.",
+    ),
+    (
+        "W472",
+        "system limit below the backlash limit",
+        "{place} {name} = {value} arcmin is below the backlash limit {other} arcmin of the flexspline alone.",
+        "Check which limit is meant: the system limit is that of the whole drive.",
+        "The wind-up of the flexspline is a part of the whole drive's backlash, so that its limit cannot be used up.",
+    ),
+    (
         "I501",
         "unit converted",
         "{place}: {name} is given in {value} and was converted to {unit}.",

@@ -56,6 +56,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
     "said": {"text_wrap": True, "valign": "top"},
     "topic link": {"bold": True, "valign": "top", "font_color": PALETTE["blue"], "underline": 1},
     "quiet": {"font_color": "#595959", "italic": True},
+    "note": {"font_color": "#595959", "italic": True, "text_wrap": True, "valign": "top"},
     "hint": {"font_color": "#595959", "italic": True, "align": "left"},
     "label": {"bold": True, "font_color": "#404040"},
     "big": {

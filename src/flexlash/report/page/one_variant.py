@@ -23,6 +23,7 @@ from flexlash.report.page.shape import (
 from flexlash.report.page.variants import verdict_of
 from flexlash.report.report_data import ROW, Drawn
 from flexlash.report.wording.advice import stiffening, tightening_of
+from flexlash.report.wording.drive_sentences import DRIVE, whole_drive_of
 from flexlash.report.wording.lot_sentences import LOTS, lots_of
 from flexlash.report.wording.measured_parts import PARTS, left_open_by
 from flexlash.report.wording.sentences import cause_of
@@ -57,6 +58,8 @@ _NUMBERS = (
     "ppm_over_limit", "probability_over_limit_sample_low", "probability_over_limit_sample_high",
     "p99_865_sample_low_arcmin", "p99_865_sample_high_arcmin",
     "within_lot_sd_arcmin", "between_lots_sd_arcmin", "lots_failing",
+    "system_mean_arcmin", "system_rss_high_arcmin", "system_bender_high_arcmin", "system_mean_shift_high_arcmin",
+    "system_worst_case_high_arcmin", "system_p99_865_arcmin", "system_limit_arcmin", "system_probability_over_limit",
     "ppk", "ppk_normal", "interaction_share", "disk_share", "cylinder_only_backlash_arcmin",
     "two_term_backlash_arcmin", "lost_motion_arcmin", "drive_lost_motion_arcmin", "stiffness_Nm_per_rad",
     "stiffness_Nm_per_arcmin", "catalogue_stiffness_Nm_per_rad", "wall_shear_MPa", "rim_shear_MPa", "hub_shear_MPa",
@@ -114,6 +117,8 @@ def _sentences(facts: SummaryFacts, variant: Drawn) -> Iterator[Sentence]:
         for topic, text in (("What to tighten", tighter), ("What to stiffen", stiffer)):
             if text:
                 yield Sentence(topic=topic, text=text, kind="advice")
+    if drive := " ".join(whole_drive_of(facts, row)):
+        yield Sentence(topic=DRIVE, text=drive, kind="verdict")
     for topic, told in ((BENDING, bending_of(row)), (TWO_LOBES, two_lobes_of(row))):
         if text := " ".join(told):
             yield Sentence(topic=topic, text=text, kind="note")

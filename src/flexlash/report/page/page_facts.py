@@ -20,6 +20,7 @@ from flexlash.report.page.shape import PageFacts, Refused, Sentence
 from flexlash.report.page.tiles import TARGET, finding_tiles, verdict_tiles
 from flexlash.report.page.variants import chart_of, lost_variants, shown_names, table_rows
 from flexlash.report.report_data import ReportData
+from flexlash.report.wording.drive_sentences import DRIVE
 from flexlash.report.wording.lot_sentences import LOTS
 from flexlash.report.wording.measured_parts import PARTS
 from flexlash.report.wording.sentences import sentences
@@ -40,6 +41,7 @@ _KINDS: Mapping[str, str] = {
     "How sure": "verdict",
     PARTS: "verdict",
     LOTS: "verdict",
+    DRIVE: "verdict",
     "Why": "cause",
     "What to tighten": "advice",
     "What to stiffen": "advice",

@@ -14,6 +14,7 @@ from flexlash.analysis.run_summary import counted, grouped, listed, points_range
 from flexlash.report.layout.links import rule_counts
 from flexlash.report.report_data import ROW
 from flexlash.report.wording.advice import stiffening, tightening
+from flexlash.report.wording.drive_sentences import DRIVE, whole_drive
 from flexlash.report.wording.lot_sentences import LOTS, lots_and_parts
 from flexlash.report.wording.measured_parts import PARTS, measured_parts
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows, rough, summary_facts
@@ -45,6 +46,7 @@ _OF_THOSE_DRAWN = (
     "Why",
     "What to tighten",
     "What to stiffen",
+    DRIVE,
     "Cylinder-only formula",
     "Strength",
     "Of the calculation",
@@ -70,6 +72,7 @@ def sentences(outcome: Outcome, recommendations: Sequence[Recommendation]) -> It
         "Why": _causes(facts),
         "What to tighten": tightening(facts),
         "What to stiffen": stiffening(facts),
+        DRIVE: whole_drive(facts),
         "Cylinder-only formula": _classical(facts),
         "Strength": _strength(facts),
         "Of the calculation": _calculation(facts),
