@@ -1240,8 +1240,8 @@ CATALOGUE = _rules(
     (
         "W470",
         "system limit below the average",
-        "{place} {name} = {value} arcmin: wind-up and other sources make {other} arcmin on average, so that about half "
-        "of the drives or more exceed it.",
+        "{place} {name} = {value} arcmin is below the average {other} arcmin of wind-up and other sources; about half "
+        "or more exceed it.",
         "Raise the limit, or lower the backlash: the sheet Drive of the report shows whose share is whose.",
         "The average is the nominal backlash of the wind-up and the middle of every source of the sheet Other sources.",
     ),
