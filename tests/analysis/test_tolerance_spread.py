@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from b3_160 import CUP, NOMINAL
+from scipy.special import ndtri
+from scipy.stats import norm
 from toleranced import every_number, plan, row, statistics_of_row
 from unlike_rows import LINES, ROWS
 from worker_tasks import fail
@@ -15,6 +17,8 @@ from flexlash import workers
 from flexlash.analysis import tolerance_spread
 from flexlash.analysis.tolerance_spread import row_curves, row_statistics
 from flexlash.tolerance.dimension_limits import Limits
+from flexlash.tolerance.distribution_curves import CURVE_SCORES
+from flexlash.tolerance.engine.line_precision import PROBABILITY_PRECISION
 
 
 def _statistics(sampling=LINES, *, jobs=1):
@@ -101,3 +105,29 @@ def test_workers_and_neighbours_change_no_bit_of_a_curve():
     for one, other in zip(here, there, strict=True):
         for name, values in vars(one).items():
             assert np.array_equal(values, getattr(other, name))
+
+
+@pytest.mark.slow
+def test_the_share_over_a_limit_is_sharp_near_every_target():
+    """With the limit where a target decides, the share over it is told to a twentieth of itself, as many more lines do.
+
+    So the lines that are drawn settle a verdict by any target unless the share lies within a tenth of what it allows.
+    """
+    bounded = {name: replace(limits, distribution="uniform") for name, limits in ROWS[0].limits.items()}
+    for toleranced in (ROWS[0], replace(ROWS[0], limits=bounded)):
+        statistics = statistics_of_row(toleranced, plan(samples=1 << 12))
+        (curve,) = row_curves([(toleranced, statistics)], plan(samples=1 << 12), 1)
+        for target in (97.5, 99.0, 99.9, 99.99, 99.9999):
+            limit = float(np.interp(ndtri(target / 100), CURVE_SCORES, curve.outputs))
+            share, error = _over(replace(toleranced, upper_limit=limit), plan())
+            assert share == pytest.approx(1 - target / 100, rel=0.2)
+            assert error <= 1.1 * PROBABILITY_PRECISION * share
+            sure, sure_error = _over(replace(toleranced, upper_limit=limit), plan(samples=1 << 12, seed=1))
+            assert abs(share - sure) <= 4 * (error + sure_error) + 1e-4 * sure
+
+
+def _over(toleranced, sampling):
+    """Return the share over the limit of a row, and its standard error on the normal scale as a share."""
+    numbers = statistics_of_row(toleranced, sampling).numbers
+    share, low, high = (numbers[f"probability_over_limit{end}"] for end in ("", "_low", "_high"))
+    return share, float(norm.pdf(norm.isf(share)) * (norm.isf(low) - norm.isf(high)) / (2 * norm.isf(0.025)))

@@ -5,13 +5,14 @@ from __future__ import annotations
 from random import Random
 
 import polars as pl
+import pytest
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.results import empty_results
 from flexlash.analysis.whole_batch import WholeBatch, verdicts_of, worst_rows
 from flexlash.reading.raw import Submission
 from flexlash.report.wording.verdict import straddled
-from flexlash.schema.limit_verdict import VERDICTS, limit_verdict
+from flexlash.schema.limit_verdict import VERDICTS, VerdictBounds
 
 
 def _results(rows):
@@ -54,15 +55,17 @@ def test_the_worst_of_parts_are_the_worst_of_all():
     assert worst_rows(parts, 25).equals(worst_rows(results, 25))
 
 
-def test_verdicts_are_counted_as_row_by_row():
+@pytest.mark.parametrize("target", [97.5, 99.865, 99.99])
+def test_verdicts_are_counted_as_row_by_row(target):
     """Verdicts, and those of them that are not settled, are counted as the single rows have them."""
-    results = _results(500)
-    every, doubtful = verdicts_of(results)
+    results, bounds = _results(500), VerdictBounds.of(target)
+    every, doubtful = verdicts_of(results, bounds)
     rows = list(results.iter_rows(named=True))
     for verdict in VERDICTS:
-        having = [row for row in rows if limit_verdict(row["probability_over_limit"]) == verdict]
-        assert every[verdict] == len(having) > 0
-        assert doubtful[verdict] == sum(bool(straddled(row)) for row in having)
+        having = [row for row in rows if bounds.verdict(row["probability_over_limit"]) == verdict]
+        assert every[verdict] == len(having)
+        assert bool(having) is (bounds.any_marginal or verdict != "marginal")
+        assert doubtful[verdict] == sum(bool(straddled(row, bounds)) for row in having)
     assert sum(doubtful.values())
 
 

@@ -11,7 +11,8 @@ from filled import SOUND, filled
 
 from flexlash.pipeline import run
 from flexlash.report.about_sheet import CHECKSUMS, SHEETS, TABS
-from flexlash.report.wording.verdict import RULES
+from flexlash.report.wording.verdict import verdict_rules
+from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.result_columns import RESULTS
 from flexlash.schema.used_columns import TOLERANCES_USED
 
@@ -58,7 +59,7 @@ def test_every_column_is_defined(book):
 def test_verdict_and_digits_are_explained(book):
     """About gives the rule of each verdict, and says what is rounded and what is exact."""
     said = " ".join(name for name, _, _ in _section(book["About"], "Verdict"))
-    for colour, rule in RULES.items():
+    for colour, rule in verdict_rules(VerdictBounds()).items():
         assert f"{colour.capitalize()}: {rule}." in said
     digits = " ".join(name for name, _, _ in _section(book["About"], "Digits and columns"))
     assert "Standard errors are kept to 4 digits and estimated shares to 4 decimals" in digits

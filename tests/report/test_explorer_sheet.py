@@ -18,11 +18,13 @@ from flexlash.report.explorer.explorer_sheet import write_explorer
 from flexlash.report.extent import extent_of
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import drawn_variants
+from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.distribution_curves import CURVE_SCORES
 
 VARIANT, UNIT, LIMIT, WANTED = "B4", "B5", "B6", "B7"
-USED, SHARE, LOW, HIGH, PPM, VERDICT, FOUND, FOUND_ERROR = (f"B{row}" for row in range(9, 17))
+TARGET = "B8"
+USED, SHARE, LOW, HIGH, PPM, VERDICT, FOUND, FOUND_ERROR = (f"B{row}" for row in range(10, 18))
 LOTS = "F15", "F16", "F17"
 OUTER = 1e-6
 """The rarest share whose reading is promised to be within 1 %."""
@@ -39,7 +41,7 @@ def _explorer_alone(outcome, path):
     drawn = path.with_name(f"drawn {path.name}")
     with xlsxwriter.Workbook(drawn) as workbook:
         book, curves = Book(workbook), stored_curves(drawn_variants(outcome))
-        write_explorer(book, curves, extent_of(outcome))
+        write_explorer(book, curves, extent_of(outcome), outcome.settings.verdict_bounds)
         curves.write(book, CURVES_NOTE)
     return without_charts(drawn, path)
 
@@ -233,8 +235,8 @@ def test_the_unit_is_switched_in_one_cell(study, tmp_path):
         assert _number(one[cell]) == pytest.approx(60 * _number(other[cell]), abs=1.01 * room), cell
     unchanged = (SHARE, LOW, HIGH, PPM, "F14")
     assert [one[cell] for cell in unchanged] == [other[cell] for cell in unchanged]
-    assert one["G4"] == one["C9"] == "arcsec"
-    assert (one["A18"], other["A18"]) == ("Charts in arcsec", "Charts in arcmin")
+    assert one["G4"] == one["C10"] == "arcsec"
+    assert (one["A19"], other["A19"]) == ("Charts in arcsec", "Charts in arcmin")
     assert "arcsec" in one["C6"]
 
 
@@ -261,7 +263,7 @@ def test_lots_that_are_alike_may_not_be_settled(study, tmp_path):
         path = tmp_path / f"{error}.xlsx"
         with xlsxwriter.Workbook(path) as workbook:
             book = Book(workbook)
-            write_explorer(book, curves, extent_of(study[0]))
+            write_explorer(book, curves, extent_of(study[0]), VerdictBounds())
             curves.write(book, CURVES_NOTE)
         assert values_of(path, "Explorer")[LOTS[2]] == words
 
@@ -294,14 +296,42 @@ def test_without_limit_or_scatter_nothing_is_an_error(table, sound, tmp_path):
     assert none[SHARE] == none[PPM] == none["F14"] == none["F17"] == "none"
     assert [under[cell] for cell in LOTS] == ["0.0000", "0.0000", "none"]
     assert none[VERDICT] == "–"
-    assert "type one above" in none["C10"]
+    assert "type one above" in none["C11"]
     assert _number(far[SHARE]) == pytest.approx(2.9e-7, rel=0.02)
-    assert far["C10"].startswith("at most")
-    assert near["C10"].startswith("at least")
+    assert far["C11"].startswith("at most")
+    assert near["C11"].startswith("at least")
     assert (_number(far[LOW]), _number(near[HIGH])) == (0, 1)
-    assert far["E18"] == "The limit 99.00 lies outside the pictures."
+    assert far["E19"] == "The limit 99.00 lies outside the pictures."
     assert (under[SHARE], over[SHARE]) == ("0.0000 %", "100.0000 %")
     assert (under[VERDICT], over[VERDICT]) == ("green", "red")
+
+
+@pytest.mark.slow
+@needs_libreoffice
+def test_the_verdict_follows_the_target_that_is_typed(table, sound, tmp_path):
+    """With 756 ppm over its limit a variant is green by a target of 99.9 %, amber by 99.95 %; nonsense is not used."""
+    outcome = run(table([{**sound, "backlash_limit_arcmin": 3.785}]), tmp_path / "report.xlsx")
+    report = _explorer_alone(outcome, tmp_path / "alone.xlsx")
+    targets = {
+        0.975: "green",
+        0.999: "green",
+        0.9995: "amber",
+        0.999999: "amber",
+        0.9: "green",
+        1.0: "green",
+        "x": "green",
+    }
+    books = [
+        typed(report, tmp_path / f"{number}.xlsx", "Explorer", {TARGET: target})
+        for number, target in enumerate(targets)
+    ]
+    for target, again in zip(targets, convert_all(books, "xlsx", tmp_path / "again"), strict=True):
+        values = values_of(again, "Explorer")
+        assert not error_cells(values)
+        assert values[VERDICT] == targets[target]
+        used = target if target in sound_targets else 0.99865
+        assert values["C15"] == f"green to {100 * (1 - used):.4f} %, amber to 2.5 %"
+        assert ("not used" in values["C8"]) is (used != target)
 
 
 @pytest.mark.slow
@@ -311,7 +341,7 @@ def test_points_tell_no_rarer_share_than_they_hold(table, sound, tmp_path, how):
     outcome = run(table([{**sound, "backlash_limit_arcmin": "99"}]), tmp_path / "report.xlsx", **how)
     values = values_of(tmp_path / "report.xlsx", "Explorer")
     assert _number(values[SHARE]) == pytest.approx(1 / outcome.results["spread_points"][0], rel=0.2)
-    assert values["C10"].startswith("at most")
+    assert values["C11"].startswith("at most")
     assert not error_cells(values)
 
 
@@ -353,7 +383,7 @@ def test_nonsense_is_told_and_gives_no_number(study, tmp_path):
             assert values[VERDICT] == "–"
         if cell in {VARIANT, UNIT}:
             assert values["F4"] == values[FOUND] == "none"
-            assert values["A18"] == "Nothing to draw"
+            assert values["A19"] == "Nothing to draw"
             assert values[hints[words]] == 0
         else:
             assert words in values[hints[words]], name

@@ -165,7 +165,7 @@ def test_summary_and_about_say_what_is_where(large):
     assert texts["Computed"].startswith(
         "1999 of 2001 variants were computed. Results holds all of them; the other sheets show the 500 worst."
     )
-    red = verdicts_of(outcome.results)[0]["fails"]
+    red = verdicts_of(outcome.results, outcome.settings.verdict_bounds)[0]["fails"]
     assert f"{red} of 1799 variants with a limit are red" in texts["Which fail"]
     assert re.search("Main contributor of (all )?1999 variants: ", texts["Why"])
     told = {row[0]: row[1] for row in book["About"].iter_rows(values_only=True)}

@@ -18,6 +18,7 @@ from flexlash.report.page.page_facts import Found, page_facts
 from flexlash.report.report_data import report_data
 from flexlash.report.results_sheet import FIRST_ROW
 from flexlash.report.wording.measured_parts import PARTS, how_left_open, left_open_by, left_open_words
+from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.variant import Limits, MeasuredDimension
 
 CLASS = """tolerance_class,dimension,lower_deviation,upper_deviation,deviation_unit,sample
@@ -54,7 +55,7 @@ def facts_of(*counts):
             sample="s", dimension=name, values=tuple(map(float, range(count))), parts=tuple(range(count))
         )
         limits[name] = Limits(low=0.0, high=1.0, sd=1.0, sample=sample)
-    return SimpleNamespace(computed=lambda _: SimpleNamespace(limits=limits))
+    return SimpleNamespace(computed=lambda _: SimpleNamespace(limits=limits), bounds=VerdictBounds())
 
 
 def row(share, low, high, limit=3.8):
@@ -162,8 +163,8 @@ def test_explorer_and_results_show_what_is_left_open(told, tmp_path):
     outcome = told(20, 3.723, output=report)
     (found,) = outcome.results.to_dicts()
     book = openpyxl.load_workbook(report, data_only=True)
-    assert book["Explorer"]["A17"].value == "Left open by measured parts"
-    assert book["Explorer"]["B17"].value == left_open_words(found)
+    assert book["Explorer"]["A18"].value == "Left open by measured parts"
+    assert book["Explorer"]["B18"].value == left_open_words(found)
     keys = {cell.value: cell.column for cell in book["Results"][2]}
     for key in ("probability_over_limit_sample_low", "probability_over_limit_sample_high"):
         cell = book["Results"].cell(row=FIRST_ROW + 1, column=keys[key])

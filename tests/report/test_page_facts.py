@@ -16,6 +16,7 @@ from flexlash.report.page.excel_texts import number_text
 from flexlash.report.page.page_facts import PAGED, TABLED, Found, page_bytes, page_facts
 from flexlash.report.report_data import ROW, ranked, report_data
 from flexlash.report.wording.verdict import light
+from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.result_columns import RESULTS
 from flexlash.schema.units import ARCMIN
 
@@ -75,7 +76,10 @@ def test_the_chart_has_the_numbers_of_results(facts, worst):
     assert (chart["drawn"], chart["of"]) == (len(chart["variants"]), len(worst))
     for bar, row in zip(chart["variants"], worst, strict=True):
         assert {name: bar[name] for name in keys} == {name: row[f"{key}_arcmin"] for name, key in keys.items()}
-        assert bar["verdict"] == {"red": "fails", "amber": "marginal", "green": "meets"}[light(row).rstrip("?")]
+        assert (
+            bar["verdict"]
+            == {"red": "fails", "amber": "marginal", "green": "meets"}[light(row, VerdictBounds()).rstrip("?")]
+        )
     assert chart["limits"] == [3.8]
     assert chart["axis"]["start"] < min(bar["low"] for bar in chart["variants"])
 

@@ -65,7 +65,7 @@ def test_rows_repeat_results_worst_first(study):
         assert cells["Rank"].value == rank
         assert cells["Variant"].value == row["variant"]
         assert cells["Variant"].hyperlink.location == f"Results!A{results.index(row['variant']) + 3}"
-        assert cells["Verdict"].value == light(row)
+        assert cells["Verdict"].value == light(row, outcome.settings.verdict_bounds)
         assert cells["Units over the limit"].value == share_words(row)
         assert cells["Main contributor"].value == dimension_words(row["main_contributor"])
         assert {heading: cells[heading].value for heading in KEYS} == {

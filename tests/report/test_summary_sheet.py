@@ -20,8 +20,9 @@ from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
 from flexlash.report.report_data import drawn_variants, report_data
 from flexlash.report.summary.summary_sheet import write_summary
-from flexlash.report.wording.verdict import RULES, light
+from flexlash.report.wording.verdict import light, verdict_rules
 from flexlash.schema.entry_words import dimension_words
+from flexlash.schema.limit_verdict import VerdictBounds
 
 _ASCENT_AND_DESCENT = 1.22
 """Height of a word's box over the size of its letters, in Calibri and Carlito."""
@@ -61,7 +62,7 @@ def test_key_figures_and_their_rule(study):
     places = (1, 2, 5, 8, 9)
     assert [sheet.cell(4, place).value for place in places] == ["11 of 11", "3 red", "0 amber", "8 green", "5 warnings"]
     captions = [sheet.cell(5, place).value for place in places]
-    assert captions == ["variants computed", *RULES.values(), "see Findings"]
+    assert captions == ["variants computed", *verdict_rules(VerdictBounds()).values(), "see Findings"]
     fills = [sheet.cell(4, place).fill.fgColor.rgb for place in places]
     assert fills == ["00000000", FILLS["red"], "00000000", FILLS["green"], "00000000"]
 
@@ -89,7 +90,7 @@ def test_the_table_holds_the_worst_with_their_numbers(study):
         cells = [sheet.cell(row, place) for place in range(1, 10)]
         name, verdict, *numbers, excess, share, cause = (cell.value for cell in cells)
         assert name == one.row["variant"]
-        assert verdict == light(one.row)
+        assert verdict == light(one.row, VerdictBounds())
         assert cells[1].fill.fgColor.rgb == FILLS[verdict]
         assert numbers == [pytest.approx(one.row[key], rel=1e-15) for key in NUMBERS]
         assert excess == pytest.approx(one.row["p97_5_arcmin"] - one.row["backlash_limit_arcmin"], rel=1e-12)
@@ -136,7 +137,7 @@ def test_verdicts_of_few_points_have_a_mark(folder):
     run(study, folder / "few.xlsx", method="random", samples=64)
     sheet = opened(folder / "few.xlsx")["Summary"]
     assert [sheet.cell(4, place).value for place in (2, 5, 8)] == ["3 red", "0 amber", "8 green?"]
-    assert sheet.cell(5, 8).value == f"{RULES['green']}; 8 not settled"
+    assert sheet.cell(5, 8).value == f"{verdict_rules(VerdictBounds())['green']}; 8 not settled"
     assert sheet.cell(4, 8).fill.fgColor.rgb == FILLS["green"]
     first = _row(sheet, "Variant") + 1
     cells = [sheet.cell(row, 2) for row in range(first, first + 11)]
@@ -228,7 +229,7 @@ def test_the_chart_holds_every_variant(study):
         assert [float(value) for value in re.findall(r"<c:v>([^<]+)</c:v>", values)] == pytest.approx(numbers)
     colours = re.findall(r'<c:dPt>.*?<a:solidFill>\s*<a:srgbClr val="(\w+)"', series[1], re.DOTALL)
     names = {"red": "red", "amber": "orange"}
-    assert colours == [PALETTE[names.get(light(one.row), "sky")].strip("#") for one in drawn]
+    assert colours == [PALETTE[names.get(light(one.row, VerdictBounds()), "sky")].strip("#") for one in drawn]
     low = float(re.search(r'<c:min val="([^"]+)"', text)[1])
     assert 0 < low < min(expected[0])
 

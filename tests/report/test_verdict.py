@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from flexlash.pipeline import run
-from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, RULES, firm, light, straddled, verdict_counts
+from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, firm, light, straddled, verdict_counts, verdict_rules
+from flexlash.schema.limit_verdict import VerdictBounds
 
+BOUNDS = VerdictBounds()
 SHARES = {0.0: "green", 0.00135: "green", 0.01: "amber", 0.025: "amber", 0.5: "red", None: NO_VERDICT}
 
 
@@ -14,9 +16,9 @@ SHARES = {0.0: "green", 0.00135: "green", 0.01: "amber", 0.025: "amber", 0.5: "r
 def test_verdict_follows_its_rule(share):
     """Green, amber and red follow the share of units over the limit; a share at its bound keeps it."""
     row = {f"probability_over_limit{end}": share for end in ("", "_low", "_high")}
-    assert light(row) == SHARES[share]
+    assert light(row, BOUNDS) == SHARES[share]
     assert SHARES[share] in COLOURS
-    assert (SHARES[share] in RULES) == (share is not None)
+    assert (SHARES[share] in verdict_rules(BOUNDS)) == (share is not None)
 
 
 @pytest.mark.slow
@@ -51,8 +53,8 @@ def test_a_verdict_that_more_points_may_change_has_a_mark(case):
     verdict, low, high, told, bounds = INTERVALS[case]
     row = {"probability_over_limit": {"green": low, "amber": 0.01, "red": high}[verdict]}
     row |= {"probability_over_limit_low": low, "probability_over_limit_high": high}
-    assert light(row) == told
-    assert straddled(row) == bounds
+    assert light(row, BOUNDS) == told
+    assert straddled(row, BOUNDS) == bounds
     assert firm(told) == verdict
     assert COLOURS[told] == COLOURS[verdict]
 

@@ -91,7 +91,7 @@ class Outcome:
         else:
             rows, computed = len(self.validated.submitted) if self.validated else 0, len(self.computed)
             levels = Counter(found.level for found in self.findings)
-            verdicts = Counter(verdicts_of(self.results)[0])
+            verdicts = Counter(verdicts_of(self.results, self.settings.verdict_bounds)[0])
         return {
             "rows": rows,
             "computed": computed,

@@ -9,7 +9,6 @@ from flexlash.analysis.computed import Computed
 from flexlash.analysis.tolerance_spread import spread_again
 from flexlash.mechanics.flexspline import backlash
 from flexlash.schema.columns import DIMENSIONS
-from flexlash.schema.limit_verdict import misses_limit
 from flexlash.schema.variant import Limits, Settings
 from flexlash.tolerance.spread_statistics import SpreadStatistics
 
@@ -62,7 +61,7 @@ class Recommendation:
 
 def recommendations_of(computed: Mapping[int, Computed], settings: Settings) -> list[Recommendation]:
     """Return what helps the worst failing variant, and the worst of those that tighter tolerances can help."""
-    failing = [one for one in computed.values() if _fails(one)]
+    failing = [one for one in computed.values() if settings.verdict_bounds.misses(_over(one))]
     helped = [one for one in failing if _can_be_tightened(one)]
     chosen = {one.variant.row: one for group in (failing, helped) if group for one in [max(group, key=_badness)]}
     return [
@@ -82,10 +81,9 @@ def _number(spread: SpreadStatistics | None, key: str) -> float:
     return float("nan") if value is None else value
 
 
-def _fails(one: Computed) -> bool:
-    """Whether a variant has a limit and does not meet it."""
-    over = one.spread.numbers.get("probability_over_limit") if one.spread else None
-    return misses_limit(over)
+def _over(one: Computed) -> float | None:
+    """Return the share of units of a variant over its limit; None without a limit."""
+    return one.spread.numbers.get("probability_over_limit") if one.spread else None
 
 
 def _can_be_tightened(one: Computed) -> bool:

@@ -13,7 +13,7 @@ from flexlash.analysis.whole_batch import worst_rows
 from flexlash.schema.cell_addresses import CellAddress, cell_ranges
 from flexlash.schema.finding_catalogue import Level
 from flexlash.schema.findings import CATALOGUE, Finding, shown
-from flexlash.schema.limit_verdict import BOUNDS, VERDICTS, misses_limit
+from flexlash.schema.limit_verdict import VERDICTS, VerdictBounds
 from flexlash.schema.lot_words import lots_words, some_lots_fail
 from flexlash.schema.number_words import ALL_UNITS, angle_words, grouped, range_words, rounded, share_words
 from flexlash.validation.blocking_errors import Waiting, waiting_rows
@@ -254,20 +254,23 @@ def listed(words: Sequence[str], most: int, count: int = 0) -> str:
 
 def limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
     """Yield how many variants meet their limits, and by name the worst of those that do not."""
-    yield from lines_of_limits(outcome.counts, worst_first(outcome, most), most)
+    yield from lines_of_limits(outcome.counts, worst_first(outcome, most), outcome.settings.verdict_bounds, most)
 
 
-def lines_of_limits(counts: Mapping[str, int], worst: Iterable[Mapping[str, Any]], most: int = 3) -> Iterator[str]:
+def lines_of_limits(
+    counts: Mapping[str, int], worst: Iterable[Mapping[str, Any]], bounds: VerdictBounds, most: int = 3
+) -> Iterator[str]:
     """Yield the same of counts and of the worst rows of Results, worst first."""
     judged = sum(counts[verdict] for verdict in VERDICTS)
     if not judged:
         return
+    most_over, most_marginal = (f"{100 * share:.10g} %" for share in (bounds.meets, bounds.marginal))
+    marginal = f"marginal: {counts['marginal']} (at most {most_marginal}); " if bounds.any_marginal else ""
     yield (
-        f"Backlash limit met by {counts['meets']} of {counted(judged, 'variant')} with a limit (at most "
-        f"{BOUNDS['meets']:.3%} of units over it); marginal: {counts['marginal']} (at most {BOUNDS['marginal']:.1%}); "
-        f"not met: {counts['fails']}."
-    ).replace("%", " %")
-    over = [row for row in worst if misses_limit(row["probability_over_limit"])]
+        f"Backlash limit met by {counts['meets']} of {counted(judged, 'variant')} with a limit (at most {most_over} "
+        f"of units over it); {marginal}not met: {counts['fails']}."
+    )
+    over = [row for row in worst if bounds.misses(row["probability_over_limit"])]
     for row in over[:most]:
         words = share_words(row)
         units = f"{words} units" if words in ALL_UNITS else f"{words} of units"

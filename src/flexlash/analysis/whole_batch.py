@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from flexlash.schema.findings import CATALOGUE
-from flexlash.schema.limit_verdict import BOUNDS, VERDICTS, Verdict
+from flexlash.schema.limit_verdict import VERDICTS, Verdict, VerdictBounds
 
 if TYPE_CHECKING:
     import polars as pl
@@ -67,28 +67,30 @@ def worst_rows(results: pl.DataFrame, most: int | None = None) -> pl.DataFrame:
     return spread[order if most is None else order.head(most)]
 
 
-def verdict_place() -> pl.Expr:
+def verdict_place(bounds: VerdictBounds) -> pl.Expr:
     """Return the place among the verdicts of what a row of Results has, from 0; null without a limit."""
     import polars as pl
 
     over = pl.col("probability_over_limit")
-    return pl.when(over.is_not_null()).then(sum((over > bound).cast(pl.Int32) for bound in BOUNDS.values()))
+    return pl.when(over.is_not_null()).then(
+        pl.sum_horizontal((over > bound).cast(pl.Int32) for bound in (bounds.meets, bounds.marginal))
+    )
 
 
-def is_straddled() -> pl.Expr:
+def is_straddled(bounds: VerdictBounds) -> pl.Expr:
     """Return whether more points may give a row of Results another verdict."""
     import polars as pl
 
     low, high = pl.col("probability_over_limit_low"), pl.col("probability_over_limit_high")
-    return pl.any_horizontal((low <= bound) & (bound < high) for bound in BOUNDS.values()).fill_null(value=False)
+    return pl.any_horizontal((low <= bound) & (bound < high) for bound in bounds.shares).fill_null(value=False)
 
 
-def verdicts_of(results: pl.DataFrame) -> tuple[dict[Verdict, int], dict[Verdict, int]]:
+def verdicts_of(results: pl.DataFrame, bounds: VerdictBounds) -> tuple[dict[Verdict, int], dict[Verdict, int]]:
     """Return how many variants with a limit have each verdict, and how many of each more points may give another.
 
     That is so where the 95 % interval of the share over the limit reaches beyond a bound.
     """
-    judged = results.select(place=verdict_place(), straddled=is_straddled())
+    judged = results.select(place=verdict_place(bounds), straddled=is_straddled(bounds))
     every, doubtful = Counter(judged["place"]), Counter(judged.filter("straddled")["place"])
     return (
         {verdict: every[number] for number, verdict in enumerate(VERDICTS)},

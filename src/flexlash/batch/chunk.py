@@ -15,6 +15,7 @@ from flexlash.reading.read import Source
 from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.findings import Finding, finding
 from flexlash.schema.limit_verdict import Verdict
+from flexlash.schema.variant import Settings
 from flexlash.validation.blocking_errors import Waiting
 
 __all__ = [
@@ -90,6 +91,7 @@ class ChunkSummary:
     skipped: bool = False
     seed: int = 0
     method: str = ""
+    target_percent: float = Settings.target_percent
     columns: tuple[str, ...] = ()
     verdicts: Mapping[Verdict, int] = field(default_factory=dict)
     unsettled: Mapping[Verdict, int] = field(default_factory=dict)

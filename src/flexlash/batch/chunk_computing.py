@@ -67,6 +67,7 @@ def answered(task: ChunkTask) -> ChunkAnswer:
         computed=len(outcome.computed),
         seed=outcome.settings.seed,
         method=outcome.settings.method,
+        target_percent=outcome.settings.target_percent,
         rules=dict(Counter(found.code for found in own)),
         groups=tuple(replace(one, addresses=one.addresses[:FIRST_CELLS]) for one in by_rule(own)),
         before=before,
@@ -132,7 +133,7 @@ def _of_all_columns(rows: pl.DataFrame, options: Options) -> pl.DataFrame:
 
 def _with_spread(summary: ChunkSummary, outcome: Outcome, table: Table | None) -> ChunkSummary:
     """Return a summary with what the spread says."""
-    verdicts, unsettled = verdicts_of(outcome.results)
+    verdicts, unsettled = verdicts_of(outcome.results, outcome.settings.verdict_bounds)
     return replace(
         summary,
         verdicts=verdicts,

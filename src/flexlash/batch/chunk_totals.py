@@ -25,7 +25,7 @@ from flexlash.analysis.whole_batch import DRAWN, WholeBatch
 from flexlash.batch.answer import Answer, RuleTotal, WorstVariant
 from flexlash.batch.chunk import FIRST_CELLS, FIRST_FINDINGS, ChunkSummary, WorstRow
 from flexlash.schema.findings import Finding
-from flexlash.schema.limit_verdict import VERDICTS, Verdict
+from flexlash.schema.limit_verdict import VERDICTS, Verdict, VerdictBounds
 from flexlash.schema.spellings import plain
 from flexlash.validation.blocking_errors import Waiting, with_waiting
 from flexlash.validation.consolidation import shared_by_excerpts
@@ -44,6 +44,7 @@ class Totals:
     def __init__(self) -> None:
         self.rows = self.computed = self.seed = 0
         self.method = ""
+        self._bounds = VerdictBounds()
         self.columns: tuple[str, ...] = ()
         self.worst: list[WorstRow] = []
         self._before: list[Finding] = []
@@ -62,6 +63,7 @@ class Totals:
         self.rows += chunk.rows
         self.computed += chunk.computed
         self.seed, self.method = chunk.seed, chunk.method or self.method
+        self._bounds = VerdictBounds.of(chunk.target_percent)
         self.columns = self.columns or chunk.columns
         self._verdicts.update(chunk.verdicts)
         self._unsettled.update(chunk.unsettled)
@@ -149,7 +151,7 @@ class Totals:
         counts = self.counts
         groups = self.groups
         listed = f"{findings_file or 'the table beside a marked copy (--annotate)'} lists them all"
-        details = [*lines_of_limits(counts, self._named()), *self._note_lines()] if ran else []
+        details = [*lines_of_limits(counts, self._named(), self._bounds), *self._note_lines()] if ran else []
         return Answer(
             exit_code=exit_code_of(counts, fail_over_limit=fail_over_limit),
             told={

@@ -14,9 +14,10 @@ from flexlash.report.layout.styles import Book
 from flexlash.report.results_sheet import AS_SUBMITTED, ERROR_DIGITS, SHARE_DECIMALS
 from flexlash.report.wording.correlation_words import correlation_sentences, first_order_sentence, share_sentence
 from flexlash.report.wording.measured_parts import how_left_open
-from flexlash.report.wording.verdict import NO_VERDICT, RULES
+from flexlash.report.wording.verdict import NO_VERDICT, verdict_rules
 from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, SETTINGS
+from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.number_words import grouped
 from flexlash.schema.result_columns import result_columns
 from flexlash.schema.used_columns import TOLERANCES_USED
@@ -215,11 +216,12 @@ def _lots(acceptable_ppm: float) -> Iterator[str]:
     )
 
 
-def _verdict() -> Iterator[str]:
+def _verdict(bounds: VerdictBounds) -> Iterator[str]:
     """Yield how the verdict on a variant is formed."""
-    yield from (f"{colour.capitalize()}: {rule}." for colour, rule in RULES.items())
+    amber = "amber where P97.5 is, else " if bounds.any_marginal else ""
+    yield from (f"{colour.capitalize()}: {rule}." for colour, rule in verdict_rules(bounds).items())
     yield (
-        "By percentiles: green where P99.865 is at most the limit, else amber where P97.5 is, else red; "
+        f"By percentiles: green where P{bounds.target_words.removesuffix(' %')} is at most the limit, else {amber}red; "
         f"{NO_VERDICT} where no limit was given. It judges the backlash alone, by the estimate as it stands; a ? says "
         "that the 95 % interval of the share over the limit reaches another verdict, so that more samples may turn it."
     )
@@ -276,7 +278,7 @@ def write_about(book: Book, outcome: Outcome, later: Sequence[str] = ()) -> None
     sections: tuple[tuple[str, list[tuple[str, str]]], ...] = (
         ("Provenance and settings", list(_identity(outcome).items())),
         ("Sheets", [*((name, sheets.get(name, "")) for name in present), ("", TABS)]),
-        ("Verdict", [("", text) for text in _verdict()]),
+        ("Verdict", [("", text) for text in _verdict(outcome.settings.verdict_bounds)]),
         ("Digits and columns", [("", text) for text in _digits()]),
         ("Spread", [("", text) for text in _statistics(outcome)]),
         ("Model", [("", text) for text in MODEL]),

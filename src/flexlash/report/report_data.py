@@ -14,7 +14,6 @@ from flexlash.analysis.recommendations import Recommendation, recommendations_of
 from flexlash.analysis.tolerance_spread import drawn_curves
 from flexlash.analysis.whole_batch import DRAWN, worst_rows
 from flexlash.decisions.sweep import Study, sweeps_of
-from flexlash.schema.limit_verdict import BOUNDS
 from flexlash.tolerance.distribution_curves import Curve
 
 if TYPE_CHECKING:
@@ -101,7 +100,7 @@ def _pictured(outcome: Outcome, worst: pl.DataFrame) -> dict[str, ElasticityChec
 def _recommendations(outcome: Outcome, worst: pl.DataFrame) -> list[Recommendation]:
     """Return what helps the worst failing variant, and the worst whose median is within its limit."""
     over, median, limit = (worst[key] for key in ("probability_over_limit", "p50_arcmin", "backlash_limit_arcmin"))
-    failing = over.is_not_null() & (over > BOUNDS["meets"])
+    failing = over.is_not_null() & (over > outcome.settings.verdict_bounds.meets)
     hopeful = failing & (median <= limit) & worst["main_contributor"].is_not_null()
     rows = [*worst.filter(failing)[ROW].head(1), *worst.filter(hopeful)[ROW].head(1)]
     return recommendations_of({row: outcome.computed[row] for row in rows}, outcome.settings)

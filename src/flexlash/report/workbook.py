@@ -59,7 +59,7 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     extent = extent_of(outcome)
     write_summary(book, outcome, data, curves)
     write_results(book, outcome, drawn)
-    write_explorer(book, curves, extent)
+    write_explorer(book, curves, extent, outcome.settings.verdict_bounds)
     compared = compared_variants(drawn)
     write_compare(book, outcome, drawn, compared)
     write_ranking(book, outcome, drawn, compared)

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Literal, TypeAlias
 
 from flexlash.schema.columns import SETTINGS
+from flexlash.schema.limit_verdict import VerdictBounds
 
 __all__ = [
     "FAR",
@@ -237,3 +238,8 @@ class Settings:
     calibrations: dict[str, float] = field(
         default_factory=lambda: {column.key: 1.0 for column in SETTINGS if column.role == "dimension"}
     )
+
+    @property
+    def verdict_bounds(self) -> VerdictBounds:
+        """Which share of units over the limit each verdict allows, by the target."""
+        return VerdictBounds.of(self.target_percent)

@@ -17,7 +17,7 @@ from flexlash.report.layout.links import result_rows, write_link
 from flexlash.report.layout.styles import Book, decimals_of
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
-from flexlash.report.wording.verdict import COLOURS, RULES, light
+from flexlash.report.wording.verdict import COLOURS, light, verdict_rules
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.lot_words import lots_words
 
@@ -70,9 +70,10 @@ def write_ranking(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
     count, extent = len(drawn), extent_of(outcome)
     total = f"{extent.total:,}"
     which = f"the {count} worst of {total}; {extent.elsewhere}" if extent.is_part else f"all {total} computed"
-    rules = "; ".join(f"{verdict}, {rule}" for verdict, rule in RULES.items())
+    bounds = outcome.settings.verdict_bounds
+    verdicts = "; ".join(f"{verdict}, {rule}" for verdict, rule in verdict_rules(bounds).items())
     notes = (
-        f"Variants by share of units over the limit: {which}. Verdict: {rules}.",
+        f"Variants by share of units over the limit: {which}. Verdict: {verdicts}.",
         "Margin: limit less P97.5, negative when over. Differences: variant less base; orange, more backlash or "
         "scatter than the base; blue, less. Pick the base in the yellow cell.",
         f"A lot fails with more than {outcome.settings.acceptable_ppm:,g} ppm of its units over the limit.",
@@ -86,7 +87,13 @@ def write_ranking(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
         results = result_rows(outcome)
         labels = distinct_labels([variant.row["variant"] for variant in drawn], _NAME)
         for rank, variant in enumerate(drawn):
-            _write_words(book, sheet, rank, variant, (labels[rank], results[variant.computed.variant.row]))
+            _write_words(
+                book,
+                sheet,
+                rank,
+                (variant, light(variant.row, bounds)),
+                (labels[rank], results[variant.computed.variant.row]),
+            )
             _write_figures(book, sheet, rank, variant, compared)
             _write_differences(book, sheet, rank, (variant, compared), base)
         _colour(book, sheet, FIRST_ROW + count - 1)
@@ -149,9 +156,9 @@ def _write_base(book: Book, sheet: Any, compared: Stored, first: int) -> dict[st
     return {heading: write(heading, column_of(heading), number) for heading, number in figures.items()}
 
 
-def _write_words(book: Book, sheet: Any, rank: int, variant: Drawn, link: tuple[str, int]) -> None:
-    """Write what is said of a variant in words; its label leads to its row of Results."""
-    row, verdict = FIRST_ROW + rank, light(variant.row)
+def _write_words(book: Book, sheet: Any, rank: int, of: tuple[Drawn, str], link: tuple[str, int]) -> None:
+    """Write what is said of a variant in words, with its verdict; its label leads to its row of Results."""
+    (variant, verdict), row = of, FIRST_ROW + rank
     sheet.write_number(row, 0, rank + 1, book.format("small figure", "0"))
     label, result = link
     write_link(sheet, row, 1, f"Results!A{result + 1}", label, style=book.format("link"))

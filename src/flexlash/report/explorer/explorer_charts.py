@@ -22,7 +22,7 @@ _DRAWN_SCORE = 3.41
 """The cumulative curve is drawn as far as this score on both sides, from 0.03 to 99.97 % of units."""
 
 _BINS_PER_LABEL = 5
-_FIRST_CHART, _CHART_ROWS = 18, 21
+_FIRST_CHART, _CHART_ROWS = 19, 21
 _COLOURS = ("ink", "grey", "blue", "sky", "orange", "red")
 _WIDTHS, _HEIGHT = (560, 440), 410
 _RIGHT = 3

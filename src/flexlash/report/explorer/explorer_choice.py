@@ -1,4 +1,4 @@
-"""What the reader of the Explorer chooses: variant, angle unit, limit, wanted share; a wrong entry is not used."""
+"""What the reader of the Explorer chooses: variant, unit, limit, wanted share, target; a wrong entry is not used."""
 
 from __future__ import annotations
 
@@ -9,37 +9,39 @@ from flexlash.report.formula.functions import AND, CONCATENATE, IF, ISNUMBER, MA
 from flexlash.report.formula.live import Live, fill, live, put
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
-from flexlash.report.wording.verdict import BOUNDS
+from flexlash.schema.limit_verdict import MARGINAL, VerdictBounds
 
-__all__ = ["NONE", "USUAL_SHARE", "Choice"]
-
-USUAL_SHARE = BOUNDS["green"]
-"""Share of a normal beyond its mean + 3 sd."""
+__all__ = ["NONE", "Choice"]
 
 NONE = "none"
 _FIRST_ROW = 3
 _SECONDS = 60.0
 _RAREST, _COMMONEST = 1e-6, 0.999999
-_LABELS = ("Variant", "Angle unit", "Another limit", "Wanted share over a limit")
+_DIGITS = 12
+"""Decimals of a share: 1 − 0.00135 need not be 0.99865 to the last bit."""
+
+_LABELS = ("Variant", "Angle unit", "Another limit", "Wanted share over a limit", "Target within the limit")
 
 
 class Choice:
     """The reader's cells, as references, with the picked variant's entries of Curves.
 
     `known` is whether variant and unit are of their lists; without, nothing is shown. `other` is the typed limit, an
-    empty text where none is to be used; `wanted` is the share to find the limit of, `wants` whether it is one.
+    empty text where none is to be used; `wanted` is the share to find the limit of, at first what the target
+    allows, `wants` whether it is one; `allowed` is the share over the limit with which a variant meets it.
     """
 
-    def __init__(self, book: Book, sheet: Any, curves: Stored) -> None:
+    def __init__(self, book: Book, sheet: Any, curves: Stored, bounds: VerdictBounds) -> None:
         self._curves = curves
         entry, hint = book.format("input"), book.format("hint")
+        entry_of_share = book.format("input", "0.0000##%")
         names = curves.cells("Variant")
         for row, label in enumerate(_LABELS, start=_FIRST_ROW):
             sheet.write_string(row, 0, label, book.format("label"))
         self.name = fill(sheet, _FIRST_ROW, 1, str(names.values[0]), entry)
         unit = fill(sheet, _FIRST_ROW + 1, 1, "arcmin", entry)
         typed = fill(sheet, _FIRST_ROW + 2, 1, "", book.format("input", "general"))
-        wanted = fill(sheet, _FIRST_ROW + 3, 1, USUAL_SHARE, book.format("input", "0.0000##%"))
+        wanted = fill(sheet, _FIRST_ROW + 3, 1, bounds.meets, entry_of_share)
         _list(sheet, _FIRST_ROW, f"={names.text}", "Variant", "Everything on this sheet follows.")
         _list(sheet, _FIRST_ROW + 1, ["arcmin", "arcsec"], "Angle unit", "The limit below is read in it, too.")
         _number(sheet, _FIRST_ROW + 2, (0, 1e9), "Any limit", "Blank: the limit of the variant.")
@@ -57,7 +59,8 @@ class Choice:
         remark = IF(sound, "◄ gives the limit for it, below", "◄ a share from 0.0001 % to 99.9999 %")
         put(sheet, _FIRST_ROW + 3, 2, remark, hint)
         self.wants = AND(self.known, sound)
-        self.wanted = IF(sound, wanted, USUAL_SHARE)
+        self.wanted = IF(sound, wanted, bounds.meets)
+        self.allowed = self._allowed(sheet, entry_of_share, hint, bounds)
 
     def _write_limit(self, sheet: Any, hint: Any, typed: Live) -> None:
         """Say in which unit the typed limit is read, or that it is none."""
@@ -66,6 +69,16 @@ class Choice:
         put(sheet, _FIRST_ROW + 2, 2, IF(typed.equals(""), "◄ blank: its own", remark), hint)
         self.other = IF(sound, typed, "")
         self.is_blank = typed.equals("")
+
+    def _allowed(self, sheet: Any, entry: Any, hint: Any, bounds: VerdictBounds) -> Live:
+        """Write the target, and return the share over the limit that it allows."""
+        row, least = _FIRST_ROW + len(_LABELS) - 1, 1 - MARGINAL
+        target = fill(sheet, row, 1, round(1 - bounds.meets, _DIGITS), entry)
+        _number(sheet, row, (least, _COMMONEST), "Target", "Share of units that shall be within the limit.")
+        sound = IF(ISNUMBER(target), AND(target >= least, target <= _COMMONEST), Live("FALSE", value=False))
+        remark = IF(sound, "◄ what the verdict asks for", "◄ 97.5 % to 99.9999 %: not used")
+        put(sheet, row, 2, remark, hint)
+        return IF(sound, live(1.0) - target, bounds.meets)
 
     def text(self, heading: str) -> Live:
         """Return what Curves holds for the variant; an empty text where it holds nothing."""

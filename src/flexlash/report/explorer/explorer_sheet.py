@@ -10,7 +10,7 @@ from typing import Any
 
 from flexlash.report.explorer.curves_sheet import FIGURE_ERRORS
 from flexlash.report.explorer.explorer_charts import write_charts
-from flexlash.report.explorer.explorer_choice import NONE, USUAL_SHARE, Choice
+from flexlash.report.explorer.explorer_choice import NONE, Choice
 from flexlash.report.explorer.explorer_working import Read, Working
 from flexlash.report.extent import Extent
 from flexlash.report.formula.functions import (
@@ -29,7 +29,7 @@ from flexlash.report.formula.functions import (
 from flexlash.report.formula.live import Live, live, put
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
-from flexlash.report.wording.verdict import BOUNDS
+from flexlash.schema.limit_verdict import MARGINAL, VerdictBounds
 from flexlash.schema.number_words import INTERVAL
 
 __all__ = ["write_explorer"]
@@ -50,13 +50,11 @@ _PPK_DECIMALS = 3.0
 _PPM_DECIMALS = 4.0
 """Decimals of per cent that make a millionth."""
 
-_AMBER = BOUNDS["amber"]
 _NEARLY = 1.000001
 """Room for rounding where a share meets the rarest that is told."""
 
-_RULE = "green to 0.135 %, amber to 2.5 %"
-_LAST_ROW = 60
-_SECTIONS = ((2, 0, "Your choice"), (7, 0, "Answer"), (2, 4, "Figures of this variant"))
+_LAST_ROW = 61
+_SECTIONS = ((2, 0, "Your choice"), (8, 0, "Answer"), (2, 4, "Figures of this variant"))
 _ANSWERS = (
     "Limit",
     "Units over the limit",
@@ -68,7 +66,12 @@ _ANSWERS = (
     "    ± (95 %)",
     "Left open by measured parts",
 )
-_FIRST_ANSWER, _FIRST_FIGURE = 8, 3
+_FIRST_ANSWER, _FIRST_FIGURE = 9, 3
+_USED, _SHARE, _LOW, _HIGH, _PPM, _VERDICT, _FOUND, _FOUND_ERROR, _LEFT_OPEN = range(
+    _FIRST_ANSWER, _FIRST_ANSWER + len(_ANSWERS)
+)
+"""Rows, from 0, of the answers."""
+
 _FIGURES = {
     "Nominal": "Nominal",
     "Mean": "Mean",
@@ -93,7 +96,7 @@ _LOTS = ("Within-lot sd", "Between-lots sd")
 """Figures of lots and parts, below the others."""
 
 
-def write_explorer(book: Book, curves: Stored, extent: Extent) -> None:
+def write_explorer(book: Book, curves: Stored, extent: Extent, bounds: VerdictBounds) -> None:
     """Write the Explorer of the stored variants, the worst one picked."""
     sheet = book.sheet("Explorer", landscape=False, pages_tall=1, tab="entry")
     for column, width in enumerate(_WIDTHS):
@@ -103,7 +106,7 @@ def write_explorer(book: Book, curves: Stored, extent: Extent) -> None:
     if not curves.rows:
         sheet.write_string(1, 0, "Nothing was computed, see Findings.", book.format("quiet"))
         return
-    note = "Change the four yellow cells; figures and charts follow."
+    note = "Change the five yellow cells; figures and charts follow."
     if extent.is_part:
         note += f" The {extent.words} variants can be picked; {extent.elsewhere}."
     sheet.write_string(1, 0, note, book.format("quiet"))
@@ -111,7 +114,7 @@ def write_explorer(book: Book, curves: Stored, extent: Extent) -> None:
         for column in range(first_column, first_column + 3):
             sheet.write_blank(row, column, None, book.format("section"))
         sheet.write_string(row, first_column, text, book.format("section"))
-    choice = Choice(book, sheet, curves)
+    choice = Choice(book, sheet, curves, bounds)
     working = Working(book, sheet, choice)
     limit = _write_answers(book, sheet, choice, working)
     _write_figures(book, sheet, choice, working, limit)
@@ -126,18 +129,18 @@ def _write_answers(book: Book, sheet: Any, choice: Choice, working: Working) -> 
         sheet.write_string(row, 0, words, book.format("text" if words.startswith(" ") else "label"))
     used = IF(choice.known, IF(choice.is_blank, choice.angle("Limit"), choice.other), "")
     limit = working.cell("limit that counts", used)
-    put(sheet, 8, 1, IF(limit.equals(""), NONE, limit), book.format("figure", "arcmin"))
+    put(sheet, _USED, 1, IF(limit.equals(""), NONE, limit), book.format("figure", "arcmin"))
     read = working.read_share(IF(limit.equals(""), choice.angle("P50"), limit))
     _write_share(book, sheet, choice, (working, read), limit)
     backlash, error = working.read_output(live(0.0) - NORM_S_INV(choice.wanted))
     decimals = working.cell("its decimals", decimals_to(error, _USUAL))
-    put(sheet, 14, 1, IF(choice.wants, FIXED(backlash, decimals), NONE), book.format("figure"))
-    put(sheet, 15, 1, IF(choice.wants, FIXED(error * INTERVAL, decimals), NONE), book.format("figure"))
-    for row in (8, 14, 15):
+    put(sheet, _FOUND, 1, IF(choice.wants, FIXED(backlash, decimals), NONE), book.format("figure"))
+    put(sheet, _FOUND_ERROR, 1, IF(choice.wants, FIXED(error * INTERVAL, decimals), NONE), book.format("figure"))
+    for row in (_USED, _FOUND, _FOUND_ERROR):
         put(sheet, row, 2, choice.unit, book.format("quiet"))
     left_open = choice.text("Left open")
-    put(sheet, 16, 1, choice.figure(IF(left_open.equals(""), "–", left_open)), book.format("figure"))
-    sheet.write_string(16, 2, "over its own limit (95 %)", book.format("quiet"))
+    put(sheet, _LEFT_OPEN, 1, choice.figure(IF(left_open.equals(""), "–", left_open)), book.format("figure"))
+    sheet.write_string(_LEFT_OPEN, 2, "over its own limit (95 %)", book.format("quiet"))
     return limit
 
 
@@ -150,7 +153,7 @@ def _write_share(book: Book, sheet: Any, choice: Choice, reading: tuple[Working,
     share_told = working.cell("share told", MIN(MAX(read.share, rarest), live(1.0) - rarest))
     few, many = read.share < rarest * _NEARLY, read.share > live(1.0) - rarest * _NEARLY
     bound = IF(few, "at most: rarer than computed", IF(many, "at least: rarer than computed", ""))
-    put(sheet, 9, 2, IF(none, "◄ no limit: type one above", IF(working.is_level, "", bound)), quiet)
+    put(sheet, _SHARE, 2, IF(none, "◄ no limit: type one above", IF(working.is_level, "", bound)), quiet)
     ends = []
     for sign, beyond in ((1.0, IF(few, 0.0, share_told)), (-1.0, IF(many, 1.0, share_told))):
         end = NORM_S_DIST(live(0.0) - (read.score + read.error * (sign * INTERVAL)))
@@ -160,29 +163,31 @@ def _write_share(book: Book, sheet: Any, choice: Choice, reading: tuple[Working,
     finest = working.cell("least of it that is told", MIN(share_told, 1 - share_told) * (100 * _FINEST))
     decimals = working.cell("decimals of per cent", decimals_to(MAX(error, finest), _USUAL, most=_MOST))
     narrow = working.cell("interval inside the last digit", decimals_to(error, 0.0, most=2 * _MOST) > decimals)
-    for row, share in ((9, share_told), (10, ends[0]), (11, ends[1])):
+    for row, share in ((_SHARE, share_told), (_LOW, ends[0]), (_HIGH, ends[1])):
         words = CONCATENATE(FIXED(share * 100, decimals), " %")
-        put(sheet, row, 1, IF(none, NONE, IF(narrow, "–", words) if row > 9 else words), figure)  # noqa: PLR2004
-    put(sheet, 10, 2, IF(narrow, "narrower than the last digit", "from the spread's standard errors"), quiet)
-    put(sheet, 12, 1, IF(none, NONE, FIXED(share_told * 1e6, decimals - _PPM_DECIMALS)), figure)
-    put(sheet, 13, 1, IF(none, "–", _verdict(read.share, *ends)), figure)
-    remark = IF(none, _RULE, IF(_settled(read.share, *ends), _RULE, "◄ the interval reaches another"))
-    put(sheet, 13, 2, remark, quiet)
+        put(sheet, row, 1, IF(none, NONE, IF(narrow, "–", words) if row > _SHARE else words), figure)
+    put(sheet, _LOW, 2, IF(narrow, "narrower than the last digit", "from the spread's standard errors"), quiet)
+    put(sheet, _PPM, 1, IF(none, NONE, FIXED(share_told * 1e6, decimals - _PPM_DECIMALS)), figure)
+    allowed = working.cell("share over a limit that meets it", choice.allowed)
+    put(sheet, _VERDICT, 1, IF(none, "–", _verdict(allowed, read.share, *ends)), figure)
+    rule = CONCATENATE("green to ", FIXED(allowed * 100, 4.0), f" %, amber to {100 * MARGINAL:g} %")
+    remark = IF(none, rule, IF(_settled(allowed, read.share, *ends), rule, "◄ the interval reaches another"))
+    put(sheet, _VERDICT, 2, remark, quiet)
     for word, style in (("green", "ok"), ("amber", "warning"), ("red", "error")):
-        rule = {"type": "text", "criteria": "begins with", "value": word, "format": book.format(style)}
-        sheet.conditional_format(13, 1, 13, 1, rule)
+        colour = {"type": "text", "criteria": "begins with", "value": word, "format": book.format(style)}
+        sheet.conditional_format(_VERDICT, 1, _VERDICT, 1, colour)
 
 
-def _verdict(share: Live, low: Live, high: Live) -> Live:
-    """Return the verdict on a share, with a question mark where its interval reaches another one."""
-    word = IF(share <= USUAL_SHARE, "green", IF(share <= _AMBER, "amber", "red"))
-    return CONCATENATE(word, IF(_settled(share, low, high), "", "?"))
+def _verdict(allowed: Live, share: Live, low: Live, high: Live) -> Live:
+    """Return the verdict on a share where so much is allowed, with ? where its interval reaches another one."""
+    word = IF(share <= allowed, "green", IF(share <= MARGINAL, "amber", "red"))
+    return CONCATENATE(word, IF(_settled(allowed, share, low, high), "", "?"))
 
 
-def _settled(share: Live, low: Live, high: Live) -> Live:
+def _settled(allowed: Live, share: Live, low: Live, high: Live) -> Live:
     """Return whether the whole interval of a share has the same verdict."""
-    amber = AND(low > USUAL_SHARE, high <= _AMBER)
-    return IF(share <= USUAL_SHARE, high <= USUAL_SHARE, IF(share <= _AMBER, amber, low > _AMBER))
+    amber = AND(low > allowed, high <= MARGINAL)
+    return IF(share <= allowed, high <= allowed, IF(share <= MARGINAL, amber, low > MARGINAL))
 
 
 def _write_figures(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:

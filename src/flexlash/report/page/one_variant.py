@@ -34,7 +34,6 @@ from flexlash.report.wording.wave_generator import BENDING, TWO_LOBES, bending_o
 from flexlash.schema.columns import DIMENSIONS, Column
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import Finding, shown
-from flexlash.schema.limit_verdict import misses_limit
 from flexlash.schema.result_columns import result_columns
 from flexlash.schema.units import ARCMIN, as_entered
 from flexlash.schema.variant import Limits
@@ -87,9 +86,9 @@ def variant_pages(
             variant=name,
             row=row[ROW],
             place=place + 1,
-            verdict=verdict_of(row),
-            settled=not straddled(row),
-            light="" if row["backlash_limit_arcmin"] is None else light(row),
+            verdict=verdict_of(row, facts.bounds),
+            settled=not straddled(row, facts.bounds),
+            light="" if row["backlash_limit_arcmin"] is None else light(row, facts.bounds),
             sentences=list(_sentences(facts, variant)),
             density=_density(variant),
             shares=list(_shares(variant)),
@@ -104,13 +103,13 @@ def variant_pages(
 def _sentences(facts: SummaryFacts, variant: Drawn) -> Iterator[Sentence]:
     """Yield what is said of a variant, as the Summary says it of the worst."""
     row = variant.row
-    yield Sentence(topic="Verdict", text=" ".join([*judged(row), *extremes(facts, row)]), kind="verdict")
+    yield Sentence(topic="Verdict", text=" ".join([*judged(facts, row), *extremes(facts, row)]), kind="verdict")
     if left_open := " ".join(left_open_by(facts, row)):
         yield Sentence(topic=PARTS, text=left_open, kind="verdict")
     if lots := " ".join(lots_of(facts, row)):
         yield Sentence(topic=LOTS, text=lots, kind="verdict")
     yield Sentence(topic="Why", text=" ".join(cause_of(facts, row)), kind="cause")
-    if misses_limit(row["probability_over_limit"]):
+    if facts.bounds.misses(row["probability_over_limit"]):
         its_own = [one for one in facts.recommendations if one.variant == row["variant"]]
         tighter = " ".join(tightening_of(facts, row))
         stiffer = " ".join(stiffening(replace(facts, recommendations=its_own)))

@@ -17,7 +17,7 @@ from flexlash.report.page.cards import cards_of
 from flexlash.report.page.grids import Sheets
 from flexlash.report.page.one_variant import variant_pages
 from flexlash.report.page.shape import PageFacts, Refused, Sentence
-from flexlash.report.page.tiles import TARGET, finding_tiles, verdict_tiles
+from flexlash.report.page.tiles import finding_tiles, verdict_tiles
 from flexlash.report.page.variants import chart_of, lost_variants, shown_names, table_rows
 from flexlash.report.report_data import ReportData
 from flexlash.report.wording.drive_sentences import DRIVE
@@ -99,7 +99,7 @@ def page_facts(outcome: Outcome, found: Found, *, ran: bool, data: ReportData | 
         method=outcome.settings.method,
         seed=outcome.settings.seed,
         points=points_words(outcome) if ran else "",
-        target_percent=TARGET,
+        target_percent=outcome.settings.verdict_bounds.target_words,
         counts=outcome.counts,
         cells_to_fix=found.cells_to_fix,
         fixable=found.fixable,
@@ -148,8 +148,8 @@ def _add_variants(facts: PageFacts, outcome: Outcome, data: ReportData) -> None:
         Sentence(topic=topic, text=text, kind=_KINDS.get(topic, "note"))  # type: ignore[typeddict-item]
         for topic, text in sentences(outcome, data.recommendations)
     ]
-    facts["chart"] = chart_of(rows, names, len(drawn), summary.extent.total)
-    facts["table"] = list(table_rows(rows, names, len(drawn)))
+    facts["chart"] = chart_of(summary, rows, names, len(drawn))
+    facts["table"] = list(table_rows(summary, rows, names, len(drawn)))
     facts["lost"], facts["lost_in_all"] = lost_variants(outcome), facts["counts"]["rows"] - facts["computed"]
     by_row: dict[int, list[Finding]] = defaultdict(list)
     for one in outcome.findings:

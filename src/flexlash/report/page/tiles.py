@@ -8,20 +8,17 @@ from typing import Literal
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.page.shape import Tile
 from flexlash.report.wording.verdict import LIGHTS, NO_VERDICT, UNSETTLED, verdict_counts
-from flexlash.schema.limit_verdict import BOUNDS, VERDICTS, Verdict
+from flexlash.schema.limit_verdict import VERDICTS, Verdict
 from flexlash.schema.number_words import grouped
 
-__all__ = ["TARGET", "finding_tiles", "verdict_tiles"]
-
-TARGET = f"{1 - BOUNDS['meets']:.3%}".replace("%", " %")
-"""The share of units that must be within the limit for a variant to meet it."""
+__all__ = ["finding_tiles", "verdict_tiles"]
 
 _LOOKS: dict[Verdict, tuple[str, str, Literal["good", "bad", "warn"]]] = {
     "fails": ("fails", "fail", "bad"),
     "marginal": ("marginal", "marginal", "warn"),
-    "meets": (f"meets {TARGET}", f"meet {TARGET}", "good"),
+    "meets": ("meets {target}", "meet {target}", "good"),
 }
-"""What one variant of a verdict does or is, what several, and how that looks."""
+"""What one variant of a verdict does or is, what several, and how that looks; `target` is what must be within."""
 
 
 def finding_tiles(outcome: Outcome, *, ran: bool, to_fix: int, fixable: int) -> Iterator[Tile]:
@@ -47,8 +44,9 @@ def verdict_tiles(outcome: Outcome) -> Iterator[Tile]:
         doubtful = counts[f"{LIGHTS[verdict]}{UNSETTLED}"]
         count = counts[LIGHTS[verdict]] + doubtful
         one, several, kind = _LOOKS[verdict]
+        words = (one if count == 1 else several).format(target=outcome.settings.verdict_bounds.target_words)
         doubt = f", {grouped(doubtful)} not settled" if doubtful else ""
-        yield Tile(number=grouped(count), words=f"{one if count == 1 else several}{doubt}", kind=kind)
+        yield Tile(number=grouped(count), words=f"{words}{doubt}", kind=kind)
     if without:
         yield Tile(number=grouped(without), words="without a limit", kind="plain")
     if judged or without:

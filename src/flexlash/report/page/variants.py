@@ -12,10 +12,10 @@ from flexlash.report.report_data import ROW
 from flexlash.report.summary.summary_chart import CHARTED, chart_axis, chart_title
 from flexlash.report.wording.distances import distance_words
 from flexlash.report.wording.labels import distinct_labels
-from flexlash.report.wording.summary_facts import Row, main_cause
+from flexlash.report.wording.summary_facts import Row, SummaryFacts, main_cause
 from flexlash.report.wording.verdict import light, straddled
 from flexlash.schema.findings import shown
-from flexlash.schema.limit_verdict import limit_verdict
+from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.number_words import angle_words, share_words
 
 __all__ = ["chart_of", "lost_variants", "shown_names", "table_rows", "verdict_of"]
@@ -35,12 +35,13 @@ def shown_names(rows: Sequence[Row]) -> list[str]:
     return distinct_labels([row["variant"] for row in rows], _NAME)
 
 
-def chart_of(rows: Sequence[Row], names: Sequence[str], paged: int, total: int) -> Chart | None:
-    """Return the chart of the worst of so many variants, the first of which have a page of their own."""
+def chart_of(facts: SummaryFacts, rows: Sequence[Row], names: Sequence[str], paged: int) -> Chart | None:
+    """Return the chart of the worst variants, of which so many have a page of their own."""
     drawn = rows[:CHARTED]
     if not drawn:
         return None
     start, step, decimals = chart_axis(drawn)
+    total = facts.extent.total
     limits = {row["backlash_limit_arcmin"] for row in drawn} - {None}
     return Chart(
         title=chart_title(len(drawn), total),
@@ -48,7 +49,8 @@ def chart_of(rows: Sequence[Row], names: Sequence[str], paged: int, total: int) 
         axis=Axis(start=start, step=step, decimals=decimals),
         limits=sorted(limits),
         variants=[
-            _bar(row, name, _page(place, paged)) for place, (row, name) in enumerate(zip(drawn, names, strict=False))
+            _bar(facts, row, name, _page(place, paged))
+            for place, (row, name) in enumerate(zip(drawn, names, strict=False))
         ],
         drawn=len(drawn),
         of=total,
@@ -59,7 +61,7 @@ def _page(place: int, paged: int) -> int | None:
     return place if place < paged else None
 
 
-def _bar(row: Row, name: str, page: int | None) -> ChartVariant:
+def _bar(facts: SummaryFacts, row: Row, name: str, page: int | None) -> ChartVariant:
     return ChartVariant(
         variant=name,
         low=row["p2_5_arcmin"],
@@ -67,17 +69,17 @@ def _bar(row: Row, name: str, page: int | None) -> ChartVariant:
         high=row["p97_5_arcmin"],
         nominal=row["backlash_arcmin"],
         limit=row["backlash_limit_arcmin"],
-        verdict=verdict_of(row),
+        verdict=verdict_of(row, facts.bounds),
         page=page,
     )
 
 
-def verdict_of(row: Row) -> str:
+def verdict_of(row: Row, bounds: VerdictBounds) -> str:
     """Return the verdict on a Results row, an empty text without a limit."""
-    return limit_verdict(row["probability_over_limit"]) or ""
+    return bounds.verdict(row["probability_over_limit"]) or ""
 
 
-def table_rows(rows: Sequence[Row], names: Sequence[str], paged: int) -> Iterator[TableRow]:
+def table_rows(facts: SummaryFacts, rows: Sequence[Row], names: Sequence[str], paged: int) -> Iterator[TableRow]:
     """Yield rows of the table, with the digits of the Summary."""
     for place, (row, name) in enumerate(zip(rows, names, strict=True)):
         limit = row["backlash_limit_arcmin"]
@@ -85,9 +87,9 @@ def table_rows(rows: Sequence[Row], names: Sequence[str], paged: int) -> Iterato
             variant=name,
             row=row[ROW],
             status=row["status"],
-            verdict=verdict_of(row),
-            settled=not straddled(row),
-            light="" if limit is None else light(row),
+            verdict=verdict_of(row, facts.bounds),
+            settled=not straddled(row, facts.bounds),
+            light="" if limit is None else light(row, facts.bounds),
             nominal=angle_words(row["backlash_arcmin"]),
             median=_percentile(row, "p50"),
             p97_5=_percentile(row, "p97_5"),

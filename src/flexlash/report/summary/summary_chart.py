@@ -6,10 +6,13 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from flexlash.analysis.outcome import Outcome
+from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.verdict import firm, light
+from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.number_words import grouped
 
 __all__ = ["CHARTED", "chart_axis", "chart_title", "chart_words", "variants_chart"]
@@ -27,9 +30,9 @@ _LOOKS: tuple[tuple[int, dict[str, int]], ...] = (
 """Up to how many variants: space between bars in per cent of their width, turn and size of labels, size of marks."""
 
 
-def variants_chart(book: Book, drawn: Sequence[Drawn], curves: Stored, total: int) -> Any:
+def variants_chart(book: Book, drawn: Sequence[Drawn], curves: Stored, outcome: Outcome) -> Any:
     """Return the chart of the worst variants; its data stand on the sheet of the curves."""
-    shown = drawn[:CHARTED]
+    shown, total = drawn[:CHARTED], extent_of(outcome).total
     look = next(look for most, look in _LOOKS if len(shown) <= most)
     bars = book.chart("column", chart_title(len(shown), total), subtype="stacked")
     marks = book.workbook.add_chart({"type": "line"})
@@ -37,7 +40,12 @@ def variants_chart(book: Book, drawn: Sequence[Drawn], curves: Stored, total: in
     hidden = {"fill": {"none": True}, "border": {"none": True}, "gap": look["gap"]}
     for chart, heading, name, how in (
         (bars, "P2.5", "P2.5", hidden),
-        (bars, "P2.5 to P97.5", "P2.5 to P97.5 (orange: amber, dark orange: red)", _bars(shown)),
+        (
+            bars,
+            "P2.5 to P97.5",
+            "P2.5 to P97.5 (orange: amber, dark orange: red)",
+            _bars(shown, outcome.settings.verdict_bounds),
+        ),
         (marks, "P50", "Median", _marker("diamond", PALETTE["ink"], look["median"])),
         (marks, "Limit", "Limit", _marker("long_dash", "#000000", look["limit"])),
     ):
@@ -64,13 +72,14 @@ def chart_words(drawn: Sequence[Drawn]) -> str:
     )
 
 
-def _bars(shown: Sequence[Drawn]) -> dict[str, Any]:
+def _bars(shown: Sequence[Drawn], bounds: VerdictBounds) -> dict[str, Any]:
     """Return the look of the bars, coloured by verdict."""
 
     def look(colour: str) -> dict[str, Any]:
         return {"fill": {"color": PALETTE[colour]}, "border": {"color": PALETTE[colour]}}
 
-    return {**look("sky"), "points": [look(_COLOURS.get(firm(light(variant.row)), "sky")) for variant in shown]}
+    colours = [_COLOURS.get(firm(light(variant.row, bounds)), "sky") for variant in shown]
+    return {**look("sky"), "points": [look(colour) for colour in colours]}
 
 
 def _marker(shape: str, colour: str, size: int) -> dict[str, Any]:

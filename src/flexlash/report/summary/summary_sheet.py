@@ -19,7 +19,7 @@ from flexlash.report.summary.summary_chart import chart_words, variants_chart
 from flexlash.report.wording.distances import distance, distance_format
 from flexlash.report.wording.sentences import FINDINGS, sentences
 from flexlash.report.wording.summary_facts import labels_of, main_cause
-from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, RULES, UNSETTLED, light, verdict_counts
+from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, UNSETTLED, light, verdict_counts, verdict_rules
 from flexlash.schema.findings import shown
 from flexlash.schema.number_words import glance, grouped, share_words
 
@@ -117,8 +117,8 @@ class _Page:
         figures = [
             (f"{grouped(counts['computed'])} of {grouped(counts['rows'])}", f"variants computed{without}", ""),
             *(
-                _verdict_figure(verdict, verdicts) if judged else (f"{NO_VERDICT} {verdict}", RULES[verdict], "")
-                for verdict in RULES
+                _verdict_figure(verdict, rule, verdicts) if judged else (f"{NO_VERDICT} {verdict}", rule, "")
+                for verdict, rule in verdict_rules(self.outcome.settings.verdict_bounds).items()
             ),
             (
                 counted(counts[f"{level}s"], level),
@@ -179,7 +179,7 @@ class _Page:
 
     def _variant(self, row: dict[str, Any], name: str, target: int) -> None:
         """Write a variant's row of the table."""
-        verdict = light(row)
+        verdict = light(row, self.outcome.settings.verdict_bounds)
         link = self.book.format("link")
         write_link(self.sheet, self.row, 0, f"Results!A{target + 1}", name, style=link)
         self.sheet.write_string(self.row, 1, verdict, self.book.format(COLOURS[verdict]))
@@ -207,7 +207,7 @@ class _Page:
         height = min(greatest, max(least, _PAGE - self.height - (_LINES + 1) * LINE_HEIGHT))
         rows = math.ceil(height / LINE_HEIGHT)
         size = (_CHART_WIDTH, round(rows * LINE_HEIGHT / 0.75) - 4)
-        chart = variants_chart(self.book, drawn, curves, extent_of(self.outcome).total)
+        chart = variants_chart(self.book, drawn, curves, self.outcome)
         self.book.insert(self.sheet, self.row, 0, chart, size=size, text=chart_words(drawn))
         for _ in range(rows):
             self._end_row()
@@ -236,13 +236,13 @@ class _Page:
         self._end_row()
 
 
-def _verdict_figure(verdict: str, counts: Counter[str]) -> tuple[str, str, str]:
+def _verdict_figure(verdict: str, rule: str, counts: Counter[str]) -> tuple[str, str, str]:
     """Return how many have a verdict, its rule and what colours it; with ? where some of them are not settled."""
     doubtful = counts[f"{verdict}{UNSETTLED}"]
     count = counts[verdict] + doubtful
     word = f"{verdict}{UNSETTLED}" if doubtful else verdict
     doubt = f"; {grouped(doubtful)} not settled" if doubtful else ""
-    return f"{grouped(count)} {word}", f"{RULES[verdict]}{doubt}", word if count else ""
+    return f"{grouped(count)} {word}", f"{rule}{doubt}", word if count else ""
 
 
 def _fitted(label: str, width: float) -> str:

@@ -11,7 +11,6 @@ import polars as pl
 from flexlash.analysis.recommendations import Halving, Recommendation
 from flexlash.analysis.run_summary import counted
 from flexlash.report.wording.summary_facts import Row, SummaryFacts
-from flexlash.report.wording.verdict import BOUNDS
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import spelled_out
@@ -92,7 +91,7 @@ def _halvings(facts: SummaryFacts, recommendation: Recommendation) -> str:
     """Return what half the tolerance of one dimension, or of all, would leave over the limit."""
     name, row = facts.named(recommendation.variant), _row(facts, recommendation)
     now, every = row["probability_over_limit"], recommendation.halvings[-1]
-    least = _WORTH * (now - BOUNDS["green"])
+    least = _WORTH * (now - facts.bounds.meets)
     worth = [halving for halving in recommendation.halvings if now - halving.over["probability_over_limit"] >= least]
     if not worth:
         what = "all of them" if len(every.limits) > 1 else "that of the only one that scatters"

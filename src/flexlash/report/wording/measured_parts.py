@@ -10,9 +10,9 @@ from scipy.special import ndtri
 
 from flexlash.analysis.run_summary import counted, grouped, listed
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows
-from flexlash.report.wording.verdict import BOUNDS, LIGHTS, firm, light
+from flexlash.report.wording.verdict import LIGHTS, firm, light
 from flexlash.schema.entry_words import dimension_words
-from flexlash.schema.limit_verdict import limit_verdict
+from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.number_words import angle_words, brief_share, range_words
 
 __all__ = ["PARTS", "how_left_open", "left_open_by", "left_open_words", "measured_parts"]
@@ -36,11 +36,12 @@ def measured_parts(facts: SummaryFacts) -> Iterator[str]:
     if rows.is_empty():
         return
     low, high = (pl.col(end) for end in _ENDS)
-    may_change = pl.any_horizontal((low <= share) & (share < high) for share in BOUNDS.values()).fill_null(value=False)
+    shares = facts.bounds.shares
+    may_change = pl.any_horizontal((low <= share) & (share < high) for share in shares).fill_null(value=False)
     doubtful = rows.filter(may_change)
     for row in first_rows(doubtful) or first_rows(rows, 1):
         yield f"{facts.named(row['variant'])}: {_interval(facts, row)}."
-        yield from _verdict(row)
+        yield from _verdict(row, facts.bounds)
     yield from _others(rows.filter(low.is_not_null()).height, doubtful.height)
     yield "More lines or points do not narrow this; more measured parts do."
 
@@ -58,7 +59,7 @@ def left_open_by(facts: SummaryFacts, row: Row) -> Iterator[str]:
     if row.get("p99_865_sample_low_arcmin") is not None:
         told = _interval(facts, row)
         yield f"{told[0].upper()}{told[1:]}."
-        yield from _verdict(row)
+        yield from _verdict(row, facts.bounds)
 
 
 def left_open_words(row: Row) -> str:
@@ -113,36 +114,38 @@ def _parts(facts: SummaryFacts, row: Row) -> str:
     return listed(told, NAMED)
 
 
-def _verdict(row: Row) -> Iterator[str]:
+def _verdict(row: Row, bounds: VerdictBounds) -> Iterator[str]:
     """Yield whether the parts leave the verdict on a row open, and how many parts would settle it."""
     low, high = (row[end] for end in _ENDS)
     if low is None or high is None:
         return
-    told = firm(light(row))
-    colours = {LIGHTS[limit_verdict(share)] for share in (low, high)} | {told}
+    told = firm(light(row, bounds))
+    colours = {LIGHTS[bounds.verdict(share)] for share in (low, high)} | {told}
     if len(colours) == 1:
         yield f"At either end the verdict is {told}."
         return
-    others = [colour for colour in ("green", "amber", "red") if colour in _between(low, high) and colour != told]
+    others = [
+        colour for colour in ("green", "amber", "red") if colour in _between(low, high, bounds) and colour != told
+    ]
     yield f"So the verdict, {told}, may as well be {' or '.join(others)}."
-    times = _times_to_settle(row)
+    times = _times_to_settle(row, bounds)
     if times > _MANY:
         yield "It lies so near to where the verdict changes that no number of parts would settle it."
     else:
         yield f"About {_rounded_up(times)} times as many parts would settle it, if they come out alike."
 
 
-def _between(low: float, high: float) -> set[str | None]:
+def _between(low: float, high: float, bounds: VerdictBounds) -> set[str | None]:
     """Return the verdicts that shares between two have."""
-    shares = [low, high, *(share for share in BOUNDS.values() if low <= share <= high)]
-    return {LIGHTS[limit_verdict(share)] for share in shares}
+    shares = [low, high, *(share for share in bounds.shares if low <= share <= high)]
+    return {LIGHTS[bounds.verdict(share)] for share in shares}
 
 
-def _times_to_settle(row: Row) -> float:
+def _times_to_settle(row: Row, bounds: VerdictBounds) -> float:
     """Return how many times as many parts would draw the interval in to one verdict; scores shrink as their root."""
     now, *ends = (_score(row[key]) for key in ("probability_over_limit", *_ENDS))
     times = 1.0
-    for share in BOUNDS.values():
+    for share in bounds.shares:
         if row[_ENDS[0]] <= share < row[_ENDS[1]]:
             bound = _score(share)
             reach = max(ends) - now if bound > now else now - min(ends)

@@ -21,7 +21,7 @@ from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.verdict import LIGHTS
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import shown
-from flexlash.schema.limit_verdict import VERDICTS
+from flexlash.schema.limit_verdict import VERDICTS, VerdictBounds
 
 __all__ = ["NAMED", "Row", "SummaryFacts", "first_rows", "labels_of", "main_cause", "rough", "summary_facts"]
 
@@ -50,6 +50,11 @@ class SummaryFacts:
     ranked: pl.DataFrame
     labels: dict[str, str]
     extent: Extent
+
+    @property
+    def bounds(self) -> VerdictBounds:
+        """Which share of units over the limit each verdict allows."""
+        return self.outcome.settings.verdict_bounds
 
     @cached_property
     def worst(self) -> Row | None:
@@ -82,8 +87,9 @@ class SummaryFacts:
 def summary_facts(outcome: Outcome, recommendations: Sequence[Recommendation]) -> SummaryFacts:
     """Return what the sentences on an outcome draw on."""
     colours = {place: LIGHTS[verdict] for place, verdict in enumerate(VERDICTS)}
-    verdict = verdict_place().replace_strict(colours, return_dtype=pl.String)
-    rows = ranked(outcome).with_columns(verdict=verdict, straddled=is_straddled())
+    bounds = outcome.settings.verdict_bounds
+    verdict = verdict_place(bounds).replace_strict(colours, return_dtype=pl.String)
+    rows = ranked(outcome).with_columns(verdict=verdict, straddled=is_straddled(bounds))
     labels = labels_of(outcome, rows["variant"].head(DRAWN).to_list())
     return SummaryFacts(
         outcome=outcome, recommendations=recommendations, ranked=rows, labels=labels, extent=extent_of(outcome)

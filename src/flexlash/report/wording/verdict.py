@@ -7,20 +7,18 @@ from typing import Any
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.whole_batch import verdicts_of
-from flexlash.schema.limit_verdict import BOUNDS as ALLOWED
-from flexlash.schema.limit_verdict import Verdict, limit_verdict
+from flexlash.schema.limit_verdict import Verdict, VerdictBounds
 
 __all__ = [
-    "BOUNDS",
     "COLOURS",
     "LIGHTS",
     "NO_VERDICT",
-    "RULES",
     "UNSETTLED",
     "firm",
     "light",
     "straddled",
     "verdict_counts",
+    "verdict_rules",
 ]
 
 NO_VERDICT = "–"
@@ -28,13 +26,6 @@ NO_VERDICT = "–"
 
 UNSETTLED = "?"
 """What follows a verdict that further points may change."""
-
-RULES = {
-    "red": "fewer than 97.5 % of units within the limit",
-    "amber": "97.5 to 99.865 % of units within the limit",
-    "green": "at least 99.865 % of units within the limit",
-}
-"""The rule of each verdict, in words."""
 
 _FORMATS = {"red": "error", "amber": "warning", "green": "ok"}
 
@@ -44,15 +35,25 @@ COLOURS = {**_FORMATS, **{f"{verdict}{UNSETTLED}": look for verdict, look in _FO
 LIGHTS: dict[Verdict | None, str] = {"meets": "green", "marginal": "amber", "fails": "red", None: NO_VERDICT}
 """The colour of each verdict."""
 
-BOUNDS = {LIGHTS[verdict]: most for verdict, most in ALLOWED.items()}
-"""Greatest share of units over the limit that each verdict allows; red allows any."""
 
-_KEYS = tuple(f"probability_over_limit{end}" for end in ("", "_low", "_high"))
+def verdict_rules(bounds: VerdictBounds) -> dict[str, str]:
+    """Return the rule of each verdict in words, the worst first.
+
+    >>> verdict_rules(VerdictBounds())["amber"]
+    '97.5 to 99.865 % of units within the limit'
+    """
+    within, target = f"{100 - 100 * bounds.marginal:.10g}", bounds.target_words
+    return {
+        "red": f"fewer than {within} % of units within the limit",
+        "amber": f"{within} to {target} of units within the limit" if bounds.any_marginal else f"none by {target}",
+        "green": f"at least {target} of units within the limit",
+    }
 
 
-def light(row: dict[str, Any]) -> str:
+def light(row: dict[str, Any], bounds: VerdictBounds) -> str:
     """Return a Results row's verdict: green, amber or red, with ? where it is not settled; a dash without a limit."""
-    return _verdict(*(row[key] for key in _KEYS))
+    verdict = LIGHTS[bounds.verdict(row["probability_over_limit"])]
+    return f"{verdict}{UNSETTLED}" if straddled(row, bounds) else verdict
 
 
 def firm(verdict: str) -> str:
@@ -60,28 +61,19 @@ def firm(verdict: str) -> str:
     return verdict.removesuffix(UNSETTLED)
 
 
-def straddled(row: dict[str, Any]) -> list[float]:
+def straddled(row: dict[str, Any], bounds: VerdictBounds) -> list[float]:
     """Return the shares at which the verdict changes that the 95 % interval of a row's share has on both sides."""
-    low, high = row["probability_over_limit_low"], row["probability_over_limit_high"]
-    return [] if low is None or high is None else _straddled(low, high)
+    return bounds.straddled(row["probability_over_limit_low"], row["probability_over_limit_high"])
 
 
 def verdict_counts(outcome: Outcome) -> Counter[str]:
     """Return how many computed variants of the whole submission have each verdict; those with ? are counted apart."""
     whole = outcome.whole
-    every, doubtful = (whole.verdicts, whole.unsettled) if whole else verdicts_of(outcome.results)
+    bounds = outcome.settings.verdict_bounds
+    every, doubtful = (whole.verdicts, whole.unsettled) if whole else verdicts_of(outcome.results, bounds)
     computed = whole.computed if whole else outcome.results["p97_5_arcmin"].count()
     counts = {NO_VERDICT: computed - sum(every.values())}
     for verdict, count in every.items():
         unsettled = doubtful.get(verdict, 0)
         counts |= {LIGHTS[verdict]: count - unsettled, f"{LIGHTS[verdict]}{UNSETTLED}": unsettled}
     return Counter({verdict: count for verdict, count in counts.items() if count})
-
-
-def _verdict(share: float | None, low: float | None, high: float | None) -> str:
-    verdict = LIGHTS[limit_verdict(share)]
-    return f"{verdict}{UNSETTLED}" if low is not None and high is not None and _straddled(low, high) else verdict
-
-
-def _straddled(low: float, high: float) -> list[float]:
-    return [share for share in BOUNDS.values() if low <= share < high]

@@ -9,8 +9,8 @@ import polars as pl
 from flexlash.analysis.run_summary import are, counted, grouped, listed, points_range
 from flexlash.report.wording.distances import distance_words
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows
-from flexlash.report.wording.verdict import NO_VERDICT, RULES, UNSETTLED, firm, light, straddled, verdict_counts
-from flexlash.schema.number_words import angle_words, share_words
+from flexlash.report.wording.verdict import NO_VERDICT, UNSETTLED, firm, light, straddled, verdict_counts, verdict_rules
+from flexlash.schema.number_words import angle_words, brief_share, share_words
 
 __all__ = ["extremes", "failing", "judged", "sureness"]
 
@@ -30,8 +30,8 @@ def failing(facts: SummaryFacts) -> Iterator[str]:
         yield "No limit was given, so nothing is judged."
         yield f"97.5 % of the units of {facts.named(worst['variant'])} stay below {_tail(worst, 'p97_5')}{greatest}."
         return
-    with_limit, doubts = counted(judged, "variant"), {colour: counts[f"{colour}{UNSETTLED}"] for colour in RULES}
-    numbers = {colour: counts[colour] + doubts[colour] for colour in RULES}
+    with_limit, doubts = counted(judged, "variant"), {colour: counts[f"{colour}{UNSETTLED}"] for colour in _VERDICTS}
+    numbers = {colour: counts[colour] + doubts[colour] for colour in _VERDICTS}
     for colour in ("red", "amber"):
         if number := numbers[colour]:
             rows = first_rows(facts.judged.filter(pl.col("verdict") == colour))
@@ -77,7 +77,7 @@ def extremes(facts: SummaryFacts, row: Row) -> Iterator[str]:
         yield f"With every dimension at a limit the backlash of {name} lies between {low} and {high}."
 
 
-def judged(row: Row) -> Iterator[str]:
+def judged(facts: SummaryFacts, row: Row) -> Iterator[str]:
     """Yield of one variant how far its percentiles are from its limit, its verdict, and the share over the limit."""
     tails = {words: _tail(row, key) for key, words in _PERCENTILES.items()}
     (first, low), (second, high) = tails.items()
@@ -86,10 +86,10 @@ def judged(row: Row) -> Iterator[str]:
         yield "No limit was given, so nothing is judged."
         return
     near, far = (distance_words(row, key) for key in _PERCENTILES)
-    limit, verdict = f"{row['backlash_limit_arcmin']:g}′", light(row)
+    limit, verdict = f"{row['backlash_limit_arcmin']:g}′", light(row, facts.bounds)
     yield f"{first} of its units stay below {low}, {near} its limit of {limit}; {second} below {high}, {far} it."
     doubt = ", which is not settled" if verdict.endswith(UNSETTLED) else ""
-    yield f"{_VERDICTS[firm(verdict)]} ({firm(verdict)}{doubt}): {RULES[firm(verdict)]}."
+    yield f"{_VERDICTS[firm(verdict)]} ({firm(verdict)}{doubt}): {verdict_rules(facts.bounds)[firm(verdict)]}."
     words = share_words(row)
     yield f"Units over the limit: {words}."
     if "(" in words:
@@ -116,7 +116,7 @@ def _unsettled(facts: SummaryFacts) -> Iterator[str]:
         yield f"{told}."
     else:
         ends = rows.select("probability_over_limit_low", "probability_over_limit_high").iter_rows(named=True)
-        shares = sorted({share for row in ends for share in straddled(row)})
+        shares = sorted({share for row in ends for share in straddled(row, facts.bounds)})
         bounds = " or ".join(f"{100 * share:g}" for share in shares)
         lines = (rows["spread_method"] == "line").all()
         points = points_range(rows["spread_points"].to_list(), "lines" if lines else "points")
@@ -135,8 +135,11 @@ def _tail(row: Row, key: str) -> str:
 
 def _excess(facts: SummaryFacts, row: Row, *, first: bool) -> str:
     """Return a variant with the percentile that its verdict hangs on and its distance from the limit."""
-    key = "p97_5" if firm(light(row)) == "red" else "p99_865"
+    is_red = firm(light(row, facts.bounds)) == "red"
     name, limit = facts.named(row["variant"]), f"{row['backlash_limit_arcmin']:g}′"
+    if not is_red and facts.bounds.target_words != _PERCENTILES["p99_865"]:
+        return f"{name} (units over its limit of {limit}: {brief_share(row)})"
+    key = "p97_5" if is_red else "p99_865"
     tail, off = _tail(row, key), distance_words(row, key)
     if first:
         return f"{name} ({_PERCENTILES[key]} of its units stay below {tail}, {off} its limit of {limit})"
