@@ -135,3 +135,16 @@ def test_missed_precision_is_told():
     decisive = SimpleNamespace(output_error=np.array([[0.5e-3, 1e-3, 0.0], [1e-3, 0.0123, 0.0]]))
     notes = precision_notes(decisive, np.array([1.0, 2.0, 0.0]))
     assert notes == ["", "standard errors reach 0.0062 standard deviations, 0.001 was wanted", ""]
+
+
+@pytest.mark.parametrize("bounds", [(), (3e-6,), (2e-5,)], ids=str)
+def test_what_more_lines_hardly_remove_counts_where_a_verdict_hangs_on_it(bounds):
+    """The blunt part of an error of 50 % asks for lines only where the interval has a bound on both sides."""
+    share, error = 2e-6, 1e-6
+    over = SimpleNamespace(
+        above=np.array([[share]]), above_error=np.array([[error]]), blunt=np.array([[0.999 * error]])
+    )
+    decisive = SimpleNamespace(output_error=np.zeros((5, 1)))
+    row = SimpleNamespace(lines=FEWEST_LINES, scale=np.ones(1))
+    (needed,), _ = lines_needed(row, decisive, over, None, bounds)
+    assert needed == (FEWEST_LINES * 32 if bounds == (3e-6,) else FEWEST_LINES)

@@ -189,6 +189,7 @@ def sampling_plan(settings: Settings, options: Options) -> SamplingPlan:
         seed=settings.seed,
         coverage=settings.coverage_percent / 100,
         acceptable=settings.acceptable_ppm * 1e-6,
+        bounds=settings.verdict_bounds.shares,
         cross_check=bool(options.cross_check),
     )
 

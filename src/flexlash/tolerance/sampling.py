@@ -57,8 +57,9 @@ class SamplingPlan:
     `inputs` names all that may vary in any row, `later_inputs` those that were added since: their points are drawn
     after the others', which keep theirs; `samples` counts the lines or points in all, None for as many as the method
     needs. `coverage` is the probability of the coverage interval, `acceptable` the share of parts over the limit
-    from which a lot fails. `cross_check` puts plain Monte Carlo beside the method. Without `shares` nobody asks which
-    input causes how much, which takes about as long as all else where inputs are correlated.
+    from which a lot fails, `bounds` the shares at which a verdict changes. `cross_check` puts plain Monte Carlo beside
+    the method. Without `shares` nobody asks which input causes how much, which takes about as long as all else where
+    inputs are correlated.
     """
 
     method: Method
@@ -68,6 +69,7 @@ class SamplingPlan:
     seed: int = 0
     coverage: float = 0.95
     acceptable: float = 1350e-6
+    bounds: tuple[float, ...] = ()
     cross_check: bool = False
     shares: bool = True
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -9,7 +11,7 @@ from flexlash.schema.arrays import Array
 from flexlash.tolerance.engine.line_direction import Indices
 from flexlash.tolerance.engine.line_drawing import SD_PRECISION
 from flexlash.tolerance.engine.line_points import LINE_REPLICATES
-from flexlash.tolerance.engine.line_quantiles import LineQuantiles
+from flexlash.tolerance.engine.line_quantiles import LineQuantiles, probability_interval
 from flexlash.tolerance.engine.line_tables import Lines
 from flexlash.tolerance.sampling import stopping_margin
 
@@ -65,7 +67,11 @@ def initial_lines(inputs: int, samples: int | None, fewest: int = FEWEST_LINES) 
 
 
 def lines_needed(
-    lines: Lines, decisive: LineQuantiles, over: LineQuantiles | None = None, limited: Bools | None = None
+    lines: Lines,
+    decisive: LineQuantiles,
+    over: LineQuantiles | None = None,
+    limited: Bools | None = None,
+    bounds: Sequence[float] = (),
 ) -> tuple[Indices, Array]:
     """Return how many lines the precision of each row takes, those it has where they are enough, and a margin.
 
@@ -73,20 +79,34 @@ def lines_needed(
     multiplied by the margin (rows,).
 
     Arguments: lines of rows alike; `decisive` quantiles at `DECISIVE`; `over` the probabilities (1, rows) over the
-        limits of the rows `limited`.
+        limits of the rows `limited`; `bounds` are shares over a limit at which a verdict changes.
     Valid: errors fall at least as the root of the number of lines; never more than `MOST_LINES`.
     """
     excess = (decisive.output_error / np.where(lines.scale > 0, lines.scale, 1.0)).max(axis=0) / SD_PRECISION
     if over is not None:
         rarer = np.minimum(over.above, 1 - over.above)[0]
         counts = (rarer >= RAREST_PROBABILITY) & (True if limited is None else limited)
-        relative = (over.above_error - over.blunt)[0] / np.where(counts, rarer, 1.0) / PROBABILITY_PRECISION
+        error = over.above_error[0] - np.where(_left_open(over, bounds), 0.0, over.blunt[0])
+        relative = error / np.where(counts, rarer, 1.0) / PROBABILITY_PRECISION
         excess = np.maximum(excess, np.where(counts, relative, 0.0))
     margin = stopping_margin(excess)
     excess = excess * margin
     further = 2.0 ** np.ceil(np.log2(np.maximum(excess * _MARGIN, 2.0)))
     needed = np.where(excess <= 1, lines.lines, np.minimum(lines.lines * further, MOST_LINES))
     return needed.astype(np.intp), margin
+
+
+def _left_open(over: LineQuantiles, bounds: Sequence[float]) -> Bools:
+    """Return of which rows (rows,) the error of the probability leaves a verdict open and is beyond what is wanted.
+
+    Many lines carry a tail by themselves, so that nothing of its error is blunt: worth it where a verdict hangs on it.
+    """
+    above, error = over.above[0], over.above_error[0]
+    low, high = probability_interval(above, error)
+    straddled = np.zeros(above.shape, dtype=bool)
+    for bound in bounds:
+        straddled |= (low <= bound) & (bound < high)
+    return np.asarray(straddled & (error > PROBABILITY_PRECISION * above))
 
 
 def unresolved(lines: Lines, decisive: LineQuantiles) -> Bools:

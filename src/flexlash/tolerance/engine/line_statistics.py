@@ -6,7 +6,7 @@ Statistics are named by result key without unit; a row's limit is NaN where it h
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TypeAlias, TypeVar
 
 import numpy as np
@@ -95,7 +95,7 @@ def _answers(
                     drawn = drawing.drawn(rows[block], number)
                 reading = _Reading(drawn, levels, limit[rows[block]])
                 if adaptive:
-                    needed[block] = reading.refine()
+                    needed[block] = reading.refine(plan.bounds)
                 enough = needed[block] == number
                 lost = unresolved(drawn.lines, reading.decisive) & enough
                 yield from ((int(row), FAULTS[STEPS]) for row in rows[block[lost]])
@@ -139,9 +139,12 @@ class _Reading:
         self.decisive = self._quantiles.take(len(DECISIVE))
         self._margin = np.ones(lines.rows)
 
-    def refine(self) -> Indices:
-        """Return how many lines each row needs, and widen the errors of those that have them."""
-        needed, margin = lines_needed(self._lines, self.decisive, self._over, self._limited)
+    def refine(self, bounds: Sequence[float]) -> Indices:
+        """Return how many lines each row needs, and widen the errors of those that have them.
+
+        `bounds` are the shares over the limit at which a verdict changes.
+        """
+        needed, margin = lines_needed(self._lines, self.decisive, self._over, self._limited, bounds)
         self._margin = margin
         self._quantiles = self._quantiles.widened(margin)
         self._over = self._over.widened(margin) if self._over else None
