@@ -8,8 +8,9 @@ from dataclasses import replace
 import pytest
 
 from flexlash import __version__
-from flexlash.comparison.difference import Change, changed_results, difference
-from flexlash.comparison.difference import equal as is_equal
+from flexlash.comparison.changes import Change
+from flexlash.comparison.changes import equal as is_equal
+from flexlash.comparison.difference import changed_results, difference
 from flexlash.comparison.sides import side_of
 from flexlash.pipeline import check, run
 from flexlash.reading.reading_limits import ReadingLimits

@@ -13,6 +13,7 @@ from flexlash.analysis.assessment import assess
 from flexlash.pipeline import check
 from flexlash.reading.gate import Refusal
 from flexlash.reading.raw import ErrorCell, RawSheet, Submission, Unstored
+from flexlash.schema.cell_addresses import column_letters
 from flexlash.schema.columns import VARIANTS, columns_of
 from flexlash.schema.variant import Settings
 from flexlash.validation.consolidation import consolidated
@@ -170,7 +171,7 @@ def test_every_fault_has_one_finding_at_its_cell():
     assert len(errors) == len(expected)
     names = [row["variant"] for row in filling.variants]
     for found in errors:
-        letter = chr(65 + KEYS.index(found.column))
+        letter = column_letters(KEYS.index(found.column) + 1)
         assert found.place == f"Variants!{letter}{names.index(found.variant) + 2}"
     assert _kept(validated) == ["sound cup", "sound bore", "sound cylinder"]
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from flexlash.comparison.calculation_error import POINTS, is_within_error
+from flexlash.comparison.changes import ROUNDING, Change, equal
+from flexlash.comparison.decision_changes import decision_changes
 from flexlash.comparison.sides import Name, Side
 from flexlash.comparison.used_values import Used
 from flexlash.schema.column import Column
@@ -15,41 +16,12 @@ from flexlash.schema.columns import SETTINGS, VARIANTS
 from flexlash.schema.result_columns import result_columns
 from flexlash.schema.spellings import plain
 
-__all__ = ["FIRST", "ROUNDING", "Change", "Difference", "Differing", "changed_results", "difference"]
-
-ROUNDING = 1e-12
-"""Numbers that differ by no more than this part of themselves are equal."""
+__all__ = ["FIRST", "Difference", "Differing", "changed_results", "difference"]
 
 FIRST = ("status", "backlash_arcmin", "p97_5_arcmin", "probability_over_limit", "lots_failing", "main_contributor")
 """Results on which a verdict rests, and how many lots fail, in the order in which a reader wants them."""
 
 _RESULTS = {column.key: column for column in result_columns(cross_check=True, elasticity=True)}
-
-
-@dataclass(frozen=True, kw_only=True)
-class Change:
-    """One value that differs, in printed units; None where there is none. `owner` is the table's row it stands in."""
-
-    sheet: str
-    owner: str = ""
-    key: str
-    label: str
-    unit: str = ""
-    old: str | float | None
-    new: str | float | None
-
-    @property
-    def part(self) -> float | None:
-        """The change as a part of the old number; None where there is no such number."""
-        if isinstance(self.old, str) or isinstance(self.new, str) or not self.old or self.new is None:
-            return None
-        return self.new / self.old - 1
-
-    def as_dictionary(self) -> dict[str, Any]:
-        """Return the change as JSON holds it."""
-        names = ("sheet", "owner", "key", "label", "unit", "old", "new")
-        percent = None if self.part is None else 100 * self.part
-        return {**{name: getattr(self, name) for name in names}, "change_percent": percent}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,10 +118,13 @@ def difference(old: Side, new: Side, tolerance: float = ROUNDING) -> Difference:
     """Return what differs between two files; numbers of Results may differ by `tolerance` of themselves."""
     before, after = old.entries(), new.entries()
     common = [name for name in after if name in before]
+    decided = decision_changes(old, new)
     differing = []
     for name in common:
         entered = list(_entered(before[name], after[name]))
         used = list(_used(old, new, name))
+        own = old.dimensions(name) | new.dimensions(name) if decided else frozenset()
+        used += [one.change for one in decided if one.concerns(name, own)]
         results = _results(old, new, name, tolerance)
         if entered or used or results:
             limit = _limit(old, new, name)
@@ -260,13 +235,3 @@ def _limit(old: Side, new: Side, name: Name) -> str:
     if None in verdicts or verdicts[0] == verdicts[1]:
         return ""
     return "over" if verdicts[1] else "within"
-
-
-def equal(old: Any, new: Any, tolerance: float = ROUNDING) -> bool:
-    """Whether two values say the same; numbers, alone or in a row, may differ by their rounding."""
-    if isinstance(old, tuple) and isinstance(new, tuple):
-        pairs = zip(old, new, strict=False)
-        return len(old) == len(new) and all(equal(*pair, tolerance) for pair in pairs)
-    if isinstance(old, int | float) and isinstance(new, int | float):
-        return math.isclose(old, new, rel_tol=tolerance)
-    return bool(old == new)

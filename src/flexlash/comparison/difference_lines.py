@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from flexlash.comparison.calculation_error import AGREEING
-from flexlash.comparison.difference import FIRST, Change, Difference, Differing
+from flexlash.comparison.changes import Change
+from flexlash.comparison.difference import FIRST, Difference, Differing
 from flexlash.comparison.sides import Name
 from flexlash.reading.carried import SWITCHES
 from flexlash.schema.columns import DIMENSIONS
@@ -14,6 +15,9 @@ from flexlash.schema.findings import shown
 __all__ = ["comparison_line", "difference_lines"]
 
 _NAME = 30
+_STUDY = 90
+"""Most letters of what a study varies: two dimensions, and a variant."""
+
 _NAMED = 3
 _WORDS = 200
 """Most letters of a text that differs: a tolerance with its sample takes more than a cell's usual entry."""
@@ -122,7 +126,8 @@ def _owner(change: Change) -> str:
     """Return where a shared change stands."""
     if change.sheet == "Settings":
         return "Settings"
-    return f"{'Material' if change.sheet == 'Materials' else change.sheet} {shown(change.owner, _NAME)}"
+    longest = _STUDY if change.sheet == "Sweep" else _NAME
+    return f"{'Material' if change.sheet == 'Materials' else change.sheet} {shown(change.owner, longest)}"
 
 
 def _words(change: Change) -> str:

@@ -137,7 +137,7 @@ class Side:
         material = self.validated.materials.get(plain(record["material"] or ""))
         if material is None:
             return None
-        constants = material.constants | {"yield": material.yield_strength}
+        constants = material.constants | {"yield": material.yield_strength, "density_kg_m3": material.density}
         values = {
             column.dimension: Value(
                 value=number,

@@ -11,7 +11,9 @@ from flexlash.validation.other_source_rows import SourceRows, other_sources_of, 
 from flexlash.validation.sweep_rows import Sweeps, sweep_rows_of
 from flexlash.validation.validated import Table
 
-__all__ = ["Decided", "decided_by"]
+__all__ = ["DECISION_SHEETS", "Decided", "decided_by"]
+
+DECISION_SHEETS = ("Other sources", "Levers", "Sweep")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,7 +17,7 @@ from flexlash.schema.variant import CorrelationRow, Material, Settings, Toleranc
 from flexlash.validation.class_bases import class_names
 from flexlash.validation.correlation_rows import correlation_rows_of
 from flexlash.validation.csv_findings import report_dialect
-from flexlash.validation.decision_sheets import decided_by
+from flexlash.validation.decision_sheets import DECISION_SHEETS, decided_by
 from flexlash.validation.entry_sheets import (
     entry_sheets,
     report_other_names,
@@ -46,7 +46,7 @@ from flexlash.validation.variant_rows import VariantRows
 
 __all__ = ["TEMPLATE_VERSION", "validate"]
 
-_OF_THEIR_OWN = frozenset({"Measurements", "Other sources", "Levers", "Sweep"})
+_OF_THEIR_OWN = frozenset({"Measurements", *DECISION_SHEETS})
 """Sheets whose errors spoil what is taken from them alone, not the rows of Variants."""
 
 
@@ -89,6 +89,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
         withheld_levers=decided.levers.withheld,
         sweeps=decided.sweeps.rows,
         faulty_sweeps=decided.sweeps.faulty,
+        decision_tables={name: tables[name] for name in DECISION_SHEETS if name in tables},
         correlations=tables.get("Correlations"),
         correlation_rows=used.correlations,
         variants=VariantRows(frame=sound, materials=used.materials, settings=used.settings),

@@ -135,6 +135,7 @@ class Validated:
     dimension) and `sweeps` are the sound rows of those sheets. What other rows of them with errors take away:
     `sources_are_faulty` leaves no budget of the drive, since it would lack a source; `withheld_levers` are dimensions
     (or material) of which nothing may be advised; `faulty_sweeps` rows of Sweep whose studies are left out.
+    `decision_tables` are these sheets by name.
     `variants` are the rows of Variants without an error; `header_rows` the row of each entry sheet's headers.
     """
 
@@ -154,6 +155,7 @@ class Validated:
     withheld_levers: frozenset[str] = frozenset()
     sweeps: Sequence[SweepRow] = ()
     faulty_sweeps: tuple[int, ...] = ()
+    decision_tables: Mapping[str, Table] = field(default_factory=dict)
     variants: VariantRows = field(default_factory=VariantRows)
     classes: Mapping[str, Sequence[ToleranceRow]] = field(default_factory=dict)
     materials: Mapping[str, Material] = field(default_factory=dict)

@@ -41,6 +41,9 @@ _OWNERS: Mapping[str, tuple[str, ...]] = {
     "Settings": ("setting",),
     "Measurements": ("sample", "part"),
     "Correlations": ("tolerance_class", "dimension_1", "dimension_2"),
+    "Other sources": ("source",),
+    "Levers": ("dimension",),
+    "Sweep": ("variant", "dimension"),
 }
 """The columns that say whose row it is, by entry sheet."""
 
