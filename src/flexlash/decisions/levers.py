@@ -25,7 +25,7 @@ from flexlash.schema.variant import Settings, Variant
 from flexlash.tolerance.spread_statistics import PERCENTILES
 from flexlash.workers import mapped
 
-__all__ = ["levers_of"]
+__all__ = ["levers_of", "present_of", "terms_of"]
 
 _TOGETHER = 125
 """Variants whose levers are found together."""
@@ -52,10 +52,10 @@ def levers_of(
     `levers` are the rows of the sheet Levers by dimension, `options` those of the run. A variant's levers have the same
     bits whatever its neighbours are. Nothing is computed of a variant without a spread.
     """
-    presents = [present for variant in computed.values() if (present := _present(variant)) is not None]
+    presents = [present for variant in computed.values() if (present := present_of(variant)) is not None]
     found: list[Lever] = []
     if presents:
-        terms = _terms(next(iter(computed.values())), settings, levers, options or Options())
+        terms = terms_of(next(iter(computed.values())), settings, levers, options or Options())
         pieces = [presents[start : start + _TOGETHER] for start in range(0, len(presents), _TOGETHER)]
         workers = min(1 if options is None else options.jobs, len(presents) // _PER_WORKER)
         found = [lever for piece in mapped(partial(_levers, terms=terms), pieces, workers) for lever in piece]
@@ -68,7 +68,7 @@ def levers_of(
     return pl.DataFrame(records, schema=types, orient="row").select(columns)
 
 
-def _present(computed: Computed) -> Present | None:
+def present_of(computed: Computed) -> Present | None:
     """Return what a variant is now; None without a limit or a spread."""
     limit, spread = computed.variant.backlash_limit, computed.spread
     over = None if spread is None else spread.numbers.get("probability_over_limit")
@@ -79,7 +79,7 @@ def _present(computed: Computed) -> Present | None:
     return Present(variant=computed.variant, limit=limit, over=over, quantiles=quantiles)
 
 
-def _terms(computed: Computed, settings: Settings, levers: Mapping[str, LeverRow], options: Options) -> Terms:
+def terms_of(computed: Computed, settings: Settings, levers: Mapping[str, LeverRow], options: Options) -> Terms:
     """Return what holds for all levers of the submission that a variant belongs to."""
     validated = computed.among.validated
     blocked = validated.blocked.materials

@@ -21,6 +21,7 @@ __all__ = [
     "grades_finer",
     "greatest_factor",
     "half_width",
+    "is_made",
     "shop_tolerances",
     "with_widths",
 ]
@@ -43,10 +44,11 @@ def shop_tolerances(limits: Mapping[str, Limits]) -> tuple[str, ...]:
 
     Moduli and calibrations are what they are; the torque is not made.
     """
-    return tuple(name for name, one in limits.items() if one.low < one.high and _is_made(name))
+    return tuple(name for name, one in limits.items() if one.low < one.high and is_made(name))
 
 
-def _is_made(name: str) -> bool:
+def is_made(name: str) -> bool:
+    """Return whether a dimension is one of the part itself, so that a drawing sets its tolerance."""
     column = DIMENSIONS[name]
     return column.sheet == "Variants" and column.quantity != "torque"
 
