@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,9 +18,10 @@ from flexlash.reading.read import ReadReport, Source
 from flexlash.reading.refusal import Refusal
 
 if TYPE_CHECKING:
+    from flexlash.decisions.sweep import Study
     from flexlash.feedback.fixing.fix import Fix
 
-__all__ = ["Options", "Outcome", "check", "computed", "mend", "run", "spread_out"]
+__all__ = ["Options", "Outcome", "check", "computed", "mend", "run", "spread_out", "sweep"]
 
 
 def check(submission: str | Path | Source | ReadReport, **options: Any) -> Outcome:
@@ -78,6 +79,45 @@ def run(
     source = opened(submission, chosen)
     outputs.require()
     return outputs.reported(computed(source, chosen))
+
+
+def sweep(
+    submission: str | Path | Source | ReadReport,
+    output: str | Path | Output | None = None,
+    *,
+    vary: Mapping[str, Sequence[float]] | None = None,
+    variant: str | None = None,
+    **options: Any,
+) -> tuple[Outcome, list[Study]]:
+    """Return the outcome of a submission and the studies that it asks for on its sheet Sweep, or that `vary` names.
+
+    `vary` gives the values of one or two columns of Variants by their keys, in the units of these; the variant of that
+    name is swept, or every one that can have them. An output that ends in .xlsx is the report with its sheet Sweep; one
+    in .csv, .parquet or .json the points alone, and then the outcome holds the swept variants alone.
+
+    Options and errors are those of `run`; SweepError, a ValueError, says what cannot be swept.
+    """
+    from flexlash.decisions.asked_sweep import asked_sweep, swept_alone, with_sweep
+    from flexlash.decisions.sweep import sweeps_of
+    from flexlash.report.output import outcome_bytes
+    from flexlash.report.report_data import report_data
+    from flexlash.report.sweep_output import sweep_bytes
+
+    chosen = Options.of("sweep()", options)
+    asked = None if vary is None else asked_sweep(vary, variant)
+    outputs = delivery(submission, chosen, output, REPORTS)
+    source = opened(submission, chosen)
+    outputs.require()
+    found = with_sweep(examined(source, chosen), asked)
+    is_report = outputs.output is not None and outputs.output.ending == ".xlsx"
+    outcome = spread_out(found if is_report else swept_alone(found), chosen)
+    if is_report and outcome.computed:
+        data = report_data(outcome)
+        return outputs.written(outcome, *outcome_bytes(outcome, ".xlsx", data)), [*data.studies]
+    studies = sweeps_of(outcome)
+    if outputs.output is None or not studies:
+        return outputs.written(outcome, None, ""), studies
+    return outputs.written(outcome, *sweep_bytes(studies, outcome, outputs.output.ending)), studies
 
 
 def computed(

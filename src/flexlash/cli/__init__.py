@@ -14,6 +14,7 @@ from flexlash.cli.run_command import run
 from flexlash.cli.serve_command import serve
 from flexlash.cli.status_command import retry, status
 from flexlash.cli.streams import lost_output, patient_streams
+from flexlash.cli.sweep_command import sweep
 from flexlash.cli.template_command import template
 from flexlash.cli.terminal import colour, complain, internal_error, named
 from flexlash.cli.watch_command import watch
@@ -40,12 +41,13 @@ def cli() -> None:
       flexlash run variants.xlsx             compute it, write variants-report.xlsx
       flexlash run variants.xlsx -o out.csv  the results table alone
       flexlash run folder -o reports         all submissions of a folder
+      flexlash sweep study.xlsx --vary cylinder_length_mm=100:200:20
       flexlash diff old.xlsx new.xlsx        what changed between two reports or submissions
       flexlash serve --open                  a page to hand templates in
     """  # noqa: D301
 
 
-for _command in (template, check, run, diff, serve, watch, schema, explain, status, retry):
+for _command in (template, check, run, sweep, diff, serve, watch, schema, explain, status, retry):
     cli.add_command(_command)
 
 

@@ -49,10 +49,11 @@ class Attempt:
     """What is done with one file in this process: the outcome it came to, and what more is to be told of it.
 
     `further` are more fields for `--json`; `remarks` and `closing` are lines that follow on standard error and standard
-    output.
+    output. `codes` are exit codes beside that of the outcome.
     """
 
     outcome: Outcome | None = None
+    codes: Sequence[ExitCode] = ()
     further: Mapping[str, Any] = field(default_factory=dict)
     remarks: Sequence[str] = ()
     closing: Sequence[str] = ()
@@ -108,6 +109,7 @@ class Submissions:
         if ended is None:
             self.codes.append(ExitCode.FINE)
         else:
+            self.further_codes += attempt.codes
             self.tell(replace(ended, seconds=time.perf_counter() - start), attempt)
 
     def _ended(self, path: Path, outcome: Outcome | None) -> Ended | None:

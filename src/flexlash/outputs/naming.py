@@ -9,7 +9,15 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from flexlash.outputs.plan import Output, Plan
-from flexlash.reading.products import CHECKED_NAME, FIXED_NAME, REPORT_NAME, SUMMARY_NAME, is_made_by_name, made_of
+from flexlash.reading.products import (
+    CHECKED_NAME,
+    FIXED_NAME,
+    REPORT_NAME,
+    SUMMARY_NAME,
+    SWEEP_NAME,
+    is_made_by_name,
+    made_of,
+)
 from flexlash.schema.argument_checks import file_path
 
 __all__ = [
@@ -22,6 +30,7 @@ __all__ = [
     "recreated_outputs",
     "report_outputs",
     "summary_outputs",
+    "sweep_output",
     "template_output",
 ]
 
@@ -60,6 +69,16 @@ def report_outputs(
     `below` gives the sub-folder of an output folder that a submission's files go to, here and in the other functions.
     """
     return _outputs(plan, submissions, output, lambda path: f"{path.stem}{REPORT_NAME}.xlsx", REPORTS, below)
+
+
+def sweep_output(plan: Plan, submission: Path, output: Path | None) -> Output:
+    """Return where the sweep of a submission goes; raise ValueError for an output that cannot be meant."""
+
+    def name(path: Path) -> str:
+        return f"{path.stem}{SWEEP_NAME}.xlsx"
+
+    (claimed,) = _outputs(plan, [submission], output, name, REPORTS, _NOWHERE_BELOW)
+    return claimed
 
 
 def summary_outputs(plan: Plan, output: Path | None) -> tuple[Output, Output] | None:

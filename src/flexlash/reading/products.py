@@ -17,6 +17,7 @@ from pathlib import Path
 
 from flexlash.reading.raw import Submission
 from flexlash.reading.refusal import Refusal
+from flexlash.schema.columns import VARIANTS
 from flexlash.schema.result_columns import FINDINGS, result_columns
 
 __all__ = [
@@ -24,6 +25,7 @@ __all__ = [
     "FIXED_NAME",
     "REPORT_NAME",
     "SUMMARY_NAME",
+    "SWEEP_NAME",
     "Companions",
     "digests_of",
     "fixed_role",
@@ -35,19 +37,20 @@ __all__ = [
     "stamped_product",
 ]
 
-REPORT_NAME, CHECKED_NAME, FIXED_NAME = "-report", "-checked", "-mended"
+REPORT_NAME, CHECKED_NAME, FIXED_NAME, SWEEP_NAME = "-report", "-checked", "-mended", "-sweep"
 """What flexlash puts behind the name of a submission."""
 
 SUMMARY_NAME = "flexlash-summary"
 """How the summary of all submissions is called in the folder of their reports."""
 
-_MADE = re.compile(rf"(?P<stem>.+)(?P<what>{REPORT_NAME}|{CHECKED_NAME}|{FIXED_NAME})(?: \(\d+\))?")
+_MADE = re.compile(rf"(?P<stem>.+)(?P<what>{REPORT_NAME}|{CHECKED_NAME}|{FIXED_NAME}|{SWEEP_NAME})(?: \(\d+\))?")
 _FIXED = "mended"
 _PRODUCTS = {"report": "I508", "summary": "I508", "results": "I527", "checked": "I513"}
 """By its role, the finding that says why a file that flexlash wrote is skipped."""
 
 _RESULTS = tuple(column.key for column in result_columns(cross_check=False, elasticity=False))
 _FINDINGS = tuple(column.key for column in FINDINGS)
+_SWEPT = frozenset(column.key for column in VARIANTS if column.role == "dimension")
 _LARGEST = 2**27
 """Largest file whose digest is taken to find out whether it is the original of a fixed one [bytes]."""
 
@@ -58,13 +61,17 @@ def fixed_role(original: bytes) -> str:
 
 
 def results_header(keys: Iterable[object]) -> bool:
-    """Whether a header row is that of Results, behind which further columns may follow, or of findings beside them."""
+    """Whether a header row is that of Results, behind which further columns may follow, or of findings beside them.
+
+    Of a sweep the swept columns stand behind the variant.
+    """
     header = list(keys)
-    return tuple(header) == _FINDINGS or (tuple(header[:2]) == _RESULTS[:2] and set(_RESULTS) <= set(header))
+    swept = [key for key in header if key not in _SWEPT]
+    return tuple(header) == _FINDINGS or (tuple(swept[:2]) == _RESULTS[:2] and set(_RESULTS) <= set(header))
 
 
 def is_made_by_name(path: Path) -> bool:
-    """Whether a file has the kind of name that flexlash gives: `<name>-report`, `-checked`, `-mended`, maybe numbered.
+    """Whether a file has the kind of name that flexlash gives: `<name>-report`, `-checked`, `-mended` and so on.
 
     >>> is_made_by_name(Path("a-mended (2).csv")), is_made_by_name(Path("a.csv"))
     (True, False)

@@ -11,6 +11,7 @@ from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of, merged_width
 from flexlash.report.wording.sweep_words import swept_title
 from flexlash.report.wording.verdict import COLOURS, light
+from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.result_columns import RESULTS
 
 __all__ = ["LAST_COLUMN", "SHARE", "STRESS", "VALUE_WIDTH", "WIDTH", "write_points"]
@@ -42,7 +43,7 @@ LAST_COLUMN = _FINDINGS + 4
 """Column, from 0, at which findings end, which are as wide as several columns."""
 
 
-def write_points(book: Book, sheet: Any, top: int, study: Study) -> int:
+def write_points(book: Book, sheet: Any, top: int, study: Study, bounds: VerdictBounds) -> int:
     """Write headings and points from a row on; return the row below them. The value as entered is bold."""
     header = book.format("header")
     sheet.write_row(top, 0, [swept_title(study.first.key), *(label for _, label in _COLUMNS)], header)
@@ -59,7 +60,7 @@ def write_points(book: Book, sheet: Any, top: int, study: Study) -> int:
         sheet.write_number(row, 0, value, book.format("label" if value == entered else "text", "general"))
         for column, key in enumerate(_KEYS, start=1):
             if record[key] is not None:
-                look = COLOURS[light(record)] if column == _OVER else "text"
+                look = COLOURS[light(record, bounds)] if column == _OVER else "text"
                 sheet.write_number(row, column, record[key], book.format(look, codes[key][place]))
         if findings := _findings(record["findings"]):
             sheet.merge_range(row, _FINDINGS, row, LAST_COLUMN, findings, book.format("indented wrap"))

@@ -15,6 +15,7 @@ from flexlash.report.sweeps.point_table import LAST_COLUMN, SHARE, STRESS, VALUE
 from flexlash.report.sweeps.sweep_charts import backlash_chart, share_chart
 from flexlash.report.sweeps.two_way_table import write_two_way
 from flexlash.report.wording.sweep_words import study_sentences, study_title
+from flexlash.schema.limit_verdict import VerdictBounds
 
 __all__ = ["MOST_STUDIES", "SHEET", "write_sweep"]
 
@@ -81,7 +82,7 @@ class _Blocks:
             return write_two_way(self.book, self.sheet, row, study, self.target)
         is_drawn = len(set(study.first.values)) > 1 and study.results["backlash_arcmin"].is_not_null().any()
         top = row + (_CHART_ROWS if is_drawn else 0)
-        last = write_points(self.book, self.sheet, top, study)
+        last = write_points(self.book, self.sheet, top, study, VerdictBounds.of(self.target))
         if is_drawn:
             self._insert_charts(row, study, number, (top + 1, last - 1))
         return last

@@ -11,9 +11,10 @@ from flexlash.decisions.sweep import Study, percentile_key, sweep_levels
 from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.wording.sweep_words import allowed_words, level_title, shown_level, swept_title
-from flexlash.report.wording.verdict import COLOURS, firm, light
+from flexlash.report.wording.verdict import COLOURS, light
 from flexlash.schema.column import Column
 from flexlash.schema.columns import columns_of
+from flexlash.schema.limit_verdict import VerdictBounds
 
 __all__ = ["write_two_way"]
 
@@ -65,6 +66,11 @@ class _Table:
             for point in self.study.results.iter_rows(named=True)
         }
         return [[points[value, second] for second in self.seconds] for value in self.firsts]
+
+    @cached_property
+    def bounds(self) -> VerdictBounds:
+        """The shares over the limit that verdicts allow."""
+        return VerdictBounds.of(self.target)
 
     @property
     def level(self) -> float:
@@ -128,15 +134,20 @@ class _Table:
     def _look(self, row: int, column: int) -> dict[str, Any]:
         """Return the format of a cell, with the contour where a neighbour is on the other side of it."""
         point = self.cells[row][column]
-        look = self.book.properties(COLOURS[light(point)]) | {"align": "center", "num_format": "0.000"}
-        meets = _meets(point)
+        look = self.book.properties(COLOURS[light(point, self.bounds)]) | {"align": "center", "num_format": "0.000"}
+        meets = self._meets(point)
         for side, (down, right) in _SIDES.items():
             beside, along = row + down, column + right
             if 0 <= beside < len(self.firsts) and 0 <= along < len(self.seconds):
-                other = _meets(self.cells[beside][along])
+                other = self._meets(self.cells[beside][along])
                 if None not in {meets, other} and meets != other:
                     look |= {side: _CONTOUR, f"{side}_color": PALETTE["ink"]}
         return look
+
+    def _meets(self, point: dict[str, Any]) -> bool | None:
+        """Return whether a point meets its limit, None where it has no number or no limit."""
+        over = point["probability_over_limit"]
+        return None if over is None else not self.bounds.misses(over)
 
     def _write_allowed(self, row: int) -> int:
         """Write below each column which values of the first dimension are allowed; return the row below."""
@@ -180,8 +191,3 @@ class _Table:
         first, last = self.rows
         places = {"categories": [self.sheet.name, first, 0, last, 0]}
         return {"name": name, **places, "values": [self.sheet.name, first, column, last, column]}
-
-
-def _meets(point: dict[str, Any]) -> bool | None:
-    """Return whether a point meets its limit, None where it has no number or no limit."""
-    return None if point["probability_over_limit"] is None else firm(light(point)) == "green"

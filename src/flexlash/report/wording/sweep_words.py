@@ -10,6 +10,7 @@ from flexlash.decisions.sweep import Study, percentile_key, sweep_levels
 from flexlash.schema.columns import columns_of
 from flexlash.schema.entry_words import inner_name
 from flexlash.schema.findings import spelled_out
+from flexlash.schema.limit_verdict import VerdictBounds
 
 __all__ = [
     "allowed_sentence",
@@ -19,11 +20,15 @@ __all__ = [
     "study_sentences",
     "study_title",
     "swept_title",
+    "told_sentences",
     "value_words",
 ]
 
 _DIGITS = 5
 """Digits to which a crossing is told, rounded to the safe side where a sentence allows values up to it."""
+
+_SHOWN = 12
+"""Most values of a second dimension that a screen tells."""
 
 _CAPABLE = 99.865
 """The level that a table of two dimensions shows where Results have no column for the target."""
@@ -68,6 +73,21 @@ def study_sentences(study: Study, target: float) -> list[str]:
         return [_table_sentence(study, target), *missing(study)]
     sentences = [allowed_sentence(study, target), _crossing_sentence(study, target), *_course(study), *missing(study)]
     return [sentence for sentence in sentences if sentence]
+
+
+def told_sentences(study: Study, target: float) -> list[str]:
+    """Return what a screen says of a study, which has no table: of two dimensions what is allowed beside each value."""
+    if study.second is None or study.limit is None:
+        return study_sentences(study, target) if study.second is None else list(missing(study))
+    first, second = (columns_of("Variants")[key] for key in study.keys)
+    values = list(dict.fromkeys(study.second.values))
+    lines = [f"{_capital(inner_name(first))} with {target:.10g} % of units within {_limit(study)}, beside"]
+    for value in values[:_SHOWN]:
+        words = allowed_words(study, target, value)
+        lines.append(f"{inner_name(second)} {value:.10g}{second.unit_behind}: {words}")
+    if len(values) > _SHOWN:
+        lines.append(f"… and {len(values) - _SHOWN:,} more values")
+    return [*lines, *missing(study)]
 
 
 def allowed_sentence(study: Study, target: float) -> str:
@@ -168,9 +188,11 @@ def _table_sentence(study: Study, target: float) -> str:
     what = f"Each cell is {level_title(level)}, the backlash that {level:.10g} % of units stay below"
     if study.limit is None:
         return f"{what}; the redder, the greater. No limit is given."
+    bounds = VerdictBounds.of(target)
+    amber = f"; amber: at least {100 - 100 * bounds.marginal:.10g} %" if bounds.any_marginal else ""
     return (
-        f"{what}. Green: at least {target:.10g} % of units are within {_limit(study)}; amber: at least 97.5 %; red: "
-        f"fewer. The thick line is the contour of green. Below stands, for each {inner_name(second)}, which "
+        f"{what}. Green: at least {target:.10g} % of units are within {_limit(study)}{amber}; red: fewer. The thick "
+        f"line is the contour of green. Below stands, for each {inner_name(second)}, which "
         f"{inner_name(columns_of('Variants')[study.first.key])} keeps each level within the limit."
     )
 
