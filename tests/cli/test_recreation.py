@@ -8,6 +8,7 @@ import os
 import openpyxl
 import pytest
 import regenerate
+from decided_drives import drive
 from finding_examples import SUBMISSIONS
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
@@ -17,6 +18,7 @@ from flexlash.cli.recreation import recreate
 from flexlash.comparison.difference import difference
 from flexlash.comparison.sides import side_of
 from flexlash.feedback.template import entry_rules
+from flexlash.feedback.template.template_workbook import template_bytes
 from flexlash.pipeline import check, run
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.result_columns import CROSS_CHECK
@@ -92,6 +94,11 @@ def _measured_tables(folder, sound):  # noqa: ARG001
     return paths.pop("variants"), paths
 
 
+def _drive(folder, sound):  # noqa: ARG001
+    (folder / "drive.xlsx").write_bytes(template_bytes(drive()))
+    return folder / "drive.xlsx", {}
+
+
 MADE = {
     "the study": _data("b3-160-study", strict=True),
     "faults": _data("needs-fixing"),
@@ -108,6 +115,8 @@ MADE = {
     "a later sheet": _example("calibrated"),
     "measured parts": _data("measured-parts"),
     "tables of measured parts": _measured_tables,
+    "a whole drive": _drive,
+    "faults of a drive": _example("decided"),
 }
 
 

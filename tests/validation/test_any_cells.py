@@ -61,7 +61,13 @@ _TEXTS = st.one_of(
     st.text(st.characters(categories=("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Mn")), max_size=8),
     st.text("0123456789.,eE+- mµ'°%/±", max_size=12),
 )
-_LISTED = (*ENTRY_SHEETS["Tolerances"], *ENTRY_SHEETS["Variants"], *ENTRY_SHEETS["Measurements"][:3], *SETTINGS)
+_LISTED = (
+    *ENTRY_SHEETS["Tolerances"],
+    *ENTRY_SHEETS["Variants"],
+    *ENTRY_SHEETS["Measurements"][:3],
+    *(column for sheet in ("Other sources", "Levers", "Sweep") for column in ENTRY_SHEETS[sheet]),
+    *SETTINGS,
+)
 _WORDS = st.sampled_from(
     [
         "Steel",
@@ -112,6 +118,21 @@ _SOUND = {
     ],
     "Correlations": [{"tolerance_class": "shop", "dimension_1": "wall_thickness", "dimension_2": "cylinder_length",
                       "correlation": 0.4}],
+    "Other sources": [
+        {"source": "clearance", "enter_as": "mm at radius", "value_arcmin": 0.01, "radius_mm": 80.0},
+        {"source": "coupling", "lower_deviation": 0.0, "upper_deviation": 20.0, "side": "input", "ratio": 100.0},
+        {"source": "runout", "lower_deviation": -0.1, "upper_deviation": 0.1, "kind": "random"},
+    ],
+    "Levers": [
+        {"dimension": "cylinder_length", "lowest": 120.0, "highest": 200.0, "step": 0.5},
+        {"dimension": "torque", "may_change": "no"},
+        {"dimension": "material", "cost_per_step": 30.0},
+    ],
+    "Sweep": [
+        {"variant": "V1", "dimension": "cylinder_length", "from": 120.0, "to": 200.0, "step": 20.0},
+        {"dimension": "wall_thickness", "from": 1.4, "to": 1.8, "step": 0.2, "second_dimension": "disk_inner_radius",
+         "second_from": 40.0, "second_to": 50.0, "second_step": 5.0},
+    ],
 }  # fmt: skip
 
 

@@ -11,12 +11,11 @@ from flexlash.comparison.changes import Change, equal
 from flexlash.comparison.sides import Name, Side
 from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, ENTRY_SHEETS
-from flexlash.schema.decision_columns import MATERIAL
+from flexlash.schema.decision_columns import MATERIAL, source_unit
 from flexlash.schema.entry_words import dimension_title
 from flexlash.schema.findings import shown
 from flexlash.schema.spellings import plain
 from flexlash.validation.decision_sheets import DECISION_SHEETS
-from flexlash.validation.other_source_rows import source_unit
 from flexlash.validation.validated import Table
 
 __all__ = ["DecisionChange", "decision_changes"]

@@ -8,13 +8,23 @@ from functools import partial
 from flexlash.schema.column import LENGTH, POSITIVE, Column
 from flexlash.schema.variant_columns import VARIANTS
 
-__all__ = ["LEVERS", "MATERIAL", "OTHER_SOURCES", "SWEEP"]
+__all__ = ["LEVERS", "MATERIAL", "OTHER_SOURCES", "SWEEP", "source_unit"]
 
 _FIRST = 6
 """Template version that brought these sheets."""
 
 MATERIAL = "material"
 """What Levers calls the choice of another material."""
+
+
+def source_unit(enter_as: str | None) -> str:
+    """Return the unit of a source's value and deviations, by what it is entered as.
+
+    >>> source_unit(None), source_unit("mm radial play")
+    ('arcmin', 'mm')
+    """
+    return (enter_as or "arcmin").split(" ")[0]
+
 
 _SIZES = tuple(column.dimension for column in VARIANTS if column.role == "dimension")
 
@@ -51,6 +61,7 @@ OTHER_SOURCES = (
         "The play, in arcmin or mm as Enter as says. Blank: 0, so that the deviations alone say it.",
         minimum=0,
         group="Source",
+        also_called="play backlash clearance lostmotion amount nominal spiel wert jeu valeur gioco valore",
     ),
     _source(
         "requirement",
@@ -78,6 +89,7 @@ OTHER_SOURCES = (
         "Lower deviation",
         "Signed: what the least play differs from the value, in its unit.",
         group="Scatter",
+        also_called="lower unteresabmaß unteresabmass untereabweichung lowertolerance minus",
     ),
     _source(
         "requirement",
@@ -85,6 +97,7 @@ OTHER_SOURCES = (
         "Upper deviation",
         "Signed: what the greatest play differs from the value, in its unit.",
         group="Scatter",
+        also_called="upper oberesabmaß oberesabmass obereabweichung uppertolerance plus",
     ),
     _source(
         "requirement",
@@ -125,6 +138,7 @@ OTHER_SOURCES = (
         minimum=1,
         usual=(5, 1000),
         group="Drive",
+        also_called="reduction reductionratio gearratio übersetzung untersetzung rapport rapporto i",
     ),
     _source(
         "requirement",

@@ -26,7 +26,12 @@ def stopped_by(table: Table, blocked: Blocked, findings: Iterable[Finding]) -> d
     named = {source for sources in blocked.sources.values() for source in sources}
     own = {(table.sheet, row) for row in table.frame["row"]}
     of_rows = named | own
-    general = [finding for source, group in by_row.items() if source not in of_rows for finding in group]
+    general = [
+        finding
+        for source, group in by_row.items()
+        if source not in of_rows and source[0] not in blocked.apart
+        for finding in group
+    ]
     stops: dict[int, list[Finding]] = {}
     for row, material, tolerance_class in table.frame.select("row", "material", "tolerance_class").iter_rows():
         owners: tuple[Owner, ...] = (

@@ -35,6 +35,14 @@ _OF_TOLERANCES = frozenset({
 })  # fmt: skip
 """Columns of the template whose names speak of tolerances or of a process themselves."""
 
+_OF_THE_ROW = {
+    "Tolerances": "the unit that Deviation unit names",
+    "Other sources": "the unit that Enter as names",
+    "Levers": "the unit of the row's dimension in Variants",
+    "Sweep": "the unit of the row's dimension in Variants",
+}
+"""Unit of the numbers of a sheet whose columns name none, since each row has its own."""
+
 
 def _as_header(cell: RawValue) -> str:
     """Return a header cell as a text, whatever it holds."""
@@ -184,7 +192,7 @@ class _Recogniser:
             "column": column.key,
             "name": column.name,
             "label": column.label,
-            "unit": column.unit or "the unit that Deviation unit names",
+            "unit": column.unit or _OF_THE_ROW.get(column.sheet, "no unit"),
         }
         if unknown:
             heading.doubtful[index] = column.key

@@ -19,9 +19,9 @@ class Ledger:
     """Findings so far, and what is not to be computed because of them; `told` are their codes, sheets and cells.
 
     `rows` are rows of Variants; `materials` and `classes` names whose rows are faulty, `sources` the sheets and rows
-    in which they are; `everything` is set when a fault leaves no row computable. `unit_mistakes` are the cells whose
-    unit is mistaken, by sheet, row and column: an error there gets the value that was meant, and no other warning is
-    recorded there.
+    in which they are; `everything` is set when a fault leaves no row computable; `apart` are sheets whose faults stop
+    none. `unit_mistakes` are the cells whose unit is mistaken, by sheet, row and column: an error there gets the value
+    that was meant, and no other warning is recorded there.
     """
 
     def __init__(self, file: str) -> None:
@@ -33,6 +33,7 @@ class Ledger:
         self.classes: set[str] = set()
         self.sources: dict[Owner, list[tuple[str, int]]] = defaultdict(list)
         self.everything = False
+        self.apart: frozenset[str] = frozenset()
         self.unit_mistakes: dict[tuple[str, int, str], UnitMistake] = {}
         self.table: Table | None = None
 
@@ -44,7 +45,7 @@ class Ledger:
         ledger, blocked = cls(validated.file), validated.blocked
         ledger.rows, ledger.materials, ledger.classes = set(blocked.rows), set(blocked.materials), set(blocked.classes)
         ledger.sources.update({owner: [*places] for owner, places in blocked.sources.items()})
-        ledger.everything = blocked.everything
+        ledger.everything, ledger.apart = blocked.everything, blocked.apart
         ledger.unit_mistakes, ledger.table = dict(validated.unit_mistakes), validated.table
         return ledger
 
@@ -57,6 +58,7 @@ class Ledger:
             classes=frozenset(self.classes),
             sources={owner: tuple(places) for owner, places in self.sources.items()},
             everything=self.everything,
+            apart=self.apart,
         )
 
     def has_errors(self, since: int = 0) -> bool:

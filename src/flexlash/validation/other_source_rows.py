@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from flexlash.schema.columns import columns_of
+from flexlash.schema.decision_columns import source_unit
 from flexlash.schema.decision_rows import OtherSource
 from flexlash.schema.findings import spelled_out
 from flexlash.schema.part_row import PartRow
@@ -15,7 +16,7 @@ from flexlash.schema.units import find_unit
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import Table
 
-__all__ = ["SourceRows", "other_sources_of", "report_unused_limits", "source_unit"]
+__all__ = ["SourceRows", "other_sources_of", "report_unused_limits"]
 
 _COLUMNS = columns_of("Other sources")
 _DEVIATIONS = ("lower_deviation", "upper_deviation")
@@ -34,15 +35,6 @@ class SourceRows:
 
     rows: tuple[OtherSource, ...] = ()
     are_faulty: bool = False
-
-
-def source_unit(enter_as: str | None) -> str:
-    """Return the unit of a source's value and deviations.
-
-    >>> source_unit(None), source_unit("mm radial play")
-    ('arcmin', 'mm')
-    """
-    return (enter_as or _ANGLE).split(" ")[0]
 
 
 def other_sources_of(table: Table, ledger: Ledger) -> SourceRows:

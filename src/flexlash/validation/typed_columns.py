@@ -12,8 +12,9 @@ import polars as pl
 from flexlash.reading.raw import Percentage, RawSheet, RawValue, Unstored
 from flexlash.schema.cell_addresses import CellAddress, column_letters
 from flexlash.schema.columns import DIMENSIONS, Column, columns_of, naming_column
+from flexlash.schema.decision_columns import source_unit
 from flexlash.schema.header_names import BLANK
-from flexlash.schema.units import find_unit
+from flexlash.schema.units import ARCMIN, find_unit
 from flexlash.validation.cell_values import Fault, as_number, as_text, plain_number
 from flexlash.validation.headers import find_headings, plain
 from flexlash.validation.ledger import Ledger
@@ -27,11 +28,17 @@ __all__ = ["entries_of", "longest_text", "surplus_of", "tabulate"]
 _MEANT_BESIDE = "setting"
 """First column of Settings, where the template explains each setting in a column without a header."""
 
+_MILLIMETRE = 1e-3
 _JUDGED_LATER = ("Settings", "value")
 """The cell whose meaning depends on the cell beside it."""
 
-_DEVIATIONS = frozenset({"lower_deviation", "upper_deviation", "mean_shift", "standard_deviation"})
-"""Columns of Tolerances whose numbers are in the deviation unit."""
+_IN_ANOTHER_UNIT = {
+    "Tolerances": frozenset({"lower_deviation", "upper_deviation", "mean_shift", "standard_deviation"}),
+    "Other sources": frozenset({"value_arcmin", "lower_deviation", "upper_deviation"}),
+    "Levers": frozenset({"lowest", "highest", "step"}),
+    "Sweep": frozenset({"from", "to", "step", "second_from", "second_to", "second_step"}),
+}
+"""Columns whose numbers are in the unit that other cells of the row say."""
 
 
 def tabulate(sheet: RawSheet, schema: str, ledger: Ledger) -> Table | None:
@@ -191,15 +198,28 @@ class _Cell:
     @property
     def measure(self) -> Measure:
         """What numbers of the cell stand for, by its header or, in the deviation unit, by the cells beside it."""
-        if self.column.key not in _DEVIATIONS:
-            return Measure.of(self.column, self.table.heading.factors[self.column.key])
-        indices = self.table.heading.columns
-        unit, dimension = (
-            str(self.beside.get(indices.get(key, 0), "")).strip() for key in ("deviation_unit", "dimension")
-        )
+        schema, key = self.column.sheet, self.column.key
+        if key not in _IN_ANOTHER_UNIT.get(schema, ()):
+            return Measure.of(self.column, self.table.heading.factors[key])
+        if schema == "Other sources":
+            is_angle = source_unit(self._text_of("enter_as")) == "arcmin"
+            return Measure(quantity="angle", si=ARCMIN) if is_angle else Measure(quantity="length", si=_MILLIMETRE)
+        if schema in {"Levers", "Sweep"}:
+            size = DIMENSIONS.get(self._text_of("second_dimension" if key.startswith("second") else "dimension"))
+            return Measure(quantity=size.quantity, si=size.si_unit.si) if size else Measure(quantity="", si=1.0)
+        return self._measure_of_deviation
+
+    def _text_of(self, key: str) -> str:
+        """Return what stands in another cell of the row, in small letters."""
+        return str(self.beside.get(self.table.heading.columns.get(key, 0), "")).strip().casefold()
+
+    @property
+    def _measure_of_deviation(self) -> Measure:
+        """What a number of a process or a drawing stands for, by deviation unit and dimension."""
+        unit = str(self.beside.get(self.table.heading.columns.get("deviation_unit", 0), "")).strip()
         if unit == "%":
             return Measure(quantity="ratio", si=0.01)
-        column = DIMENSIONS.get(dimension.casefold())
+        column = DIMENSIONS.get(self._text_of("dimension"))
         if column is None or column.quantity == "ratio":
             return Measure(quantity="", si=1.0, unit_is_open=not unit)
         measured_in = find_unit(unit, column.quantity) if unit else column.si_unit

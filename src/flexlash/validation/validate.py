@@ -71,6 +71,7 @@ def validate(submission: Submission, limits: ReadingLimits | None = None) -> Val
         _check_rows(variants, used, ledger)
         report_unused_classes(tables.get("Tolerances"), variants, used.classes, ledger)
         report_sample_sizes(samples, tables.get("Tolerances"), variants, ledger)
+    ledger.apart = frozenset(sheets[name].name for name in DECISION_SHEETS if name in sheets)
     decided = decided_by(tables, unclear, ledger, own)
     ledger.findings += [found for schema in sheets if schema in own for found in own[schema].findings]
     sound = None if variants is None or ledger.everything else _sound(variants.frame, ledger.rows)

@@ -113,7 +113,8 @@ class Blocked:
     """What is not to be computed because of errors.
 
     `rows` are rows of Variants; `materials` and `classes` plain names whose rows are faulty, `sources` the sheets and
-    rows of their faults; `everything` says that a fault leaves no row computable.
+    rows of their faults; `everything` says that a fault leaves no row computable. `apart` are sheets whose faults stop
+    no row, whatever else does.
     """
 
     rows: frozenset[int] = frozenset()
@@ -121,6 +122,7 @@ class Blocked:
     classes: frozenset[str] = frozenset()
     sources: Mapping[Owner, Sequence[tuple[str, int]]] = field(default_factory=dict)
     everything: bool = False
+    apart: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, kw_only=True)
