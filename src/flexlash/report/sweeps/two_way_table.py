@@ -48,11 +48,6 @@ class _Table:
     second: str
     target: float
 
-    @property
-    def bounds(self) -> VerdictBounds:
-        """Which share of units over the limit each verdict allows."""
-        return VerdictBounds.of(self.target)
-
     @cached_property
     def firsts(self) -> list[float]:
         """The values of the first dimension, one a row."""
