@@ -7,7 +7,7 @@ Data flow one way, and each room is one folder. It imports those before it alone
     validation   cells ─► variants and findings
     mechanics    dimensions ─► wind-up, backlash, stress
     tolerance    limits and a model ─► spread
-    analysis     variants ─► nominal numbers, spread, recommendations, results
+    analysis     variants ─► nominal numbers, spread, results
     feedback     findings ─► marked copy, fixed file; the template
     report       the outcome ─► a workbook
     comparison   two files ─► what differs
@@ -34,16 +34,16 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from flexlash.analysis.outcome import Outcome
-    from flexlash.pipeline import check, mend, run, sweep
+    from flexlash.pipeline import check, levers, mend, run, sweep
 
-__all__ = ["Outcome", "__version__", "check", "mend", "run", "sweep"]
+__all__ = ["Outcome", "__version__", "check", "levers", "mend", "run", "sweep"]
 
 __version__ = "0.9.0"
 
 
 def __getattr__(name: str) -> Any:
     """Load the pipeline only when it is used, so that the command line answers at once."""
-    if name in {"Outcome", "check", "mend", "run", "sweep"}:
+    if name in {"Outcome", "check", "levers", "mend", "run", "sweep"}:
         from flexlash import pipeline
 
         return getattr(pipeline, name)

@@ -12,16 +12,18 @@ from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_result import outcome_of
 from flexlash.mechanics.elasticity import require_libraries
 from flexlash.outputs.delivery import delivery
-from flexlash.outputs.naming import FIXED, REPORTS
+from flexlash.outputs.naming import FIXED, REPORTS, TABLES
 from flexlash.outputs.plan import Output
 from flexlash.reading.read import ReadReport, Source
 from flexlash.reading.refusal import Refusal
 
 if TYPE_CHECKING:
+    import polars as pl
+
     from flexlash.decisions.sweep import Study
     from flexlash.feedback.fixing.fix import Fix
 
-__all__ = ["Options", "Outcome", "check", "computed", "mend", "run", "spread_out", "sweep"]
+__all__ = ["Options", "Outcome", "check", "computed", "levers", "mend", "run", "spread_out", "sweep"]
 
 
 def check(submission: str | Path | Source | ReadReport, **options: Any) -> Outcome:
@@ -79,6 +81,29 @@ def run(
     source = opened(submission, chosen)
     outputs.require()
     return outputs.reported(computed(source, chosen))
+
+
+def levers(
+    submission: str | Path | Source | ReadReport, output: str | Path | Output | None = None, **options: Any
+) -> tuple[Outcome, pl.DataFrame]:
+    """Return the outcome of a submission and the table of single changes of its variants; write that to `output`.
+
+    The table has the columns `LEVERS_TABLE`, variants with a limit in submitted order. The output ends in .csv,
+    .parquet or .json; None writes nothing. Options and errors are those of `run`.
+    """
+    from flexlash.report.levers_output import ROLE, levers_bytes
+    from flexlash.report.report_data import levers_of_variants
+
+    chosen = Options.of("levers()", options)
+    outputs = delivery(submission, chosen, output, TABLES)
+    source = opened(submission, chosen)
+    outputs.require()
+    outcome = computed(source, chosen)
+    table = levers_of_variants(outcome, list(outcome.computed))
+    data = None
+    if outputs.output is not None and outcome.computed:
+        data = levers_bytes(outcome, table, outputs.output.ending)
+    return outputs.written(outcome, data, ROLE), table
 
 
 def sweep(

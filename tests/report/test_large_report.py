@@ -20,6 +20,7 @@ from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.report.extent import MOST_FINDINGS, extent_of
 from flexlash.report.layout.links import FIRST_ROW, finding_list
 from flexlash.report.report_data import ROW, ranked
+from flexlash.report.wording.lever_sentences import CHANGE
 from flexlash.report.workbook import report_bytes
 
 ROWS = LARGE + 1
@@ -251,7 +252,7 @@ def test_the_report_of_the_worst_of_a_million_says_where_all_are(worst_of_many):
         "gears-results.parquet, all findings in gears-findings.parquet."
     )
     assert texts["Which fail"].startswith("4998 of 999,998 variants with a limit are red, 12 of them not settled")
-    for topic in ("Why", "What to tighten", "What to stiffen", "Cylinder-only formula", "Strength"):
+    for topic in ("Why", CHANGE, "Cylinder-only formula", "Strength"):
         assert texts[topic].startswith("Of the 6 worst: ")
     assert "155,000 warnings" in texts["Findings"]
     findings = [row[1:3] for row in book["Findings"].iter_rows(min_row=5, max_row=7, values_only=True)]

@@ -1,1 +1,1 @@
-"""From variants to results: nominal numbers, tolerance spread, recommendations, elasticity check."""
+"""From variants to results: nominal numbers, tolerance spread, elasticity check."""

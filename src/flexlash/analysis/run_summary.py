@@ -154,18 +154,35 @@ def detail_lines(outcome: Outcome, *, ran: bool) -> list[str]:
 
 
 def closing_lines(
-    name: str, words: str, details: Iterable[str], counts: Mapping[str, int], written: Written, *, ran: bool
+    name: str,
+    words: str,
+    details: Iterable[str],
+    counts: Mapping[str, int],
+    written: Written,
+    *,
+    ran: bool,
+    tells_levers: bool = False,
 ) -> Iterator[str]:
-    """Yield the closing lines of a submission of this name, with what was written for it."""
+    """Yield the closing lines of a submission of this name, with what was written for it.
+
+    `tells_levers` says that its changes are told beside; else a report or another command does so.
+    """
     yield f"{name}: {words}."
     yield from details
     if ran and not counts["computed"]:
         yield "No report was written: there is no computed row."
     for path in written.paths:
         yield _written_line(written, path)
+    quoted_name = f'"{name}"' if " " in name else name
     if not ran:
-        quoted_name = f'"{name}"' if " " in name else name
         yield f"Next: {_next_step(counts, quoted_name)}"
+    elif counts["marginal"] + counts["fails"] and not (tells_levers or _has_report(written)):
+        yield f"Which single change meets the limit: flexlash levers {quoted_name}"
+
+
+def _has_report(written: Written) -> bool:
+    """Whether a report was written, which tells the changes itself."""
+    return any(path.suffix.lower() == ".xlsx" and path != written.marked_copy for path in written.paths)
 
 
 def _waiting_words(outcome: Outcome) -> Iterator[str]:

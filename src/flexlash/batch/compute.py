@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from flexlash.analysis.examination import examined
@@ -20,7 +21,7 @@ from flexlash.schema.exit_codes import ExitCode
 if TYPE_CHECKING:
     from flexlash.report.report_data import ReportData
 
-__all__ = ["answer_of", "compute", "copy_of", "file_of", "report_of"]
+__all__ = ["answer_of", "compute", "copy_of", "data_of", "file_of", "report_of"]
 
 _WORST = 3
 """Most variants that an answer names."""
@@ -54,7 +55,8 @@ def _answered(task: Task) -> Answer:
         outcome = outcome_of(examined(task.source, task.options, task.tables))
         return answer_of(outcome, ran=False, copy=copy_of(outcome, task))
     outcome = computed(task.source, task.options, task.tables)
-    return answer_of(outcome, ran=True, file=report_of(outcome, task), copy=copy_of(outcome, task))
+    data = data_of(outcome, task)
+    return answer_of(outcome, ran=True, file=report_of(outcome, task, data), copy=copy_of(outcome, task), data=data)
 
 
 def answer_of(
@@ -64,8 +66,12 @@ def answer_of(
     file: FileBytes | None = None,
     copy: FileBytes | None = None,
     fixes: tuple[Fix, ...] | None = None,
+    data: ReportData | None = None,
 ) -> Answer:
-    """Return an outcome as an answer, with the files that are to be written; `ran` says that it was computed."""
+    """Return an outcome as an answer, with the files that are to be written; `ran` says that it was computed.
+
+    `data` is what a report draws, where there is one: then its cheapest changes are told as well.
+    """
     told = outcome.as_dictionary()
     del told["outputs"]
     return Answer(
@@ -73,7 +79,7 @@ def answer_of(
         told=told,
         finding_lines=tuple(finding_lines(outcome.findings)),
         words=state_words(outcome, ran=ran),
-        details=tuple(detail_lines(outcome, ran=ran)),
+        details=(*detail_lines(outcome, ran=ran), *_changes(data)),
         by_rule=Counter(found.code for found in outcome.findings),
         worst=tuple(map(WorstVariant.of, worst_first(outcome, _WORST))) if ran else (),
         file=file,
@@ -82,6 +88,23 @@ def answer_of(
         refused=outcome.submission.kind == "refused",
         skipped=outcome.skipped,
     )
+
+
+def _changes(data: ReportData | None) -> Iterator[str]:
+    """Yield the cheapest changes that a report tells."""
+    if data is not None:
+        from flexlash.report.wording.lever_sentences import cheapest_lines
+
+        yield from cheapest_lines(data.levers)
+
+
+def data_of(outcome: Outcome, task: Task) -> ReportData | None:
+    """Return what the report draws, if one is wanted."""
+    if task.report != ".xlsx" or not outcome.computed:
+        return None
+    from flexlash.report.report_data import report_data
+
+    return report_data(outcome)
 
 
 def report_of(outcome: Outcome, task: Task, data: ReportData | None = None) -> FileBytes | None:

@@ -34,7 +34,7 @@ def answer_with_page(task: Task) -> Answer:
     data = report_data(outcome) if ran and outcome.computed else None
     mended = _mended(checked, task)
     fixes = mended.fixes if mended else ()
-    answer = answer_of(outcome, ran=ran, file=report_of(outcome, task, data), copy=copy_of(outcome, task))
+    answer = answer_of(outcome, ran=ran, file=report_of(outcome, task, data), copy=copy_of(outcome, task), data=data)
     return replace(
         answer,
         results=file_of(outcome, ".csv") if data else None,

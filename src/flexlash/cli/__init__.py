@@ -9,6 +9,7 @@ import click
 from flexlash import __version__
 from flexlash.cli.check_command import check
 from flexlash.cli.diff_command import diff
+from flexlash.cli.levers_command import levers
 from flexlash.cli.reference_commands import explain, schema
 from flexlash.cli.run_command import run
 from flexlash.cli.serve_command import serve
@@ -41,13 +42,14 @@ def cli() -> None:
       flexlash run variants.xlsx             compute it, write variants-report.xlsx
       flexlash run variants.xlsx -o out.csv  the results table alone
       flexlash run folder -o reports         all submissions of a folder
+      flexlash levers variants.xlsx          which single change meets the limit
       flexlash sweep study.xlsx --vary cylinder_length_mm=100:200:20
       flexlash diff old.xlsx new.xlsx        what changed between two reports or submissions
       flexlash serve --open                  a page to hand templates in
     """  # noqa: D301
 
 
-for _command in (template, check, run, sweep, diff, serve, watch, schema, explain, status, retry):
+for _command in (template, check, run, levers, sweep, diff, serve, watch, schema, explain, status, retry):
     cli.add_command(_command)
 
 

@@ -14,7 +14,7 @@ from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema import argument_checks
 from flexlash.schema.findings import shown
 
-__all__ = ["JSON", "LIMITS", "QUIET", "RECURSIVE", "SUBMISSIONS", "VERBOSE", "option", "planned"]
+__all__ = ["JSON", "LIMITS", "QUIET", "RECURSIVE", "SUBMISSION", "SUBMISSIONS", "VERBOSE", "option", "planned"]
 
 Command = Callable[..., None]
 Planned = TypeVar("Planned")
@@ -49,6 +49,7 @@ class _Named(click.Path):
         return super().convert(value, parameter, context) if value else self.fail("a name is empty", parameter, context)
 
 
+SUBMISSION = click.argument("submission", type=_Named(path_type=Path, readable=False))
 SUBMISSIONS = click.argument("submissions", nargs=-1, required=True, type=_Named(path_type=Path, readable=False))
 JSON = click.option("--json", "as_json", is_flag=True, help="Machine-readable outcome on stdout.")
 QUIET = click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")

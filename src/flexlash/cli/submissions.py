@@ -63,16 +63,24 @@ class Submissions:
     """The submissions of a command: each ends for itself, all of them with the most severe exit code.
 
     `ran` says that they are computed, not merely checked; then findings are messages, not what was asked for. Of
-    several each has one line, unless `verbose`.
+    several each has one line, unless `verbose`. `tells_levers` says that the changes of each are told.
     """
 
     def __init__(
-        self, *, several: bool, as_json: bool, quiet: bool = False, ran: bool = False, verbose: bool = False
+        self,
+        *,
+        several: bool,
+        as_json: bool,
+        quiet: bool = False,
+        ran: bool = False,
+        verbose: bool = False,
+        tells_levers: bool = False,
     ) -> None:
         self.several = several
         self.as_json = as_json
         self.quiet = quiet
         self.ran = ran
+        self.tells_levers = tells_levers
         self.verbose = verbose or not several
         self.codes: list[ExitCode] = []
         self.further_codes: list[ExitCode] = []
@@ -173,7 +181,15 @@ class Submissions:
         for level, text in ended.finding_lines:
             yield _Line(f"{name}{text}", _COLOURS.get(level), self.ran)
         if ended.words and not ended.skipped:
-            closing = closing_lines(ended.name, ended.words, ended.details, ended.counts, ended.written, ran=self.ran)
+            closing = closing_lines(
+                ended.name,
+                ended.words,
+                ended.details,
+                ended.counts,
+                ended.written,
+                ran=self.ran,
+                tells_levers=self.tells_levers,
+            )
             yield from (_Line(text) for text in closing)
         yield from (_Line(f"{name}{text}", None, is_message=True) for text in attempt.remarks)
         yield from (_Line(text) for text in attempt.closing)

@@ -59,6 +59,7 @@ def cheapest(costs: Array, cuts: Cuts, bounds: Sequence[tuple[float, float]]) ->
         return np.asarray(-2 * cuts.slopes * np.exp(2 * logs) / scale[:, None])
 
     weights: Array = costs / costs.max()
+
     def gain(logs: Array) -> float:
         return -float(weights @ logs)
 

@@ -23,6 +23,7 @@ from flexlash.schema.argument_checks import file_path
 __all__ = [
     "FIXED",
     "REPORTS",
+    "TABLES",
     "WORKBOOK",
     "fixed_outputs",
     "marked_outputs",
@@ -31,11 +32,15 @@ __all__ = [
     "report_outputs",
     "summary_outputs",
     "sweep_output",
+    "table_output",
     "template_output",
 ]
 
 REPORTS = (".xlsx", ".csv", ".parquet", ".json")
 """Forms in which results are written, by the ending of their path."""
+
+TABLES = REPORTS[1:]
+"""Those that hold a table alone."""
 
 FIXED = (".xlsx", ".xlsm", ".csv")
 WORKBOOK = (".xlsx", ".xlsm")
@@ -134,6 +139,14 @@ def recreated_outputs(plan: Plan, report: Path, output: Path | None, name: str) 
     if is_file:
         return filled, plan.claim(output, named=True)  # type: ignore[arg-type]
     return filled, plan.claim(folder / f"{stem}{_RECREATED}{REPORT_NAME}.xlsx")
+
+
+def table_output(plan: Plan, output: Path) -> Output:
+    """Return where a table goes that the user names; raise ValueError for an output that cannot be meant."""
+    _require_name(output)
+    if _is_folder(output) or output.suffix.lower() not in TABLES:
+        raise ValueError(f"OUT must end in {', '.join(TABLES)}, not {output.name}.")
+    return plan.claim(output, named=True)
 
 
 def template_output(output: Path | None, old: Path | None, *, force: bool) -> Output:

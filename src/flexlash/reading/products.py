@@ -18,6 +18,7 @@ from pathlib import Path
 from flexlash.reading.raw import Submission
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.columns import VARIANTS
+from flexlash.schema.decision_results import LEVERS_TABLE
 from flexlash.schema.result_columns import FINDINGS, result_columns
 
 __all__ = [
@@ -45,11 +46,11 @@ SUMMARY_NAME = "flexlash-summary"
 
 _MADE = re.compile(rf"(?P<stem>.+)(?P<what>{REPORT_NAME}|{CHECKED_NAME}|{FIXED_NAME}|{SWEEP_NAME})(?: \(\d+\))?")
 _FIXED = "mended"
-_PRODUCTS = {"report": "I508", "summary": "I508", "results": "I527", "checked": "I513"}
+_PRODUCTS = {"report": "I508", "summary": "I508", "results": "I527", "levers": "I527", "checked": "I513"}
 """By its role, the finding that says why a file that flexlash wrote is skipped."""
 
 _RESULTS = tuple(column.key for column in result_columns(cross_check=False, elasticity=False))
-_FINDINGS = tuple(column.key for column in FINDINGS)
+_OTHERS = tuple(tuple(column.key for column in columns) for columns in (FINDINGS, LEVERS_TABLE))
 _SWEPT = frozenset(column.key for column in VARIANTS if column.role == "dimension")
 _LARGEST = 2**27
 """Largest file whose digest is taken to find out whether it is the original of a fixed one [bytes]."""
@@ -61,13 +62,13 @@ def fixed_role(original: bytes) -> str:
 
 
 def results_header(keys: Iterable[object]) -> bool:
-    """Whether a header row is that of Results, behind which further columns may follow, or of findings beside them.
+    """Whether a header row is that of Results, behind which further columns may follow, of findings or of levers.
 
     Of a sweep the swept columns stand behind the variant.
     """
     header = list(keys)
     swept = [key for key in header if key not in _SWEPT]
-    return tuple(header) == _FINDINGS or (tuple(swept[:2]) == _RESULTS[:2] and set(_RESULTS) <= set(header))
+    return tuple(header) in _OTHERS or (tuple(swept[:2]) == _RESULTS[:2] and set(_RESULTS) <= set(header))
 
 
 def is_made_by_name(path: Path) -> bool:

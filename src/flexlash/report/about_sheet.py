@@ -29,7 +29,8 @@ from flexlash.tolerance.sampling import REPLICATES
 __all__ = ["CHECKSUMS", "ERRATA", "LEFT_OUT", "MODEL", "PROOF", "SHEETS", "TABS", "write_about"]
 
 SHEETS = {
-    "Summary": "One page: what was computed, what fails, by how much, why and what to tighten.",
+    "Summary": "One page: what was computed, what fails, by how much, why and what to change.",
+    "Levers": "Which one change brings a failing variant within its limit; how far those of a sound one may go.",
     "Results": "Every number of every variant, in submitted order, to filter and to copy.",
     "Explorer": "One variant picked from a list: the share over any limit, the limit for any share, its curves.",
     "Compare": "Variants side by side: percentile boxes against their limits.",

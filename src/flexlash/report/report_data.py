@@ -1,4 +1,4 @@
-"""What only the report draws: the variants that it shows, their curves and pictures, and what would help the worst."""
+"""What only the report draws: the variants that it shows, their curves, pictures and levers."""
 
 from __future__ import annotations
 
@@ -10,22 +10,38 @@ import polars as pl
 
 from flexlash.analysis.computed import Computed
 from flexlash.analysis.outcome import Outcome
-from flexlash.analysis.recommendations import Recommendation, recommendations_of
 from flexlash.analysis.tolerance_spread import drawn_curves
 from flexlash.analysis.whole_batch import DRAWN, worst_rows
+from flexlash.decisions.levers import levers_of
 from flexlash.decisions.sweep import Study, sweeps_of
+from flexlash.schema.variant import Settings
 from flexlash.tolerance.distribution_curves import Curve
 
 if TYPE_CHECKING:
     from flexlash.mechanics.elasticity.twist import ElasticityCheck
 
-__all__ = ["DRAWN", "PICTURED", "ROW", "Drawn", "ReportData", "drawn_variants", "ranked", "report_data"]
+__all__ = [
+    "DRAWN",
+    "PICTURED",
+    "ROW",
+    "Drawn",
+    "ReportData",
+    "drawn_variants",
+    "levers_of_variants",
+    "ranked",
+    "report_data",
+]
 
 ROW = "row"
 """The column of ranked Results that holds the row number of the submission."""
 
 PICTURED = 6
 """Most variants of which the report shows the half-section."""
+
+
+def no_levers() -> pl.DataFrame:
+    """Return the table of levers without a row."""
+    return levers_of({}, Settings(), {})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,23 +58,24 @@ class ReportData:
     """What the report draws beside an outcome.
 
     `drawn` are the variants that it shows, worst first; `pictured` the elasticity checks of the worst, with their
-    stress fields, by name; `recommendations` what would bring the worst failing variants within their limit; `studies`
-    the sweeps that were asked for.
+    stress fields, by name; `levers` the table of single changes of those drawn that have a limit; `studies` the sweeps
+    that were asked for.
     """
 
     drawn: Sequence[Drawn]
     pictured: Mapping[str, ElasticityCheck] = field(default_factory=dict)
-    recommendations: Sequence[Recommendation] = ()
+    levers: pl.DataFrame = field(default_factory=no_levers)
     studies: Sequence[Study] = ()
 
 
 def report_data(outcome: Outcome) -> ReportData:
     """Return what the report draws beside an outcome."""
     worst = ranked(outcome)
+    drawn = _drawn(outcome, worst)
     return ReportData(
-        drawn=_drawn(outcome, worst),
+        drawn=drawn,
         pictured=_pictured(outcome, worst),
-        recommendations=_recommendations(outcome, worst),
+        levers=levers_of_variants(outcome, [one.row[ROW] for one in drawn]),
         studies=sweeps_of(outcome),
     )
 
@@ -97,10 +114,9 @@ def _pictured(outcome: Outcome, worst: pl.DataFrame) -> dict[str, ElasticityChec
     return pictured([outcome.computed[row] for row in checked[ROW]])
 
 
-def _recommendations(outcome: Outcome, worst: pl.DataFrame) -> list[Recommendation]:
-    """Return what helps the worst failing variant, and the worst whose median is within its limit."""
-    over, median, limit = (worst[key] for key in ("probability_over_limit", "p50_arcmin", "backlash_limit_arcmin"))
-    failing = over.is_not_null() & (over > outcome.settings.verdict_bounds.meets)
-    hopeful = failing & (median <= limit) & worst["main_contributor"].is_not_null()
-    rows = [*worst.filter(failing)[ROW].head(1), *worst.filter(hopeful)[ROW].head(1)]
-    return recommendations_of({row: outcome.computed[row] for row in rows}, outcome.settings)
+def levers_of_variants(outcome: Outcome, rows: Sequence[int]) -> pl.DataFrame:
+    """Return the table of single changes of some variants, by row number in this order: of those that have a limit."""
+    if outcome.validated is None:
+        return no_levers()
+    computed = {row: outcome.computed[row] for row in rows}
+    return levers_of(computed, outcome.settings, outcome.validated.levers, outcome.options)

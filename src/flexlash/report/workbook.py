@@ -22,6 +22,7 @@ from flexlash.report.explorer.explorer_sheet import write_explorer
 from flexlash.report.extent import extent_of
 from flexlash.report.findings_sheet import write_findings
 from flexlash.report.layout.styles import Book
+from flexlash.report.levers_sheet import write_levers
 from flexlash.report.report_data import ReportData, report_data
 from flexlash.report.results_sheet import write_results
 from flexlash.report.samples_sheet import write_samples
@@ -58,6 +59,7 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     curves = stored_curves(drawn)
     extent = extent_of(outcome)
     write_summary(book, outcome, data, curves)
+    write_levers(book, outcome, data)
     write_results(book, outcome, drawn)
     write_explorer(book, curves, extent, outcome.settings.verdict_bounds)
     compared = compared_variants(drawn)

@@ -96,6 +96,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
         "border_color": "#8EA9C1",
     },
     "link": {"font_color": PALETTE["blue"], "underline": 1},
+    "indented link": {"font_color": PALETTE["blue"], "underline": 1, "indent": 1},
     "figure": {"align": "right"},
     "input": {"num_format": "@", "bg_color": "#FFF5D6", "border": 1, "border_color": PALETTE["orange"], "bold": True},
     "base": {"bg_color": "#FFF5D6", "bottom": 1, "bottom_color": PALETTE["orange"]},
@@ -116,6 +117,9 @@ _FORMATS: dict[str, dict[str, Any]] = {
     "ok": {"bg_color": "#C6E5D8"},
 }
 _FORMATS |= {f"big {level}": _FORMATS["big"] | _FORMATS[level] for level in ("error", "warning", "ok")}
+_CELLS = ("text", "indented", "indented wrap")
+_FORMATS |= {f"{name} ok": _FORMATS[name] | _FORMATS["ok"] for name in _CELLS}
+_FORMATS |= {f"{name} grey": _FORMATS[name] | {"font_color": "#6B6B6B"} for name in _CELLS}
 
 
 _MOST_DECIMALS = 8

@@ -14,8 +14,15 @@ def number_text(value: float, number: str) -> str:
     ('1.23%', '12,345.7', '1.2500E-03')
     >>> number_text(50.72, "#,##0.0##"), number_text(3.0, "#,##0.0##"), number_text(5, "count")
     ('50.72', '3.0', '5')
+    >>> number_text(-16.72, "+0.0;-0.0;0.0"), number_text(0.0, "+0.0;-0.0;0.0")
+    ('-16.7', '0.0')
     """
     code = number_code(number)
+    positive, *others = code.split(";")
+    if others:
+        chosen = [positive, *others, positive][0 if value > 0 else 1 if value < 0 else 2]
+        sign = chosen[:1] if chosen[:1] in {"+", "-"} else ""
+        return f"{sign}{number_text(abs(value), chosen.removeprefix(sign))}"
     if code == "General":
         return f"{value:.10g}"
     body, percent = code.removesuffix("%"), "%" if code.endswith("%") else ""

@@ -11,6 +11,7 @@ from flexlash.report.explorer.curves_sheet import CAUSES, SEGMENTS
 from flexlash.report.layout.result_formats import number_codes
 from flexlash.report.page.cards import finding_facts
 from flexlash.report.page.excel_texts import number_text
+from flexlash.report.page.lever_cells import lever_table
 from flexlash.report.page.shape import (
     Density,
     Number,
@@ -22,8 +23,8 @@ from flexlash.report.page.shape import (
 )
 from flexlash.report.page.variants import verdict_of
 from flexlash.report.report_data import ROW, Drawn
-from flexlash.report.wording.advice import stiffening, tightening_of
 from flexlash.report.wording.drive_sentences import DRIVE, whole_drive_of
+from flexlash.report.wording.lever_sentences import CHANGE, LENGTH, RELAX, lengths, relaxing, what_to_change
 from flexlash.report.wording.lot_sentences import LOTS, lots_of
 from flexlash.report.wording.measured_parts import PARTS, left_open_by
 from flexlash.report.wording.sentences import cause_of
@@ -94,6 +95,7 @@ def variant_pages(
             shares=list(_shares(variant)),
             segments=list(_segments(variant)),
             limits=list(_limits(variant)),
+            levers=lever_table(facts.levers, row["variant"]),
             numbers=own,
             findings=[finding_facts(one) for one in found[:_FINDINGS]],
             more_findings=max(0, len(found) - _FINDINGS),
@@ -109,13 +111,10 @@ def _sentences(facts: SummaryFacts, variant: Drawn) -> Iterator[Sentence]:
     if lots := " ".join(lots_of(facts, row)):
         yield Sentence(topic=LOTS, text=lots, kind="verdict")
     yield Sentence(topic="Why", text=" ".join(cause_of(facts, row)), kind="cause")
-    if facts.bounds.misses(row["probability_over_limit"]):
-        its_own = [one for one in facts.recommendations if one.variant == row["variant"]]
-        tighter = " ".join(tightening_of(facts, row))
-        stiffer = " ".join(stiffening(replace(facts, recommendations=its_own)))
-        for topic, text in (("What to tighten", tighter), ("What to stiffen", stiffer)):
-            if text:
-                yield Sentence(topic=topic, text=text, kind="advice")
+    its_own = replace(facts, levers=facts.levers.filter(pl.col("variant") == row["variant"]))
+    for topic, advice in ((CHANGE, what_to_change), (RELAX, relaxing), (LENGTH, lengths)):
+        if text := " ".join(advice(its_own)):
+            yield Sentence(topic=topic, text=text, kind="advice")
     if drive := " ".join(whole_drive_of(facts, row)):
         yield Sentence(topic=DRIVE, text=drive, kind="verdict")
     for topic, told in ((BENDING, bending_of(row)), (TWO_LOBES, two_lobes_of(row))):

@@ -21,6 +21,7 @@ from flexlash.report.page.tiles import finding_tiles, verdict_tiles
 from flexlash.report.page.variants import chart_of, lost_variants, shown_names, table_rows
 from flexlash.report.report_data import ReportData
 from flexlash.report.wording.drive_sentences import DRIVE
+from flexlash.report.wording.lever_sentences import LEVER_TOPICS
 from flexlash.report.wording.lot_sentences import LOTS
 from flexlash.report.wording.measured_parts import PARTS
 from flexlash.report.wording.sentences import sentences
@@ -43,8 +44,7 @@ _KINDS: Mapping[str, str] = {
     LOTS: "verdict",
     DRIVE: "verdict",
     "Why": "cause",
-    "What to tighten": "advice",
-    "What to stiffen": "advice",
+    **dict.fromkeys(LEVER_TOPICS, "advice"),
     "Findings": "findings",
 }
 """What the topics of the Summary are about; any other is a note."""
@@ -140,13 +140,13 @@ def _refused(outcome: Outcome) -> Refused | None:
 
 def _add_variants(facts: PageFacts, outcome: Outcome, data: ReportData) -> None:
     """Add what the computed variants show."""
-    summary = summary_facts(outcome, data.recommendations)
+    summary = summary_facts(outcome, data.levers)
     rows = summary.ranked.head(TABLED).to_dicts()
     names = shown_names(rows)
     drawn = data.drawn[:PAGED]
     facts["sentences"] = [
         Sentence(topic=topic, text=text, kind=_KINDS.get(topic, "note"))  # type: ignore[typeddict-item]
-        for topic, text in sentences(outcome, data.recommendations)
+        for topic, text in sentences(outcome, data.levers)
     ]
     facts["chart"] = chart_of(summary, rows, names, len(drawn))
     facts["table"] = list(table_rows(summary, rows, names, len(drawn)))

@@ -7,7 +7,7 @@ there are in all. The facts of a check (`ran` is false) have findings alone: the
 
 from __future__ import annotations
 
-from typing import Literal, TypedDict
+from typing import Literal, NotRequired, TypedDict
 
 __all__ = [
     "Axis",
@@ -18,6 +18,8 @@ __all__ = [
     "FindingFacts",
     "Grid",
     "GridRow",
+    "LeverCells",
+    "LeverTable",
     "Lost",
     "Number",
     "PageFacts",
@@ -155,6 +157,8 @@ class TableRow(TypedDict):
 
     `verdict` is `fails`, `marginal`, `meets` or empty without a limit, `settled` whether more points may not change it,
     `light` the Summary's word for it. `page` is the place of its own page among `variants`, from 0, null without one.
+    `cheapest` is the cheapest single change of one that misses its limit, a dash where there is none, else empty; facts
+    of earlier versions have none.
     """
 
     variant: str
@@ -172,6 +176,7 @@ class TableRow(TypedDict):
     over_limit: str
     main_cause: str
     page: int | None
+    cheapest: NotRequired[str]
 
 
 class Lost(TypedDict):
@@ -223,6 +228,27 @@ class UsedLimits(TypedDict):
     distribution: str
 
 
+class LeverCells(TypedDict):
+    """A change: its cells as the sheet Levers shows them, whether it can do it, whether it is the cheapest that can."""
+
+    cells: list[str]
+    possible: bool
+    cheapest: bool
+
+
+class LeverTable(TypedDict):
+    """The single changes of a variant: those that make it `meet` its limit, or how far each may go: `relax`.
+
+    `are_numbers` says of each column whether it holds numbers, `more` how many changes are left out.
+    """
+
+    direction: Literal["meet", "relax"]
+    headings: list[str]
+    are_numbers: list[bool]
+    rows: list[LeverCells]
+    more: int
+
+
 class Number(TypedDict):
     """A number of Results as the report shows it, with what it means."""
 
@@ -234,7 +260,10 @@ class Number(TypedDict):
 
 
 class VariantPage(TypedDict):
-    """A variant's own page: sentences, distribution, what causes the spread, where the wind-up sits, its numbers."""
+    """A variant's own page: sentences, distribution, what causes the spread, where the wind-up sits, its numbers.
+
+    `levers` is null without a limit; facts of earlier versions have none.
+    """
 
     variant: str
     row: int
@@ -247,6 +276,7 @@ class VariantPage(TypedDict):
     shares: list[Share]
     segments: list[Segment]
     limits: list[UsedLimits]
+    levers: NotRequired[LeverTable | None]
     numbers: list[Number]
     findings: list[FindingFacts]
     more_findings: int

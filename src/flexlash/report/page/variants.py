@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import polars as pl
 
 from flexlash.analysis.outcome import Outcome
+from flexlash.report.page.lever_cells import cheapest_changes
 from flexlash.report.page.shape import Axis, Chart, ChartVariant, Lost, TableRow
 from flexlash.report.report_data import ROW
 from flexlash.report.summary.summary_chart import CHARTED, chart_axis, chart_title
@@ -81,6 +82,7 @@ def verdict_of(row: Row, bounds: VerdictBounds) -> str:
 
 def table_rows(facts: SummaryFacts, rows: Sequence[Row], names: Sequence[str], paged: int) -> Iterator[TableRow]:
     """Yield rows of the table, with the digits of the Summary."""
+    cheapest = cheapest_changes(facts.levers)
     for place, (row, name) in enumerate(zip(rows, names, strict=True)):
         limit = row["backlash_limit_arcmin"]
         yield TableRow(
@@ -99,6 +101,7 @@ def table_rows(facts: SummaryFacts, rows: Sequence[Row], names: Sequence[str], p
             over_limit="" if limit is None else share_words(row),
             main_cause=main_cause(row),
             page=_page(place, paged),
+            cheapest=cheapest.get(row["variant"], ""),
         )
 
 

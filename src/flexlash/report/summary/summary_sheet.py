@@ -14,9 +14,12 @@ from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.links import result_rows, write_link
 from flexlash.report.layout.styles import Book, decimals_of
 from flexlash.report.layout.wrapping import LINE_HEIGHT, fitted, lines_of, merged_width
+from flexlash.report.levers_sheet import LEVERS, lever_places
 from flexlash.report.report_data import Drawn, ReportData
 from flexlash.report.summary.summary_chart import chart_words, variants_chart
 from flexlash.report.wording.distances import distance, distance_format
+from flexlash.report.wording.lever_sentences import CHANGE, LENGTH, RELAX
+from flexlash.report.wording.lever_words import shown_levers
 from flexlash.report.wording.sentences import FINDINGS, sentences
 from flexlash.report.wording.summary_facts import labels_of, main_cause
 from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, UNSETTLED, light, verdict_counts, verdict_rules
@@ -61,8 +64,9 @@ def write_summary(book: Book, outcome: Outcome, data: ReportData, curves: Stored
     page = _Page(book, outcome)
     page.heading()
     page.key_figures()
-    for topic, text in sentences(outcome, data.recommendations):
-        page.sentence(topic, text)
+    targets = _targets(data)
+    for topic, text in sentences(outcome, data.levers):
+        page.sentence(topic, text, targets.get(topic, ""))
     if data.drawn:
         page.table(data.drawn)
         page.chart(data.drawn, curves)
@@ -137,10 +141,10 @@ class _Page:
         self._end_row(lines * LINE_HEIGHT)
         self._end_row(8)
 
-    def sentence(self, topic: str, text: str) -> None:
-        """Write the answer to a question beside it, wrapped; the topic of the findings leads to them."""
-        if topic == FINDINGS:
-            write_link(self.sheet, self.row, 0, f"{FINDINGS}!A1", topic, style=self.book.format("topic link"))
+    def sentence(self, topic: str, text: str, target: str) -> None:
+        """Write the answer to a question beside it, wrapped; a topic with a target leads there."""
+        if target:
+            write_link(self.sheet, self.row, 0, target, topic, style=self.book.format("topic link"))
         else:
             self.sheet.write_string(self.row, 0, topic, self.book.format("topic"))
         self._across(1, len(_COLUMNS) - 1, text, self.book.format("said"))
@@ -234,6 +238,17 @@ class _Page:
         self._end_row()
         self.sheet.write_string(self.row, 0, _SIGNED, self.book.format("text"))
         self._end_row()
+
+
+def _targets(data: ReportData) -> dict[str, str]:
+    """Return the cells to which topics lead: the sheet of the findings, and the changes that a sentence tells first."""
+    levers = shown_levers(data.levers)
+    places, first = lever_places(levers), {CHANGE: "meet", RELAX: "relax", LENGTH: "relax"}
+    targets = {FINDINGS: f"{FINDINGS}!A1"}
+    for topic, direction in first.items():
+        for variant in levers.filter(levers["direction"] == direction)["variant"].head(1):
+            targets[topic] = f"{LEVERS}!A{places[variant] + 1}"
+    return targets
 
 
 def _verdict_figure(verdict: str, rule: str, counts: Counter[str]) -> tuple[str, str, str]:

@@ -9,12 +9,19 @@ from collections.abc import Iterator, Sequence
 import polars as pl
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.analysis.recommendations import Recommendation
 from flexlash.analysis.run_summary import counted, grouped, listed, points_range, spread_notes
 from flexlash.report.layout.links import rule_counts
 from flexlash.report.report_data import ROW
-from flexlash.report.wording.advice import stiffening, tightening
 from flexlash.report.wording.drive_sentences import DRIVE, whole_drive
+from flexlash.report.wording.lever_sentences import (
+    CHANGE,
+    LENGTH,
+    LEVER_TOPICS,
+    RELAX,
+    lengths,
+    relaxing,
+    what_to_change,
+)
 from flexlash.report.wording.lot_sentences import LOTS, lots_and_parts
 from flexlash.report.wording.measured_parts import PARTS, measured_parts
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows, rough, summary_facts
@@ -44,8 +51,7 @@ _WHOLE = 100
 _OF_THOSE_DRAWN = (
     PARTS,
     "Why",
-    "What to tighten",
-    "What to stiffen",
+    *LEVER_TOPICS,
     DRIVE,
     "Cylinder-only formula",
     "Strength",
@@ -57,12 +63,12 @@ _LEAST_CAUSE = 0.01
 """Share of the variance below which a dimension is not named."""
 
 
-def sentences(outcome: Outcome, recommendations: Sequence[Recommendation]) -> Iterator[tuple[str, str]]:
+def sentences(outcome: Outcome, levers: pl.DataFrame) -> Iterator[tuple[str, str]]:
     """Yield topic and sentences: what a design review wants to know, rounded by the standard error.
 
-    `recommendations` are what would help the worst failing variants.
+    `levers` are the single changes of the variants that the report shows.
     """
-    facts = summary_facts(outcome, recommendations)
+    facts = summary_facts(outcome, levers)
     topics = {
         "Computed": _computed(facts),
         "Which fail": failing(facts),
@@ -70,8 +76,9 @@ def sentences(outcome: Outcome, recommendations: Sequence[Recommendation]) -> It
         PARTS: measured_parts(facts),
         LOTS: lots_and_parts(facts),
         "Why": _causes(facts),
-        "What to tighten": tightening(facts),
-        "What to stiffen": stiffening(facts),
+        CHANGE: what_to_change(facts),
+        RELAX: relaxing(facts),
+        LENGTH: lengths(facts),
         DRIVE: whole_drive(facts),
         "Cylinder-only formula": _classical(facts),
         "Strength": _strength(facts),

@@ -12,12 +12,12 @@ import polars as pl
 
 from flexlash.analysis.computed import Computed
 from flexlash.analysis.outcome import Outcome
-from flexlash.analysis.recommendations import Recommendation
 from flexlash.analysis.run_summary import listed, quoted
 from flexlash.analysis.whole_batch import is_straddled, verdict_place
 from flexlash.report.extent import Extent, extent_of
 from flexlash.report.report_data import DRAWN, ROW, ranked
 from flexlash.report.wording.labels import distinct_labels
+from flexlash.report.wording.lever_words import shown_levers
 from flexlash.report.wording.verdict import LIGHTS
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import shown
@@ -42,11 +42,12 @@ class SummaryFacts:
     """An outcome with what several sentences draw on.
 
     `ranked` are the Results of its variants, worst first, each with its verdict and whether that is straddled; `labels`
-    are short names by name; `extent` is how many variants there are and how many of them the report draws.
+    are short names by name; `extent` is how many variants there are and how many of them the report draws; `levers` are
+    the changes of those, as `shown_levers` orders them.
     """
 
     outcome: Outcome
-    recommendations: Sequence[Recommendation]
+    levers: pl.DataFrame
     ranked: pl.DataFrame
     labels: dict[str, str]
     extent: Extent
@@ -84,15 +85,15 @@ class SummaryFacts:
         return listed([self.named(name) for name in names[:NAMED]], NAMED, len(names))
 
 
-def summary_facts(outcome: Outcome, recommendations: Sequence[Recommendation]) -> SummaryFacts:
-    """Return what the sentences on an outcome draw on."""
+def summary_facts(outcome: Outcome, levers: pl.DataFrame) -> SummaryFacts:
+    """Return what the sentences on an outcome draw on; `levers` are those of the variants that its report shows."""
     colours = {place: LIGHTS[verdict] for place, verdict in enumerate(VERDICTS)}
     bounds = outcome.settings.verdict_bounds
     verdict = verdict_place(bounds).replace_strict(colours, return_dtype=pl.String)
     rows = ranked(outcome).with_columns(verdict=verdict, straddled=is_straddled(bounds))
     labels = labels_of(outcome, rows["variant"].head(DRAWN).to_list())
     return SummaryFacts(
-        outcome=outcome, recommendations=recommendations, ranked=rows, labels=labels, extent=extent_of(outcome)
+        outcome=outcome, levers=shown_levers(levers), ranked=rows, labels=labels, extent=extent_of(outcome)
     )
 
 
