@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -22,9 +23,9 @@ from flexlash.schema.arrays import Array
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.units import as_entered
 from flexlash.schema.variant_arrays import Indices
-from flexlash.tolerance.row_probabilities import probabilities_over
+from flexlash.tolerance.row_probabilities import OverLimits, probabilities_over
 
-__all__ = ["LimitSearch", "Solution", "level_of"]
+__all__ = ["LimitSearch", "Solution", "Tail", "tail_of"]
 
 Bools = npt.NDArray[np.bool_]
 Rounded = Callable[[float, bool], float]
@@ -32,8 +33,12 @@ Rounded = Callable[[float, bool], float]
 
 _RAREST = 1e-15
 _ROUNDS, _HALVINGS, _MORE_STEPS = 5, 36, 3
-_NEAR, _NEARER = 0.01, 1e-3
-"""How near the target a first point must be, in levels of Φ, with and without a slope from two points."""
+_NEAR, _NEARER, _NEAREST = 5e-4, 2e-5, 1e-5
+"""How near the target a first point must be, in levels of Φ, with and without a slope from two points, and where the
+share is known exactly: what is left is a small part of that."""
+
+_INTERVAL = 2.0
+"""Part of its interval within which a first point serves in any case."""
 
 _APART = 0.05
 """How far apart two points must be, in levels of Φ, to tell a slope."""
@@ -45,16 +50,30 @@ _SAME = 1e-9
 """Part of a value by which it no longer moves."""
 
 
-def level_of(presents: Sequence[Present], unchanged: ChangedAlike, wanted: float) -> tuple[Array, Array]:
-    """Return the score (variants,) at a wanted level of Φ, and how it rises with levels, as they are now."""
+class Tail(NamedTuple):
+    """How scores follow levels z of Φ about the wanted one as they are now: score + rise (z − z₀) + bend (z − z₀)²."""
+
+    score: Array
+    rise: Array
+    bend: Array
+
+
+def tail_of(presents: Sequence[Present], unchanged: ChangedAlike, wanted: float) -> Tail:
+    """Return the scores (variants,) about a wanted level of Φ, by the parabola through the three nearest quantiles."""
     moments = Moments(*(one[:, 0] for one in unchanged.moments(unchanged.present[:, None])))
     known = np.array(sorted(presents[0].quantiles))
-    outputs = np.array([[one.quantiles[probability] for probability in known.tolist()] for one in presents])
-    scores, levels = (outputs - moments.mean[:, None]) / moments.sd[:, None], ndtri(known)
-    above = int(np.clip(np.searchsorted(levels, wanted), 1, len(levels) - 1))
-    rise = (scores[:, above] - scores[:, above - 1]) / (levels[above] - levels[above - 1])
-    level = scores[:, above] + rise * (wanted - levels[above]) - moments.bend(wanted)
-    return level, np.where(rise > 0, rise, 1.0)
+    levels = ndtri(known)
+    middle = int(np.clip(np.argmin(np.abs(levels - wanted)), 1, len(levels) - 2))
+    near = slice(middle - 1, middle + 2)
+    outputs = np.array([[one.quantiles[probability] for probability in known[near].tolist()] for one in presents])
+    scores = ((outputs - moments.mean[:, None]) / moments.sd[:, None]).T
+    first, second, third = levels[near]
+    slopes = np.diff(scores, axis=0) / np.diff(levels[near])[:, None]
+    bend = (slopes[1] - slopes[0]) / (third - first)
+    score = scores[1] + (wanted - second) * (slopes[1] + (wanted - third) * bend)
+    rise = slopes[1] + (2 * wanted - second - third) * bend
+    scatters = rise > 0
+    return Tail(score - moments.bend(wanted), np.where(scatters, rise, 1.0), np.where(scatters, bend, 0.0))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,20 +94,18 @@ class Solution:
 class LimitSearch:
     """The search for one change of some variants alike; the engine says which share is over the limit.
 
-    `level` and `rise` (variants,) are as of `level_of`.
+    `tail` is as of `tail_of`.
     """
 
-    def __init__(
-        self, alike: ChangedAlike, presents: Sequence[Present], terms: Terms, level: Array, rise: Array
-    ) -> None:
+    def __init__(self, alike: ChangedAlike, presents: Sequence[Present], terms: Terms, tail: Tail) -> None:
         self._alike = alike
         self._presents = presents
         self._terms = terms
-        self._rise = rise
+        self._tail = tail
         self._unit = DIMENSIONS[alike.change.dimension].si_unit.si
         self._wanted = np.array([present.direction(terms.target) == "meet" for present in presents])
         self._target = terms.level
-        self._crossing = alike.crossing(level, wanted=self._wanted)
+        self._crossing = alike.crossing(tail.score, wanted=self._wanted)
 
     def solution(self, rounded: Rounded) -> Solution:
         """Return what is found, with drawing values as `rounded` returns them."""
@@ -114,12 +131,16 @@ class LimitSearch:
 
     def _shares(self, rows: Indices, values: Array, *, by_lines: bool = True) -> Array:
         """Return the shares over the limit of some variants with values [SI]; NaN where these make no part."""
-        over = np.full(len(rows), np.nan)
+        return self._spread(rows, values, by_lines=by_lines).probability
+
+    def _spread(self, rows: Indices, values: Array, *, by_lines: bool = True) -> OverLimits:
+        """Return the same with their intervals."""
+        over = OverLimits(*np.full((3, len(rows)), np.nan))
         plan, own = run_plan(self._terms, by_lines=by_lines), self._alike.take(rows)
         fine = own.makes_a_part(values[:, None])[:, 0]
         if plan.method == "line":
             over = own.over_limit(values, plan)
-        left = np.flatnonzero(fine & np.isnan(over))
+        left = np.flatnonzero(fine & np.isnan(over.probability))
         spread, places = [], []
         for place in left.tolist():
             present = self._presents[rows[place]]
@@ -130,7 +151,9 @@ class LimitSearch:
             if not any(problem.kind in {"impossible", "untabulated"} for problem in problems):
                 spread.append(toleranced(changed, limits, present.limit, self._terms))
                 places.append(place)
-        over[places] = [one.probability for one in probabilities_over(spread, plan)]
+        for place, one in zip(places, probabilities_over(spread, plan), strict=True):
+            for every, number in zip(over, one, strict=True):
+                every[place] = number
         return over
 
     def _levels(self, over: Array) -> Array:
@@ -143,17 +166,22 @@ class LimitSearch:
         for _ in range(_ROUNDS):
             if not len(rows):
                 break
-            own, first, rise = self._alike.take(rows), values[rows], self._rise[rows]
-            level, score = self._levels(self._shares(rows, first)), own.score(first)
+            own, first = self._alike.take(rows), values[rows]
+            rise, bend = self._tail.rise[rows], self._tail.bend[rows]
+            level, highest, lowest = (self._levels(one) for one in self._spread(rows, first))
+            score = own.score(first)
             drawing = self._drawn(rows, own.value_at(first, score + (self._target - level) * rise), rounded)
             over = self._shares(rows, drawing * self._unit, by_lines=False)
             with np.errstate(all="ignore"):
-                apart = self._levels(over) - level
-                slope = (own.score(drawing * self._unit) - score) / apart
+                drawn = self._levels(over)
+                apart = drawn - level
+                slope = (own.score(drawing * self._unit) - score) / apart + bend * (self._target - drawn)
                 told = (abs(apart) > _APART) & (slope > _SLOPES[0] * rise) & (slope < _SLOPES[1] * rise)
             told &= (self._terms.plan.method == "line") & (over > _RAREST) & (over < 1 - _RAREST)
             value = own.value_at(first, score + (self._target - level) * np.where(told, slope, rise))
-            near = np.abs(self._target - level) <= np.where(told, _NEAR, _NEARER)
+            near = np.abs(self._target - level) <= np.clip(
+                (highest - lowest) / _INTERVAL, _NEAREST, np.where(told, _NEAR, _NEARER)
+            )
             near |= np.abs(value - first) <= _SAME * np.abs(first)
             settled = near & (self._drawn(rows, value, rounded) == drawing)
             done = rows[settled]

@@ -13,7 +13,7 @@ import numpy as np
 from flexlash.decisions.changes import Change, changes_of, with_sizes
 from flexlash.decisions.drawing_steps import drawing_step, on_drawing, relative_cost
 from flexlash.decisions.lever import Lever, Present, Terms
-from flexlash.decisions.limit_search import LimitSearch, Solution, level_of
+from flexlash.decisions.limit_search import LimitSearch, Solution, tail_of
 from flexlash.decisions.predicted_scores import ChangedAlike
 from flexlash.decisions.why_not import always_kept, never_met, no_step, unmoved
 from flexlash.schema.columns import DIMENSIONS
@@ -29,12 +29,12 @@ def nominal_levers(presents: Sequence[Present], terms: Terms) -> Iterator[tuple[
     for indices in presents_alike(presents):
         group = [presents[index] for index in indices]
         unchanged = changed_alike(group, Change(dimension="wall_thickness"), terms)
-        level, rise = level_of(group, unchanged, terms.level)
+        tail = tail_of(group, unchanged, terms.level)
         for change in changes_of(group[0].variant, terms.may_change):
             alike = changed_alike(group, change, terms)
             step = drawing_step(change.dimension, terms.rows.get(change.dimension))
             rounded = partial(_rounded, step=step)
-            solution = LimitSearch(alike, group, terms, level, rise).solution(rounded)
+            solution = LimitSearch(alike, group, terms, tail).solution(rounded)
             for place, index in enumerate(indices):
                 lever = _lever(group[place], alike, solution, place, terms)
                 yield index, lever, _as_drawn(group[place].variant, change, lever)

@@ -24,7 +24,7 @@ from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.variant import ToleranceRow
 from flexlash.schema.variant_arrays import Indices
 from flexlash.tolerance.limit_arrays import LimitArrays, beyond_doubt, limits_alike
-from flexlash.tolerance.row_probabilities import SCALED_SHAPES, probabilities_alike
+from flexlash.tolerance.row_probabilities import SCALED_SHAPES, OverLimits, probabilities_alike
 from flexlash.tolerance.sampling import SamplingPlan
 
 __all__ = ["ChangedAlike", "Crossing", "Moments"]
@@ -143,8 +143,8 @@ class ChangedAlike:
             sure = self.makes_a_part(values[:, None])[:, 0] & beyond_doubt(self.kind, flat, ends)
         return flat, ends, sure
 
-    def over_limit(self, values: Array, plan: SamplingPlan) -> Array:
-        """Return the shares over the limit (variants,) at values (variants,) by lines.
+    def over_limit(self, values: Array, plan: SamplingPlan) -> OverLimits:
+        """Return the shares over the limit at values (variants,) by lines.
 
         NaN where limits may reach what makes no part, or cut their tails, or where lines do not serve.
         """
@@ -152,10 +152,10 @@ class ChangedAlike:
         shapes = {row.dimension: row.distribution for row in self.rows}
         scatters = {name: one.low < one.high for name, one in limits.items()}
         known = all(shapes[name] in SCALED_SHAPES for name in limits)
-        over, rows = np.full(values.shape, np.nan), np.flatnonzero(sure)
+        over, rows = OverLimits(*np.full((3, len(values)), np.nan)), np.flatnonzero(sure)
         if known and len(rows) and all(one[rows].all() or not one[rows].any() for one in scatters.values()):
             varied = {name for name, one in scatters.items() if one[rows].all()}
-            over[rows] = probabilities_alike(
+            told = probabilities_alike(
                 BACKLASH_OF[self.kind],
                 {name: size[rows] for name, size in sizes.items()},
                 {name: (LimitArrays(*(end[rows] for end in one)), shapes[name]) for name, one in limits.items()},
@@ -163,6 +163,8 @@ class ChangedAlike:
                 plan=plan,
                 ties=[(*pair, tie) for pair, tie in self.ties.items() if tie and varied.issuperset(pair)],
             )
+            for every, some in zip(over, told, strict=True):
+                every[rows] = some
         return over
 
     def makes_a_part(self, values: Array) -> Bools:

@@ -17,7 +17,7 @@ from flexlash.tolerance.limit_arrays import LimitArrays
 from flexlash.tolerance.row_batches import RowBatch, TolerancedRow, batches_alike
 from flexlash.tolerance.sampling import SamplingPlan
 
-__all__ = ["SCALED_SHAPES", "OverLimit", "probabilities_alike", "probabilities_over"]
+__all__ = ["SCALED_SHAPES", "OverLimit", "OverLimits", "probabilities_alike", "probabilities_over"]
 
 SCALED_SHAPES: Mapping[str, Distribution] = {
     "normal": Normal(0.0, 1.0),
@@ -33,6 +33,14 @@ class OverLimit(NamedTuple):
     probability: float
     low: float
     high: float
+
+
+class OverLimits(NamedTuple):
+    """The same of many rows, arrays (rows,)."""
+
+    probability: Array
+    low: Array
+    high: Array
 
 
 def probabilities_over(rows: Sequence[TolerancedRow], plan: SamplingPlan) -> list[OverLimit]:
@@ -82,8 +90,8 @@ def probabilities_alike(
     *,
     plan: SamplingPlan,
     ties: Sequence[Entry] = (),
-) -> Array:
-    """Return the probability over its limit of each row alike (rows,), to the bit that of `probabilities_over`.
+) -> OverLimits:
+    """Return the probability over its limit of each row alike, to the bit that of `probabilities_over`.
 
     Nothing is made of each row by itself, which takes as long as its lines.
 
@@ -95,7 +103,8 @@ def probabilities_alike(
     centre = {**sizes} | {name: (one.low + one.high) / 2 for name, (one, _) in limits.items()}
     inputs = {name: (one, shape) for name, (one, shape) in limits.items() if (one.low < one.high).all()}
     if not inputs:
-        return np.asarray(np.broadcast_to(model(centre), upper_limit.shape) > upper_limit, dtype=float)
+        over = np.asarray(np.broadcast_to(model(centre), upper_limit.shape) > upper_limit, dtype=float)
+        return OverLimits(over, over, over)
     shapes = {name: SCALED_SHAPES[shape] for name, (_, shape) in inputs.items()}
     placed = [
         (one.mean, one.sd) if shape == "normal" else (one.low, one.high - one.low) for one, shape in inputs.values()
@@ -115,9 +124,9 @@ def probabilities_alike(
         shape = np.broadcast_shapes(*(np.shape(size) for size in all_sizes.values()))
         return np.broadcast_to(model(all_sizes), shape)
 
-    over = np.full(len(upper_limit), np.nan)
+    found = np.full((len(upper_limit), 3), np.nan)
     with np.errstate(all="ignore"):
         for index, answer in line_probabilities(outputs, varied, upper_limit, plan):
             if not isinstance(answer, str):
-                over[index] = answer[0]
-    return over
+                found[index] = answer
+    return OverLimits(*found.T)
