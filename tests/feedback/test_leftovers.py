@@ -76,7 +76,7 @@ def test_the_limited_process_finds_the_same():
     there = ask(leftovers_of, ReadingLimits(), data, ReadingLimits())
     assert there == leftovers_of(data, ReadingLimits())
     assert there.formulas["Variants"][13, 8] == "0.8*2"
-    assert len(there.notes["Variants"]) == 28
+    assert len(there.notes["Variants"]) == 29
 
 
 def test_limits_hold():

@@ -20,6 +20,7 @@ from flexlash.schema.columns import ENTRY_SHEETS, OPTIONAL_SHEETS
 from flexlash.schema.spellings import plain
 
 _PLAIN = [name for name in ENTRY_SHEETS if name not in OPTIONAL_SHEETS]
+_MEASURED = [*_PLAIN, "Measurements", "Correlations"]
 
 
 @pytest.fixture(autouse=True)
@@ -81,7 +82,7 @@ def test_an_upgrade_adds_what_is_asked_for(tmp_path):
     both = upgraded(old, optional=OPTIONAL_SHEETS).data
     assert _sheets(both) == [*ENTRY_SHEETS, "Dictionary", "Lists"]
     some = _written(tmp_path, Filling(optional=["Correlations"]), "some.xlsx")
-    assert _sheets(upgraded(some, optional=["Measurements"]).data) == [*ENTRY_SHEETS, "Dictionary", "Lists"]
+    assert _sheets(upgraded(some, optional=["Measurements"]).data) == [*_MEASURED, "Dictionary", "Lists"]
 
 
 @pytest.mark.parametrize("version", [1, 2, 3])
@@ -100,7 +101,7 @@ def test_an_old_template_with_sheets_of_measurements_keeps_them(tmp_path, versio
     book.save(path)
     upgrade = upgraded(path)
     assert upgrade.version == version
-    assert _sheets(upgrade.data) == [*ENTRY_SHEETS, "Dictionary", "Lists"]
+    assert _sheets(upgrade.data) == [*_MEASURED, "Dictionary", "Lists"]
     assert _column(upgrade.data, "Measurements", "Sample")[:3] == ["lot 7", None, "lot 7"]
     assert _column(upgrade.data, "Measurements", "Wall thickness [in]")[:3] == [0.0631, None, "0,0632"]
     assert _column(upgrade.data, "Measurements", "Gauge")[:3] == ["G2", None, None]
@@ -122,7 +123,7 @@ def test_the_marked_copy_marks_the_new_sheets(tmp_path):
     for sheet, cell in FAULTS:
         assert marked[sheet][cell].fill.fgColor.rgb == COLOURS["error"], (sheet, cell)
         assert FAULTS[sheet, cell] in marked[sheet][cell].comment.text
-    assert marked.sheetnames == ["Findings", *ENTRY_SHEETS, "Dictionary", "Lists", "flexlash marks"]
+    assert marked.sheetnames == ["Findings", *_MEASURED, "Dictionary", "Lists", "flexlash marks"]
 
 
 def test_certain_fixes_mend_the_new_sheets(tmp_path):

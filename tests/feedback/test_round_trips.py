@@ -207,7 +207,7 @@ def test_rules_of_cells_are_kept(books):
     _, before, after = books
     for sheet in before:
         assert _rules(after[sheet.title]) == _rules(sheet)
-    assert sum(len(_rules(sheet)) for sheet in before) == (87 if "Measurements" in before.sheetnames else 61)
+    assert sum(len(_rules(sheet)) for sheet in before) == (90 if "Measurements" in before.sheetnames else 64)
 
 
 def test_lists_are_kept(books):
@@ -228,8 +228,8 @@ def test_colours_by_rule_are_kept(books):
 def test_no_colour_depends_on_another_being_skipped(books):
     """The two colours of the status never apply to the same cell, since programs forget which rule stops the next."""
     _, _, after = books
-    status = [rule for rule in _colours(after["Variants"]) if rule[0].startswith("AB5")]
-    assert {rule[2][0] for rule in status} == {'$AB5="complete"', 'AND(LEN($AB5)>0,$AB5<>"complete")'}
+    status = [rule for rule in _colours(after["Variants"]) if rule[0].startswith("AC5")]
+    assert {rule[2][0] for rule in status} == {'$AC5="complete"', 'AND(LEN($AC5)>0,$AC5<>"complete")'}
 
 
 def test_locks_are_kept(books):
@@ -255,7 +255,7 @@ def test_notes_are_kept(books):
     _, before, after = books
     for sheet in before:
         assert _notes(after[sheet.title]) == _notes(sheet)
-    assert len(_notes(after["Variants"])) == 28
+    assert len(_notes(after["Variants"])) == 29
 
 
 def test_pages_are_kept(books):
