@@ -20,10 +20,18 @@ CASE_3: dict[str, Any] = {
     "system_limit_arcmin": 5.3,
 }
 
-GRINDING = [
-    {"tolerance_class": "grinding", "dimension": name, "lower_deviation": -half, "upper_deviation": half}
-    for name, half in (("wall_thickness", 0.0025), ("youngs_modulus", 5.0))
-]
+GRINDING: list[dict[str, Any]] = [
+    {"tolerance_class": "grinding", "dimension": name, "lower_deviation": -half, "upper_deviation": half,
+     "deviation_unit": unit, **rest}
+    for name, half, unit, rest in (
+        ("mean_radius", 2.5, "µm", {}),
+        ("wall_thickness", 2.5, "µm", {}),
+        ("disk_inner_radius", 2.5, "µm", {}),
+        ("youngs_modulus", 2, "%", {}),
+        ("poisson_ratio", 0.01, "-", {"distribution": "uniform"}),
+    )
+] + [{"tolerance_class": "grinding", "dimension": "cylinder_length", "grade": "IT9"}]  # fmt: skip
+"""The study's class of ground cups."""
 
 EXAMPLE = [
     {"source": "tooth clearance", "enter_as": "mm at radius", "upper_deviation": 0.02, "radius_mm": 80},
