@@ -141,7 +141,7 @@ def test_the_report_is_made_anew_to_the_byte(what, tmp_path, sound):
     kept = {
         key: value
         for key, value in options.items()
-        if key not in {"tolerances", "materials", "measurements", "correlations"}
+        if key not in {"tolerances", "materials", "measurements", "correlations", "other_sources"}
     }
     again = run(found.outcome.outputs[0], **kept)
     numbers = [name for name in original.results.columns if name not in {"findings", "status"}]

@@ -15,7 +15,10 @@ from flexlash.schema.columns import SETTINGS
 
 __all__ = ["TABLES", "Options", "Progress"]
 
-TABLES = {name.lower(): name for name in ("Tolerances", "Materials", "Measurements", "Correlations")}
+TABLES = {
+    sheet.lower().replace(" ", "_"): sheet
+    for sheet in ("Tolerances", "Materials", "Measurements", "Correlations", "Other sources")
+}
 """Options that name a table to be used instead of a submission's own, with the sheet that it replaces."""
 
 Progress = Callable[[int, int], None]
@@ -82,6 +85,9 @@ class Options:
     )
     correlations: str | Path | None = field(
         default=None, metadata=_declared(file_path, "The Correlations table: dimensions that scatter together.")
+    )
+    other_sources: str | Path | None = field(
+        default=None, metadata=_declared(file_path, "The Other sources table: what else plays in the drive.")
     )
     limits: ReadingLimits = field(
         default_factory=ReadingLimits,

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flexlash.analysis.drive_notes import DriveNotes
 from flexlash.analysis.outcome import Outcome, Written
 from flexlash.analysis.whole_batch import worst_rows
 from flexlash.schema.cell_addresses import CellAddress, cell_ranges
@@ -150,7 +151,10 @@ def words_of_state(counts: Mapping[str, int], to_fix: str, waiting: Iterable[str
 
 def detail_lines(outcome: Outcome, *, ran: bool) -> list[str]:
     """Return what a run says of the limits and of how the spread was found."""
-    return [*limit_lines(outcome), *spread_notes(outcome)] if ran and outcome.counts["rows"] else []
+    if not (ran and outcome.counts["rows"]):
+        return []
+    drives = DriveNotes.of(outcome.results, outcome.settings.target_percent)
+    return [*limit_lines(outcome), *drives.lines(), *spread_notes(outcome)]
 
 
 def closing_lines(

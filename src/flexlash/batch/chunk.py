@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from flexlash.analysis.drive_notes import DriveNotes
 from flexlash.analysis.options import Options
 from flexlash.analysis.run_summary import FindingGroup, SpreadNotes, by_rule
 from flexlash.analysis.whole_batch import WholeBatch
@@ -105,6 +106,7 @@ class ChunkSummary:
     waiting: tuple[Waiting, ...] = ()
     all_wait: bool = False
     worst: tuple[WorstRow, ...] = ()
+    drives: DriveNotes = field(default_factory=DriveNotes)
     notes: SpreadNotes = field(default_factory=SpreadNotes)
     cross_checked: bool = False
 
@@ -132,6 +134,7 @@ class ChunkSummary:
         )
         known["worst"] = tuple(WorstRow(**one) for one in known["worst"])
         known["columns"], known["notes"] = tuple(known["columns"]), SpreadNotes(**known["notes"])
+        known["drives"] = DriveNotes(**known["drives"])
         known["refusal"] = known["refusal"] and Finding(**known["refusal"])
         return cls(**known)
 

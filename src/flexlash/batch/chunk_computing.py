@@ -8,6 +8,7 @@ from dataclasses import replace
 import polars as pl
 
 from flexlash.analysis.computed import Nominal
+from flexlash.analysis.drive_notes import DriveNotes
 from flexlash.analysis.examination import Examined, examined
 from flexlash.analysis.options import Options
 from flexlash.analysis.outcome import Outcome
@@ -139,6 +140,7 @@ def _with_spread(summary: ChunkSummary, outcome: Outcome, table: Table | None) -
         verdicts=verdicts,
         unsettled=unsettled,
         worst=_worst(outcome.results, table) if table else (),
+        drives=DriveNotes.of(outcome.results, outcome.settings.target_percent),
         notes=SpreadNotes.of(outcome.results),
         cross_checked="cross_check" in outcome.results.columns,
     )

@@ -8,6 +8,7 @@ from dataclasses import replace
 from itertools import chain, islice
 from typing import Any
 
+from flexlash.analysis.drive_notes import DriveNotes
 from flexlash.analysis.outcome import exit_code_of
 from flexlash.analysis.run_summary import (
     SHOWN_MESSAGES,
@@ -53,6 +54,7 @@ class Totals:
         self._groups: dict[tuple[int, str, str], FindingGroup] = {}
         self._verdicts, self._unsettled = Counter[Verdict](), Counter[Verdict]()
         self._notes, self._cross_checked = SpreadNotes(), False
+        self._drives = DriveNotes()
         self._to_fix = 0
         self._sheet = ""
         self._waiting: dict[tuple[str, str], Waiting] = {}
@@ -68,6 +70,7 @@ class Totals:
         self._verdicts.update(chunk.verdicts)
         self._unsettled.update(chunk.unsettled)
         self._notes += chunk.notes
+        self._drives += chunk.drives
         self._cross_checked |= chunk.cross_checked
         self.worst = sorted((*self.worst, *chunk.worst), key=lambda one: one.order)[:DRAWN]
         # Findings of the whole file come with every chunk.
@@ -151,7 +154,11 @@ class Totals:
         counts = self.counts
         groups = self.groups
         listed = f"{findings_file or 'the table beside a marked copy (--annotate)'} lists them all"
-        details = [*lines_of_limits(counts, self._named(), self._bounds), *self._note_lines()] if ran else []
+        details = (
+            [*lines_of_limits(counts, self._named(), self._bounds), *self._drives.lines(), *self._note_lines()]
+            if ran
+            else []
+        )
         return Answer(
             exit_code=exit_code_of(counts, fail_over_limit=fail_over_limit),
             told={

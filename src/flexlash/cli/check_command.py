@@ -39,6 +39,7 @@ __all__ = ["check"]
 @option("materials")
 @option("measurements")
 @option("correlations")
+@option("other_sources")
 def check(
     submissions: tuple[Path, ...],
     output: Path | None,

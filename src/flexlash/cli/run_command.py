@@ -56,6 +56,7 @@ __all__ = ["run"]
 @option("materials")
 @option("measurements")
 @option("correlations")
+@option("other_sources")
 def run(
     submissions: tuple[Path, ...],
     output: Path | None,
