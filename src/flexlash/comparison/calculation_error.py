@@ -23,7 +23,9 @@ _KEYS = [column.key for column in result_columns(cross_check=True, elasticity=Tr
 _SHARES = ("probability_over_limit", "ppm_over_limit")
 _FOLLOWING = frozenset({
     "ppk", "ppk_normal", "main_contributor_share", "interaction_share", "random_probability_over_limit",
-    "cross_check_deviation", "spread_method", "spread_points", "spread_note", "random_points",
+    "system_mean_arcmin", "system_rss_high_arcmin", "system_bender_high_arcmin", "system_mean_shift_high_arcmin",
+    "system_worst_case_high_arcmin", "cross_check_deviation", "spread_method", "spread_points", "spread_note",
+    "random_points",
     *(key for key in _KEYS if "standard_error" in key),
     *(f"{key}_{end}" for key in _SHARES for end in ("low", "high")),
     *(key for key in _KEYS if "_sample_" in key),

@@ -18,8 +18,11 @@ from flexlash.schema.spellings import plain
 
 __all__ = ["FIRST", "Difference", "Differing", "changed_results", "difference"]
 
-FIRST = ("status", "backlash_arcmin", "p97_5_arcmin", "probability_over_limit", "lots_failing", "main_contributor")
-"""Results on which a verdict rests, and how many lots fail, in the order in which a reader wants them."""
+FIRST = (
+    "status", "backlash_arcmin", "p97_5_arcmin", "probability_over_limit", "lots_failing", "main_contributor",
+    "system_mean_arcmin", "system_p99_865_arcmin", "system_probability_over_limit",
+)  # fmt: skip
+"""Results on which a verdict rests, how many lots fail, and what the whole drive comes to, as a reader wants them."""
 
 _RESULTS = {column.key: column for column in result_columns(cross_check=True, elasticity=True)}
 
