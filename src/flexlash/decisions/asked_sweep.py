@@ -24,7 +24,7 @@ from flexlash.validation.validated import Validated
 
 __all__ = ["SweepError", "asked_sweep", "swept_alone", "with_sweep"]
 
-_SHEET, _ROW = "Sweep", 2
+_SHEET, _HEAD, _ROW = "Sweep", 1, 2
 _MOST_DIMENSIONS, _NAMED = 2, 3
 
 
@@ -71,17 +71,19 @@ def with_sweep(found: Examined, sweep: SweepRow | None) -> Examined:
             faulty = " without an error" if validated.faulty_sweeps else ""
             raise SweepError(f"its sheet Sweep has no row{faulty}; say what to sweep: --vary KEY=FROM:TO:STEP")
         return found
-    _require_known(validated, sweep)
+    sweep = replace(sweep, variant=_known_name(validated, sweep.variant))
     variants = swept_variants(validated, sweep)
     if not variants.variants:
         why = [f"{name}: {words}" for name, words in variants.refused.items()]
         why += [f"{name} has errors of its own" for name in variants.faulty]
         raise SweepError(f"no value makes a part: {listed(why, _NAMED)}" if why else "there is no variant")
     _require_few(_points(sweep) * len(variants.variants), f" of {len(variants.variants):,} variants")
-    sheet = _sheet(sweep)
     sheets = {name: one for name, one in found.submission.sheets.items() if plain(name) != plain(_SHEET)}
-    submission = replace(found.submission, sheets=sheets | ({_SHEET: sheet} if sheet else {}))
-    validated = replace(validated, sweeps=(sweep,), faulty_sweeps=())
+    heads = {schema: row for schema, row in validated.header_rows.items() if schema != _SHEET}
+    if sheet := _sheet(sweep):
+        sheets, heads = sheets | {_SHEET: sheet}, heads | {_SHEET: _HEAD}
+    submission = replace(found.submission, sheets=sheets)
+    validated = replace(validated, sweeps=(sweep,), faulty_sweeps=(), header_rows=heads)
     return replace(found, submission=submission, validated=validated)
 
 
@@ -114,13 +116,13 @@ def _require_few(points: int, of_variants: str) -> None:
         )
 
 
-def _require_known(validated: Validated, sweep: SweepRow) -> None:
-    """Raise SweepError where a sweep names a variant that there is not, with the nearest."""
-    names = [name for _, name, _ in validated.submitted]
-    if sweep.variant is None or plain(sweep.variant) in map(plain, names):
-        return
-    near = suggested(sweep.variant, names)
-    raise SweepError(f"there is no variant {shown(sweep.variant)}{f'; did you mean {near}?' if near else ''}")
+def _known_name(validated: Validated, name: str | None) -> str | None:
+    """Return the name of a variant as Variants has it; raise SweepError, with the nearest, where there is none."""
+    names = {plain(known): known for _, known, _ in validated.submitted}
+    if name is None or plain(name) in names:
+        return None if name is None else names[plain(name)]
+    near = suggested(name, names.values())
+    raise SweepError(f"there is no variant {shown(name)}{f'; did you mean {near}?' if near else ''}")
 
 
 def _sheet(sweep: SweepRow) -> RawSheet | None:
@@ -138,4 +140,4 @@ def _sheet(sweep: SweepRow) -> RawSheet | None:
     columns = columns_of(_SHEET)
     places = {key: place for place, key in enumerate(columns, start=1)}
     head: dict[int, RawValue] = {place: columns[key].label for key, place in places.items()}
-    return RawSheet(name=_SHEET, rows={1: head, _ROW: {places[key]: value for key, value in cells.items()}})
+    return RawSheet(name=_SHEET, rows={_HEAD: head, _ROW: {places[key]: value for key, value in cells.items()}})
