@@ -150,6 +150,18 @@ def proof() -> Filling:
     )
 
 
+def swept() -> Filling:
+    """Return the published study with two parametric studies: the length of case 3, and its hub with its wall."""
+    third = {"variant": "B3-160 case 3"}
+    length = {"dimension": "cylinder_length", "from": 100.0, "to": 200.0, "step": 20.0}
+    hub = {"dimension": "disk_inner_radius", "from": 36.0, "to": 60.0, "step": 2.0}
+    wall = {"second_dimension": "wall_thickness", "second_from": 1.4, "second_to": 2.0, "second_step": 0.1}
+    published = study()
+    return Filling(
+        variants=published.variants[:5], tolerances=published.tolerances, sweep=[third | length, third | hub | wall]
+    )
+
+
 def calibrated() -> Filling:
     """Return the published case with factors from its finite elements, which scatter as a model does."""
     variant = {
@@ -269,6 +281,7 @@ def generated() -> dict[str, bytes]:
         "data/needs-fixing.xlsx": template_bytes(needs_fixing()),
         "data/b3-160-proof.xlsx": template_bytes(proof()),
         "data/b3-160-calibrated.xlsx": template_bytes(calibrated()),
+        "data/b3-160-sweep.xlsx": template_bytes(swept()),
         "data/measured-parts.xlsx": template_bytes(measured_parts()),
         "README.md": document(
             "README.md", columns=column_table(), settings=settings_table(), limits=limits_table(), proof=proof_table()
