@@ -134,6 +134,15 @@ BESIDE = {
 }
 """What is drawn of rules between cells: a blank one only where blanks are what is wrong."""
 
+OF_A_ROW = {
+    "E362": ("Source", "Side", "Ratio"),
+    "E364": ("Source", "Value", "Lower deviation", "Upper deviation"),
+    "E365": ("Dimension", "Lowest", "Highest"),
+    "E368": ("Variant", "Dimension", "From", "To", "Step"),
+    "W464": ("Dimension", "Lowest", "Highest"),
+}
+"""The same on the sheets Other sources, Levers and Sweep."""
+
 
 @for_each("code", BESIDE)
 def test_a_rule_between_cells_shows_all_of_them(code):
@@ -143,6 +152,15 @@ def test_a_rule_between_cells_shows_all_of_them(code):
     headers = [header for header in card["grid"]["header"] if header]
     assert set(BESIDE[code]) <= set(headers)
     assert len(headers) <= 5
+
+
+def test_a_rule_of_a_row_shows_what_it_compares(tmp_path):
+    """On Other sources, Levers and Sweep stand the name of the row, the guilty cell and those beside it."""
+    path, _ = SUBMISSIONS["decided"](tmp_path)
+    _, facts = _checked(path)
+    drawn = {card["code"]: card["grid"]["header"] for card in facts["cards"] if card["grid"]}
+    for code, headers in OF_A_ROW.items():
+        assert set(headers) <= {header for header in drawn[code] if header}, code
 
 
 @pytest.mark.slow

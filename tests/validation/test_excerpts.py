@@ -26,6 +26,15 @@ def test_excerpts_of_a_plain_table(tmp_path):
     _same(path, ((2, 3),))
 
 
+@pytest.mark.parametrize("limits", [("", 5, "", ""), ("", "", "abc", ""), ("", "", "", "")])
+def test_a_limit_of_the_drive_is_told_once(limits, tmp_path):
+    """That a table has no sources is told at its header, whichever excerpt holds the limit."""
+    path = tmp_path / "study.csv"
+    path.write_text(_text(_cups(*({"system_limit_arcmin": limit} for limit in limits))), encoding="utf-8")
+    whole = _same(path, ((2, 3), (1, 1)))
+    assert str(whole).count("W466") == any(limits)
+
+
 def _same(path, sizes=SIZES, **options):
     """Hold excerpts of several sizes against the whole table."""
     whole = at_once(path, **options)

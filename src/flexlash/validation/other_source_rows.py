@@ -57,8 +57,10 @@ def report_unused_limits(variants: Table, ledger: Ledger) -> None:
     index = variants.heading.columns.get("system_limit_arcmin")
     if index is None:
         return
-    entered = variants.frame["system_limit_arcmin"]
-    if index in variants.whole.filled if variants.whole else entered.count():
+    is_given = (
+        index in variants.whole.filled if variants.whole else any(index in row for row in variants.cells.values())
+    )
+    if is_given:
         ledger.add_in(variants, "W466", variants.heading.row, "system_limit_arcmin")
 
 

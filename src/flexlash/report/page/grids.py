@@ -48,6 +48,21 @@ _OWNERS: Mapping[str, tuple[str, ...]] = {
 """The columns that say whose row it is, by entry sheet."""
 
 
+_BESIDE: Mapping[tuple[str, str], tuple[str, ...]] = {
+    ("E318", "lower_deviation"): ("upper_deviation",),
+    ("E362", "radius_mm"): ("enter_as",),
+    ("E362", "pressure_angle_deg"): ("enter_as",),
+    ("E362", "ratio"): ("side",),
+    **dict.fromkeys((("E364", "lower_deviation"), ("W462", "lower_deviation")), ("value_arcmin", "upper_deviation")),
+    **dict.fromkeys((("E365", "lowest"), ("W464", "lowest")), ("highest",)),
+    ("W464", "highest"): ("lowest",),
+    ("W463", "step"): ("lowest", "highest"),
+    **dict.fromkeys((("E368", "step"), ("E369", "step")), ("from", "to")),
+    **dict.fromkeys((("E368", "second_step"), ("E369", "second_step")), ("second_from", "second_to")),
+}
+"""The columns that a finding outside Variants compares with its own, by its code and column."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Sheets:
     """The sheets of a submission from which cells are drawn.
@@ -142,7 +157,8 @@ def _places(header: Mapping[int, RawValue], schema: str) -> dict[str, int]:
 def _compared(found: Finding) -> list[str]:
     """Return the columns that the rule of a finding compares with its own; the type where there is no other."""
     relation = RELATIONS.get(f"{found.column}|{found.code}")
-    keys = [key for key in relation.keys if key != found.column] if relation else []
+    beside = _BESIDE.get((found.code, found.column), ())
+    keys = [key for key in relation.keys if key != found.column] if relation else [*beside]
     return [key for key in keys if key != "flexspline_type"] or keys
 
 
