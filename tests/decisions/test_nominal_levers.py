@@ -114,7 +114,8 @@ def fed_back(submitted, rows, target, **options):
     for one in exact.iter_rows(named=True):
         lever = found[int(one["variant"][1:])]
         error = (one["probability_over_limit_high"] - one["probability_over_limit_low"]) / INTERVAL
-        assert abs(one["probability_over_limit"] - allowed) <= error + 1e-8 * allowed, lever
+        # An error of the search about as great as the told one lies beside it; one of 0 leaves rounding.
+        assert abs(one["probability_over_limit"] - allowed) <= 2 * error + 1e-8 * allowed, lever
     return drawn.height
 
 

@@ -33,12 +33,15 @@ Rounded = Callable[[float, bool], float]
 
 _RAREST = 1e-15
 _ROUNDS, _HALVINGS, _MORE_STEPS = 5, 36, 3
-_NEAR, _NEARER, _NEAREST = 5e-4, 2e-5, 1e-5
-"""How near the target a first point must be, in levels of Φ, with and without a slope from two points, and where the
-share is known exactly: what is left is a small part of that."""
+_INTERVAL = 2 * 1.96
+"""Standard errors that an interval spans."""
 
-_INTERVAL = 2.0
-"""Part of its interval within which a first point serves in any case."""
+_TOLD, _GUESSED = 3e-2, 0.3
+"""Part of the way to the target that a step may miss, with a slope that two points tell or the tail as it is now."""
+
+_NEAR, _NEARER = (1e-5, 3e-4), (1e-6, 3e-4)
+"""Least and greatest distance from the target, in levels of Φ, from which such a step may be the last; between these
+it is what misses the target by no more than its standard error."""
 
 _APART = 0.05
 """How far apart two points must be, in levels of Φ, to tell a slope."""
@@ -162,34 +165,41 @@ class LimitSearch:
 
     def _refine(self, rows: Indices, found: dict[str, Array], rounded: Rounded) -> Indices:
         """Put down what is found from the predicted values on, and return the variants of which it is not."""
-        values = self._crossing.value.copy()
+        values, drawings, shares = self._crossing.value.copy(), found["drawing"].copy(), found["over"].copy()
         for _ in range(_ROUNDS):
             if not len(rows):
                 break
-            own, first = self._alike.take(rows), values[rows]
-            rise, bend = self._tail.rise[rows], self._tail.bend[rows]
+            own, first, rise = self._alike.take(rows), values[rows], self._tail.rise[rows]
             level, highest, lowest = (self._levels(one) for one in self._spread(rows, first))
-            score = own.score(first)
-            drawing = self._drawn(rows, own.value_at(first, score + (self._target - level) * rise), rounded)
-            over = self._shares(rows, drawing * self._unit, by_lines=False)
-            with np.errstate(all="ignore"):
-                drawn = self._levels(over)
-                apart = drawn - level
-                slope = (own.score(drawing * self._unit) - score) / apart + bend * (self._target - drawn)
-                told = (abs(apart) > _APART) & (slope > _SLOPES[0] * rise) & (slope < _SLOPES[1] * rise)
-            told &= (self._terms.plan.method == "line") & (over > _RAREST) & (over < 1 - _RAREST)
-            value = own.value_at(first, score + (self._target - level) * np.where(told, slope, rise))
-            near = np.abs(self._target - level) <= np.clip(
-                (highest - lowest) / _INTERVAL, _NEAREST, np.where(told, _NEAR, _NEARER)
+            score, missing = own.score(first), self._target - level
+            drawing = self._drawn(rows, own.value_at(first, score + missing * rise), rounded)
+            new = np.flatnonzero(drawing != drawings[rows])
+            drawings[rows] = drawing
+            shares[rows[new]] = self._shares(rows[new], drawing[new] * self._unit, by_lines=False)
+            slope, told = self._slope(rows, level, score, drawing, shares[rows])
+            value = own.value_at(first, score + missing * slope)
+            error = (highest - lowest) / _INTERVAL
+            near = np.abs(missing) <= np.where(
+                told, np.clip(error / _TOLD, *_NEAR), np.clip(error / _GUESSED, *_NEARER)
             )
             near |= np.abs(value - first) <= _SAME * np.abs(first)
             settled = near & (self._drawn(rows, value, rounded) == drawing)
             done = rows[settled]
-            for name, numbers in (("value", value), ("drawing", drawing), ("over", over)):
-                found[name][done] = numbers[settled]
+            found["value"][done], found["drawing"][done] = value[settled], drawing[settled]
+            found["over"][done] = shares[done]
             values[rows] = value
             rows = rows[~settled & np.isfinite(value)]
         return np.flatnonzero(np.isfinite(self._crossing.value) & np.isnan(found["value"]))
+
+    def _slope(self, rows: Indices, level: Array, score: Array, drawing: Array, over: Array) -> tuple[Array, Bools]:
+        """Return how scores rise with levels from these on to the target, and whether the drawing values tell it."""
+        own, rise, drawn = self._alike.take(rows), self._tail.rise[rows], self._levels(over)
+        with np.errstate(all="ignore"):
+            apart = drawn - level
+            slope = (own.score(drawing * self._unit) - score) / apart + self._tail.bend[rows] * (self._target - drawn)
+            told = (np.abs(apart) > _APART) & (slope > _SLOPES[0] * rise) & (slope < _SLOPES[1] * rise)
+            told &= (over > _RAREST) & (over < 1 - _RAREST) & (self._terms.plan.method == "line")
+        return np.where(told, slope, rise), told
 
     def _halve(self, rows: Indices, beyond: Array, found: dict[str, Array], rounded: Rounded) -> None:
         """Put down what halving between the present values and some beyond the target finds."""
@@ -233,10 +243,10 @@ class LimitSearch:
     def _make_safe(self, rows: Indices, found: dict[str, Array], rounded: Rounded) -> None:
         """Go on by a step or some where the share with the drawing value is above the target after all."""
         for more in range(1, _MORE_STEPS + 1):
-            rows = rows[found["over"][rows] > self._terms.target]
+            rows = rows[~(found["over"][rows] <= self._terms.target)]
             if not len(rows):
                 return
             found["drawing"][rows] = self._drawn(rows, found["value"][rows], rounded, more)
             found["over"][rows] = self._shares(rows, found["drawing"][rows] * self._unit, by_lines=False)
-        still = rows[found["over"][rows] > self._terms.target]
+        still = rows[~(found["over"][rows] <= self._terms.target)]
         found["drawing"][still] = np.nan
