@@ -12,7 +12,7 @@ from toleranced import plan, row
 import flexlash
 from flexlash.analysis.assessment import assess
 from flexlash.analysis.options import Options
-from flexlash.analysis.tolerance_spread import row_statistics, spread_again, spread_of
+from flexlash.analysis.tolerance_spread import row_statistics, spread_of
 from flexlash.reading.read import Source, submission_of
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema.variant import Limits, Settings
@@ -134,15 +134,6 @@ def test_which_dimensions_are_a_lots():
     computed = computed_variant()
     assert computed.between == {"youngs_modulus", "poisson_ratio"}
     assert computed.between < computed.limits.keys()
-
-
-def test_recommendations_ask_nothing_of_lots():
-    """What is spread again with other limits tells the share over the limit to the bit, and no lots."""
-    computed = computed_variant()
-    (again,) = spread_again(computed, [computed.limits], Settings())
-    own = spread_with(computed, Settings())
-    assert again.numbers["probability_over_limit"] == own.numbers["probability_over_limit"]
-    assert "lots_failing" not in again.numbers
 
 
 def _random_row(draw):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple, TypeAlias, overload
 
@@ -15,7 +15,7 @@ from flexlash.analysis.measured_uncertainty import with_measured_uncertainty
 from flexlash.analysis.options import Options
 from flexlash.analysis.spread_rows import SpreadRows
 from flexlash.schema.columns import DIMENSIONS
-from flexlash.schema.variant import Limits, Settings
+from flexlash.schema.variant import Settings
 from flexlash.tolerance.distribution_curves import Curve, curves_of
 from flexlash.tolerance.row_batches import FirstOrder, RowBatch, TolerancedRow, batch_statistics, batches_alike
 from flexlash.tolerance.sampling import SamplingPlan
@@ -30,7 +30,6 @@ __all__ = [
     "row_curves",
     "row_statistics",
     "sampling_plan",
-    "spread_again",
     "spread_of",
     "toleranced_row",
 ]
@@ -133,15 +132,6 @@ class _Pieces(Sequence[_Piece]):
         if isinstance(index, slice):
             return _Pieces(self.rows, self.numbers[index])
         return self.rows(self.numbers[index])
-
-
-def spread_again(
-    variant: Computed, limits: Iterable[Mapping[str, Limits]], settings: Settings
-) -> list[SpreadStatistics]:
-    """Return the spread of a variant by lines with each of these limits instead of its own; nothing of its lots."""
-    plan = sampling_plan(replace(settings, method="line", samples=None), Options())
-    row = replace(toleranced_row(variant), between=None)
-    return [batch_statistics([replace(row, limits=other)], plan)[0] for other in limits]
 
 
 def first_orders(variants: Sequence[Computed]) -> list[FirstOrder]:
