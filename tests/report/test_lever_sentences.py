@@ -77,21 +77,35 @@ def test_where_nothing_can_the_reason_is_told(told):
     assert "half of its units being over 4.214′; Levers says why." in told(levers_table(*rows))[CHANGE]
 
 
+def test_another_material_is_told_beside_the_present_one(told):
+    """Where a material is the cheapest change, both are named."""
+    row = lever("material", "", (0, 0, 0, 320, 1.0, 86, 2.4, 1, 1)) | {"what": "material", "to_material": "17-4PH"}
+    said = told(levers_table(row | dict.fromkeys(("from_value", "to_value", "drawing_value"))))[CHANGE]
+    assert said.startswith("Cheapest single change for “B3-160 case 3”: material 20Cr2Ni4 → 17-4PH; 99.97 % of units")
+
+
+def test_all_tolerances_together_are_told_beside_the_one_that_matters_most(told):
+    """Of the variant nearest to its limit the tolerance that matters most is told, then how wide all may be."""
+    both = [
+        lever(name, moves, (1, wide, wide, 900, 0, 86, 0, cost), variant=CASE_1, direction="relax", what="tolerance",
+              unit=unit)
+        for name, moves, wide, cost, unit in (
+            ("all", "mean_radius+wall_thickness+cylinder_length", 11.76, -21, "×"),
+            ("mean_radius", "", 3, -13, "mm"),
+            ("wall_thickness", "", 2, -5, "mm"),
+        )
+    ]  # fmt: skip
+    said = told(levers_table(*both))[RELAX]
+    assert said.startswith("Holding the wall thickness of “B3-160 case 1” so tight buys nothing: ± 2 mm instead of ± 1")
+    assert said.endswith(" All 3 tolerances of “B3-160 case 1” together may be 11.76 times as wide.")
+
+
 def test_a_tolerance_that_matters_may_be_relaxed_but_does_not_buy_nothing(told):
     """A dimension with a visible share of the variance is told as one that may have more, not as idle."""
     row = lever("youngs_modulus", "", (2.0, 3.1, 3.0, 900, 0, 86, 0, -1), variant=CASE_1, direction="relax",
                 what="tolerance", unit="GPa")  # fmt: skip
     said = told(levers_table(row))[RELAX]
     assert said.startswith("The Young's modulus of “B3-160 case 1” may be ± 3 GPa instead of ± 2 GPa: that still keeps")
-
-
-def test_the_tolerance_that_saves_most_is_the_one_told(told):
-    """Of two tolerances that may be relaxed, that is told whose relative cost falls most."""
-    both = [
-        lever(name, "", (0.01, 0.02, 0.02, 900, 0, 86, 0, cost), variant=CASE_1, direction="relax", what="tolerance")
-        for name, cost in (("mean_radius", -1.5), ("wall_thickness", -4.0))
-    ]
-    assert told(levers_table(*both))[RELAX].startswith("Holding the wall thickness of ")
 
 
 def test_nothing_is_said_without_a_lever(told):

@@ -9,6 +9,7 @@ import polars as pl
 from flexlash.analysis.run_summary import grouped, listed
 from flexlash.decisions.found_widths import ALL
 from flexlash.report.wording.lever_words import (
+    FROM_MATERIAL,
     Lever,
     change_words,
     lever_name,
@@ -135,9 +136,14 @@ def _cheapest(facts: SummaryFacts, lever: Lever) -> str:
     ]
     note = f" Mind: {lever['range_note']}." if lever["range_note"] else ""
     return (
-        f"Cheapest single change for {facts.named(lever['variant'])}: {change_words(lever)}; {', '.join(effects)}."
-        f"{note}"
+        f"Cheapest single change for {facts.named(lever['variant'])}: {_changed(facts, row, lever)}; "
+        f"{', '.join(effects)}.{note}"
     )
+
+
+def _changed(facts: SummaryFacts, row: Row, lever: Lever) -> str:
+    """Return a change in words, with the material that there is now."""
+    return change_words({**lever, FROM_MATERIAL: facts.computed(row).variant.material})
 
 
 def _effects(facts: SummaryFacts, row: Row, lever: Lever) -> Iterator[str]:

@@ -15,6 +15,7 @@ from flexlash.schema.number_words import LEAST_SHARE, places
 
 __all__ = [
     "ALONE",
+    "FROM_MATERIAL",
     "Lever",
     "change_words",
     "followers_words",
@@ -31,6 +32,9 @@ Lever: TypeAlias = Mapping[str, Any]
 
 ALONE = "alone"
 """The column that `shown_levers` adds: the dimension is shared, and here it changes without the others."""
+
+FROM_MATERIAL = "from_material"
+"""What a row may have beside its columns: the present material."""
 
 _EXACT = 4
 """Digits in which an exact solution is told."""
@@ -118,7 +122,8 @@ def change_words(lever: Lever) -> str:
     """
     name, unit = lever_name(lever), shown_unit(lever)
     if lever["what"] == "material":
-        return f"{name} {shown(lever['to_material'], longest=_NAME)}"
+        known = filter(None, (lever.get(FROM_MATERIAL), lever["to_material"]))
+        return f"{name} {' → '.join(shown(one, longest=_NAME) for one in known)}"
     now, then = (_value(shown_value(lever, key)) for key in ("from_value", "drawing_value"))
     if lever["dimension"] == ALL:
         return f"{name}{', may be' if then and lever['direction'] == 'relax' else ''}{then and f' × {then}'}"
