@@ -45,6 +45,7 @@ _NARROWEST = 60
 @option("materials")
 @option("measurements")
 @option("correlations")
+@option("other_sources")
 def levers(submission: Path, output: Path | None, *, as_json: bool, quiet: bool, **options: Any) -> None:
     """Say which single change brings each variant within its backlash limit, and how far those of a sound one may go.
 
