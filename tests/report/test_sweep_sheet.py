@@ -148,6 +148,19 @@ def test_no_sweep_no_sheet(study):
     assert 'name="Swept"' not in names
 
 
+@pytest.mark.slow
+def test_the_summary_says_it_and_leads_there(report):
+    """What length is still allowed stands on the Summary, beside a link to the sheet."""
+    summary = openpyxl.load_workbook(report)["Summary"]
+    row = next(cell.row for (cell,) in summary.iter_rows(max_col=1) if cell.value == "Sweep")
+    assert summary.cell(row, 1).hyperlink.location == "Sweep!A1"
+    assert summary.cell(row, 2).value == (
+        f"{THIRD}: Cylinder length must be at most 161.85 mm for 99.865 % of units within 3.8′. "
+        "B3-160 case 1: With disk inner radius 60 mm, 99.865 % of units are within 3.8′. "
+        "1 more study on the sheet Sweep."
+    )
+
+
 SENTENCES = {
     ("B3-160 case 1", LENGTHS): "Cylinder length may grow to 161.85 mm for 99.865 % of units within 3.8′.",
     (THIRD, ("cylinder_length_mm", (100, 120, 20))): (

@@ -22,6 +22,7 @@ from flexlash.report.wording.lever_sentences import CHANGE, LENGTH, RELAX
 from flexlash.report.wording.lever_words import shown_levers
 from flexlash.report.wording.sentences import FINDINGS, sentences
 from flexlash.report.wording.summary_facts import labels_of, main_cause
+from flexlash.report.wording.sweep_words import summary_sentence
 from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, UNSETTLED, light, verdict_counts, verdict_rules
 from flexlash.schema.findings import shown
 from flexlash.schema.number_words import glance, grouped, share_words
@@ -67,6 +68,8 @@ def write_summary(book: Book, outcome: Outcome, data: ReportData, curves: Stored
     targets = _targets(data)
     for topic, text in sentences(outcome, data.levers):
         page.sentence(topic, text, targets.get(topic, ""))
+    if swept := summary_sentence(data.studies, outcome.settings.target_percent):
+        page.sentence("Sweep", swept, "Sweep!A1")
     if data.drawn:
         page.table(data.drawn)
         page.chart(data.drawn, curves)

@@ -6,7 +6,7 @@ from re import split
 from typing import Any
 
 from flexlash.decisions.sweep import Study
-from flexlash.report.layout.result_formats import number_codes
+from flexlash.report.layout.result_formats import usual_format
 from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of, merged_width
 from flexlash.report.wording.sweep_words import swept_title
@@ -29,8 +29,8 @@ _COLUMNS = (
 )
 """What the table shows of Results."""
 
-_ANGLE = "arcmin"
-"""Number format of the levels, alike in all rows, so that they can be compared."""
+_FORMATS = {"probability_over_limit": "0.0000%"}
+"""Number formats that are not the usual ones; all are alike in all rows, so that numbers can be compared."""
 
 _TOLD = "W423"
 """What the colour of the share over the limit says already."""
@@ -50,8 +50,7 @@ def write_points(book: Book, sheet: Any, top: int, study: Study, bounds: Verdict
     sheet.merge_range(top, _FINDINGS, top, LAST_COLUMN, "Findings", header)
     sheet.set_row(top, 32)
     columns = {column.key: column for column in RESULTS}
-    shown = {key: [_ANGLE] * study.results.height for key in _KEYS if key.endswith("_arcmin")}
-    codes = {key: shown.get(key) or number_codes(study.results, columns[key]) for key in _KEYS}
+    codes = {key: _FORMATS.get(key) or usual_format(columns[key]) for key in _KEYS}
     entered = study.entered.get(study.first.key)
     wide = merged_width([WIDTH] * (LAST_COLUMN - _FINDINGS + 1))
     for place, record in enumerate(study.results.iter_rows(named=True)):
@@ -61,7 +60,7 @@ def write_points(book: Book, sheet: Any, top: int, study: Study, bounds: Verdict
         for column, key in enumerate(_KEYS, start=1):
             if record[key] is not None:
                 look = COLOURS[light(record, bounds)] if column == _OVER else "text"
-                sheet.write_number(row, column, record[key], book.format(look, codes[key][place]))
+                sheet.write_number(row, column, record[key], book.format(look, codes[key]))
         if findings := _findings(record["findings"]):
             sheet.merge_range(row, _FINDINGS, row, LAST_COLUMN, findings, book.format("indented wrap"))
             sheet.set_row(row, LINE_HEIGHT * lines_of(findings, wide))

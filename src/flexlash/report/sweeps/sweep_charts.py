@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from flexlash.decisions.sweep import Study
@@ -83,8 +83,7 @@ def share_chart(book: Book, study: Study, rows: tuple[int, int], columns: tuple[
                        "border": {"color": PALETTE[colour]}},
             "y2_axis": right,
         })  # fmt: skip
-    shares = axis_over(known["disk_share"].to_list())
-    stress = axis_over(known["von_mises_MPa"].to_list())
+    shares, stress = (axis_over(_without_noise(known[key].to_list())) for key in ("disk_share", "von_mises_MPa"))
     below = axis_over(study.first.values)
     ends = {"min": below.low, "max": below.high, "major_unit": below.step, "major_gridlines": {"visible": False}}
     chart.set_x_axis({**_SMALL, **ends, "name": swept_title(study.first.key), "num_format": "General"})
@@ -114,4 +113,9 @@ def _axis(study: Study) -> Axis:
     """Return an axis over all that is drawn."""
     numbers = [study.results[key] for key in (*LEVELS.values(), "backlash_arcmin")]
     ends = [value for column in numbers for value in column.to_list() if value is not None]
-    return axis_over([*ends, *([] if study.limit is None else [study.limit])])
+    return axis_over(_without_noise([*ends, *([] if study.limit is None else [study.limit])]))
+
+
+def _without_noise(values: Sequence[float]) -> list[float]:
+    """Return numbers whose differences are none of rounding, so that an axis over equal ones is one."""
+    return [float(f"{value:.9g}") for value in values]

@@ -19,6 +19,7 @@ __all__ = [
     "shown_level",
     "study_sentences",
     "study_title",
+    "summary_sentence",
     "swept_title",
     "told_sentences",
     "value_words",
@@ -26,6 +27,9 @@ __all__ = [
 
 _DIGITS = 5
 """Digits to which a crossing is told, rounded to the safe side where a sentence allows values up to it."""
+
+_SUMMARISED = 2
+"""Most studies that the Summary tells."""
 
 _SHOWN = 12
 """Most values of a second dimension that a screen tells."""
@@ -90,6 +94,16 @@ def told_sentences(study: Study, target: float) -> list[str]:
     return [*lines, *missing(study)]
 
 
+def summary_sentence(studies: Sequence[Study], target: float) -> str:
+    """Return what the first studies allow, and how many there are beside them; an empty text without a study."""
+    told = [(study, sentence) for study in studies if (sentence := allowed_sentence(study, target))][:_SUMMARISED]
+    sentences = [f"{study.variant}: {sentence}" for study, sentence in told]
+    if more := len(studies) - len(told):
+        others = " more" if told else ""
+        sentences.append(f"{more:,}{others} {'study' if more == 1 else 'studies'} on the sheet Sweep.")
+    return " ".join(sentences)
+
+
 def allowed_sentence(study: Study, target: float) -> str:
     """Return how far the first dimension may go with the target share of units within the limit.
 
@@ -101,6 +115,9 @@ def allowed_sentence(study: Study, target: float) -> str:
     spans, name = allowed_spans(study, target), inner_name(columns_of("Variants")[study.first.key])
     share = f"{target:.10g} % of units"
     swept = _range(study.first.key, values)
+    if len(values) == 1:
+        few = "" if spans else "fewer than "
+        return f"With {swept.replace(' of ', ' ')}, {few}{share} are within {_limit(study)}."
     if not spans:
         return f"No {swept} keeps {share} within {_limit(study)}."
     if spans == [AllowedSpan(low=values[0], high=values[-1])]:
