@@ -45,6 +45,7 @@ _ALL = (
     ("system_mean_shift_high_arcmin", "Mean shift [arcmin]"),
     ("system_worst_case_high_arcmin", "Worst case [arcmin]"),
     ("system_p99_865_arcmin", "P99.865 [arcmin]"),
+    ("system_p99_865_standard_error_arcmin", "Its standard error"),
     ("system_limit_arcmin", "System limit [arcmin]"),
 )
 _CHART, _CHART_ROWS = (530, 330), 13
@@ -113,7 +114,8 @@ def _write_all(page: DrivePage, top: int, drawn: Sequence[Drawn], note: str) -> 
         numbers = variant.row
         for column, (key, _) in enumerate(_ALL, start=1):
             if numbers[key] is not None:
-                sheet.write_number(row, column, numbers[key], book.format("text", "plain"))
+                look = "0.0E+00" if "standard_error" in key else "plain"
+                sheet.write_number(row, column, numbers[key], book.format("text", look))
         limit, high = numbers["system_limit_arcmin"], numbers["system_p99_865_arcmin"]
         if limit is not None:
             sheet.write_number(row, len(_ALL) + 1, limit - high, book.format("text", "plain"))

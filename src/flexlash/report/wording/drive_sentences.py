@@ -35,7 +35,8 @@ def whole_drive(facts: SummaryFacts) -> Iterator[str]:
         judged = known.filter(pl.col(over).is_not_null())
         missing = judged.filter(pl.col(over) > 1 - target / 100).height
         if judged.height > 1:
-            count = f"{grouped(missing)} of {counted(judged.height, 'variant')} with a system limit {are(missing)}"
+            which = "None" if not missing else grouped(missing)
+            count = f"{which} of {counted(judged.height, 'variant')} with a system limit {are(missing or 1)}"
             yield f"{count} over it in more than {100 - target:.4g} % of drives."
 
 
