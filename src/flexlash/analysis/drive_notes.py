@@ -68,8 +68,6 @@ class DriveNotes:
         whose = f", the greatest, of {shown(self.variant, longest=_NAME)}" if self.told > 1 else ""
         limit = "no system limit is given"
         if self.judged:
-            of = f"{grouped(self.judged)} variant{'' if self.judged == 1 else 's'}"
-            limit = (
-                f"system limit met by {grouped(self.meets)} of {of} with one ({self.target:g} % of drives within it)"
-            )
+            met = f"{grouped(self.meets)} of {grouped(self.judged)}"
+            limit = f"system limit met by {met} ({self.target:g} % of drives within it)"
         yield f"Whole drive, wind-up and other sources: worst case {angle_words(self.most)}{whose}; {limit}."

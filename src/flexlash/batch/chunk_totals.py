@@ -154,11 +154,8 @@ class Totals:
         counts = self.counts
         groups = self.groups
         listed = f"{findings_file or 'the table beside a marked copy (--annotate)'} lists them all"
-        details = (
-            [*lines_of_limits(counts, self._named(), self._bounds), *self._drives.lines(), *self._note_lines()]
-            if ran
-            else []
-        )
+        limits = lines_of_limits(counts, self._named(), self._bounds)
+        details = [*limits, *self._drives.lines(), *self._note_lines()] if ran else []
         return Answer(
             exit_code=exit_code_of(counts, fail_over_limit=fail_over_limit),
             told={
