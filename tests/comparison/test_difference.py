@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 
 from flexlash import __version__
-from flexlash.comparison.changes import Change
-from flexlash.comparison.changes import equal as is_equal
+from flexlash.comparison.changed_value import Change
+from flexlash.comparison.changed_value import equal as is_equal
 from flexlash.comparison.difference import changed_results, difference
 from flexlash.comparison.sides import side_of
 from flexlash.pipeline import check, run

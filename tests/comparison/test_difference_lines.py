@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from flexlash.comparison.changes import Change
+from flexlash.comparison.changed_value import Change
 from flexlash.comparison.difference import Difference, Differing
 from flexlash.comparison.difference_lines import comparison_line, difference_lines
 from flexlash.comparison.sides import Name, Side

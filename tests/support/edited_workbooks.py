@@ -19,6 +19,7 @@ from flexlash.feedback.template.entry_rules import FIRST_ROW, HEADER_ROW
 from flexlash.feedback.template.template_workbook import Filling, template_bytes
 from flexlash.schema.cell_addresses import column_letters
 from flexlash.schema.columns import ENTRY_SHEETS
+from flexlash.validation.decision_sheets import DECISION_SHEETS
 
 __all__ = [
     "FIRST", "HEADER", "LETTERS", "edited", "last_row", "parts", "reading_here", "records", "small_template", "twelve",
@@ -30,10 +31,11 @@ HEADER, FIRST = HEADER_ROW + 1, FIRST_ROW + 1
 LETTERS = {
     sheet: {column.key: column_letters(place) for place, column in enumerate(columns, start=1)}
     for sheet, columns in ENTRY_SHEETS.items()
+    if sheet not in DECISION_SHEETS
 }
-"""Column letters of every entry sheet by key."""
+"""Column letters of each entry sheet of the template by key."""
 
-_PARTS = {sheet: f"xl/worksheets/sheet{place}.xml" for place, sheet in enumerate(ENTRY_SHEETS, start=1)}
+_PARTS = {sheet: f"xl/worksheets/sheet{place}.xml" for place, sheet in enumerate(LETTERS, start=1)}
 _STYLES = "xl/styles.xml"
 _DATE_FORMAT = 14
 _ADDRESS = re.compile(r"([A-Z]+)(\d+)")

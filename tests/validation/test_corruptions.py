@@ -187,7 +187,7 @@ def test_rows_with_an_error_are_not_computed(cases):
         assert not errors or case.outcome.exit_code in {3, 4} or not rows, case.seed
 
 
-@pytest.mark.parametrize(("sheet", "free"), [("Materials", "H"), ("Tolerances", "Q"), ("Variants", "AC")])
+@pytest.mark.parametrize(("sheet", "free"), [("Materials", "H"), ("Tolerances", "Q"), ("Variants", "AD")])
 def test_a_lost_header_of_names_is_told_once(sheet, free):
     """Where the column of names has no header nobody blames those who use the names: one cause, one finding."""
     outcome = _checked(edited({(sheet, f"A{FIRST - 1}"): ("blank", "")}))

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from flexlash.comparison.changes import Change, equal
+from flexlash.comparison.changed_value import Change, equal
 from flexlash.comparison.sides import Name, Side
 from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, ENTRY_SHEETS

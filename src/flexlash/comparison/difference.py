@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from flexlash.comparison.calculation_error import POINTS, is_within_error
-from flexlash.comparison.changes import ROUNDING, Change, equal
+from flexlash.comparison.changed_value import ROUNDING, Change, equal
 from flexlash.comparison.decision_changes import decision_changes
 from flexlash.comparison.sides import Name, Side
 from flexlash.comparison.used_values import Used

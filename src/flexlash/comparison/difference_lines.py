@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from flexlash.comparison.calculation_error import AGREEING
-from flexlash.comparison.changes import Change
+from flexlash.comparison.changed_value import Change
 from flexlash.comparison.difference import FIRST, Difference, Differing
 from flexlash.comparison.sides import Name
 from flexlash.reading.carried import SWITCHES

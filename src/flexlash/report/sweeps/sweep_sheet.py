@@ -73,7 +73,7 @@ class _Blocks:
     def write(self, row: int, study: Study, number: int) -> int:
         """Write the block of the study of a number, from 0, from a row on; return the row below it."""
         title = study_title(study)
-        self.sheet.merge_range(row, 0, row, LAST_COLUMN, title, self.book.format("section"))
+        self._write_across(row, title, "section")
         row += 1
         for sentence in study_sentences(study, self.target):
             self._write_sentence(row, sentence)
@@ -97,8 +97,13 @@ class _Blocks:
         text = f"{title}: share of the disk in the backlash, and von Mises stress"
         self.book.insert(self.sheet, row, _SHARE_COLUMN, chart, size=(_WIDTHS[1], _HEIGHT), text=text)
 
+    def _write_across(self, row: int, text: str, look: str) -> None:
+        """Write a text across the columns; the name of a variant at its beginning never becomes a formula."""
+        self.sheet.merge_range(row, 0, row, LAST_COLUMN, "", self.book.format(look))
+        self.sheet.write_string(row, 0, text, self.book.format(look))
+
     def _write_sentence(self, row: int, sentence: str) -> None:
         """Write a sentence across the columns."""
-        self.sheet.merge_range(row, 0, row, LAST_COLUMN, sentence, self.book.format("wrap"))
+        self._write_across(row, sentence, "wrap")
         width = merged_width([VALUE_WIDTH, *[WIDTH] * LAST_COLUMN])
         self.sheet.set_row(row, LINE_HEIGHT * lines_of(sentence, width))
