@@ -89,7 +89,7 @@ def terms_of(computed: Computed, settings: Settings, levers: Mapping[str, LeverR
         materials={name: one for name, one in validated.materials.items() if name not in blocked},
         rows=levers,
         plan=replace(sampling_plan(settings, options), cross_check=False, shares=False),
-        target=1 - settings.target_percent / 100,
+        target=settings.verdict_bounds.meets,
     )
 
 

@@ -37,6 +37,7 @@ SHEETS = {
     "Ranking": "Variants worst first, each beside a base variant that you pick.",
     "Contributions": "Which dimension causes how much of whose spread, and how much of the backlash the disk adds.",
     "Sweep": "Parametric studies: backlash and spread over one dimension or two, and where they cross the limit.",
+    "Trade-offs": "Backlash against mass and cost, with the front of what none beats; the worst by each dimension.",
     "Trace": "One variant worked through in formulas, from its inputs to backlash and stress; inputs can be changed.",
     "Trace spread": "The tolerances of that variant added up to the first-order standard deviation, in formulas.",
     "Trace steps": "The sums over points and the search behind single lines of Trace.",

@@ -39,6 +39,7 @@ from flexlash.report.trace.trace_sheet import trace_sheet, write_trace
 from flexlash.report.trace.trace_slope import SLOPE
 from flexlash.report.trace.trace_spread import trace_spread_sheet, write_trace_spread
 from flexlash.report.trace.trace_steps import STEPS
+from flexlash.report.tradeoffs.trade_offs_sheet import write_trade_offs
 from flexlash.report.used_sheet import write_used
 
 __all__ = ["report_bytes"]
@@ -68,6 +69,7 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     write_contributions(book, outcome, drawn, compared)
     swept = stored_sweeps(data.studies[:MOST_STUDIES])
     write_sweep(book, outcome, data.studies, swept)
+    write_trade_offs(book, outcome, drawn)
     trace, trace_spread = trace_sheet(book), trace_spread_sheet(book)
     write_sensitivity(book, outcome, drawn)
     write_used(book, outcome, drawn)
