@@ -22,12 +22,19 @@ __all__ = ["source_words", "used_rows", "used_tolerances"]
 _SCHEMA = {column.key: pl.Float64() if column.is_number else pl.String() for column in TOLERANCES_USED}
 
 
-def used_tolerances(variants: Iterable[Computed]) -> pl.DataFrame:
+def used_tolerances(variants: Iterable[Computed], widths: pl.DataFrame | None = None) -> pl.DataFrame:
     """Return one row for each dimension that scatters or is shifted, of every variant in this order.
 
-    Numbers are in the unit of the dimension's own column.
+    Numbers are in the unit of the dimension's own column. `widths` tells by `variant` and `dimension` to what half a
+    width tolerances may go, `relax_to`, or must, `tighten_to`; without it nothing is told of that.
     """
-    return pl.DataFrame([row for one in variants for row in used_rows(one)], schema=_SCHEMA, orient="row")
+    used = pl.DataFrame([row for one in variants for row in used_rows(one)], schema=_SCHEMA, orient="row")
+    if widths is None:
+        return used
+    found = used.drop("relax_to", "tighten_to").join(
+        widths, on=["variant", "dimension"], how="left", maintain_order="left"
+    )
+    return found.select(used.columns)
 
 
 def used_rows(one: Computed) -> Iterator[dict[str, Any]]:

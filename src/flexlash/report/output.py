@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.used_tolerances import used_tolerances
+from flexlash.analysis.whole_batch import DRAWN
+from flexlash.decisions.width_table import width_table_of
 from flexlash.report.results_table import csv_text, results_table
 from flexlash.schema.stamps import placeholder
 
 if TYPE_CHECKING:
+    import polars as pl
+
     from flexlash.report.report_data import ReportData
 
 __all__ = ["ROLE", "ROWS_TOGETHER", "outcome_bytes"]
@@ -51,11 +55,18 @@ def _as_json(outcome: Outcome) -> bytes:
     """Return Results, Tolerances used and the findings as one JSON object, the stamp last."""
     content = {
         "results": results_table(outcome).to_dicts(),
-        "tolerances": used_tolerances(outcome.computed.values()).to_dicts(),
+        "tolerances": used_tolerances(outcome.computed.values(), _widths(outcome)).to_dicts(),
         "findings": [content.as_dictionary() for content in outcome.findings],
         "stamp": placeholder(ROLE),
     }
     return (json.dumps(content, ensure_ascii=False, indent=1) + "\n").encode()
+
+
+def _widths(outcome: Outcome) -> pl.DataFrame | None:
+    """Return to what tolerances may go; None of more variants than a report draws, which would take too long."""
+    if outcome.validated is None or len(outcome.computed) > DRAWN:
+        return None
+    return width_table_of(outcome.computed, outcome.settings, outcome.validated.levers, outcome.options)
 
 
 _TABLES = {".csv": _as_csv, ".parquet": _as_parquet, ".json": _as_json}

@@ -62,13 +62,16 @@ TOLERANCES_USED = (
     _used(
         "relax_to",
         "Relax to ±",
-        "Half the width of the limits to which this tolerance alone may grow. Blank: not looked for.",
+        "Half the width of the limits, in whole drawing steps, to which this tolerance alone may grow so that the "
+        "variant still keeps its target. Blank: it may not, or the variant has no limit or misses it, or there are "
+        "more variants than a report draws.",
         minimum=0,
     ),
     _used(
         "tighten_to",
         "Tighten to ±",
-        "Half the width of the limits that alone would meet the backlash limit. Blank: not looked for.",
+        "Half the width of the limits, in whole drawing steps, that alone would bring the variant within its limit. "
+        "Blank: none does, or the variant has no limit or meets it, or there are more variants than a report draws.",
         minimum=0,
     ),
     _used(
