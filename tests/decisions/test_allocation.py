@@ -192,8 +192,8 @@ def test_a_variant_that_no_tolerance_keeps_is_told(table, sound, classes):
     assert frame["to_value"].null_count() == 0
     alone = _allocation(_outcome(table, sound, classes, (3.6, 2.7)))
     assert alone["to_value"].null_count() == alone.height
-    assert "of long" in alone["reason"][0]
-    assert "of short" in alone["reason"][0]
+    assert "long" in alone["reason"][0]
+    assert "short" in alone["reason"][0]
 
 
 def test_grades_stay_grades_where_sizes_differ(table, sound, classes):

@@ -97,14 +97,14 @@ def _reason(allocation: Allocation, members: Sequence[Member]) -> str:
     """Return which variants stay over their limit whatever the tolerances, and by how much at least."""
     if not allocation.helpless:
         return "" if allocation.values is not None else "no widths were found that keep all of its variants"
-    parts = [
-        f"{share_of_units(allocation.over[place])} of {shown(members[place].variant.name)}"
-        for place in allocation.helpless[:_NAMED]
-    ]
-    more = len(allocation.helpless) - len(parts)
-    rest = f", and {more} variants more do" if more else ""
+    named: dict[str, list[str]] = defaultdict(list)
+    for place in allocation.helpless[:_NAMED]:
+        named[share_of_units(allocation.over[place])].append(shown(members[place].variant.name))
+    parts = [f"{share} of {' and '.join(names)}" for share, names in named.items()]
+    more = len(allocation.helpless) - _NAMED
+    rest = f" and of {more} variants more" if more > 0 else ""
     kept = "; the others are kept with these" if allocation.values is not None else ""
-    return f"whatever the tolerances, {', '.join(parts)} stay over the limit{rest}{kept}"
+    return f"even with the narrowest widths {', '.join(parts)}{rest} stay over the limit{kept}"
 
 
 def _names(names: Sequence[str]) -> str:

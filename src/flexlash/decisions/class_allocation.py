@@ -47,9 +47,9 @@ _LEAST_COST = 1e-3
 class Allocation:
     """What a class may have: a value for each of its widths, None where no width keeps any of its variants.
 
-    `over` is the share over the limit of each variant with these, `helpless` the places of those that no tolerance of
-    the class keeps within, and `tight` of those that are at their limit. `equal` is the factor at which all widths
-    alike keep the others, None where none does.
+    `helpless` are the places of variants that not even the narrowest widths keep within, `tight` of those that are at
+    their limit. `over` is the share over the limit of each variant with the values, of helpless ones with the narrowest
+    widths. `equal` is the factor at which all widths alike keep the others, None where none does.
     """
 
     values: tuple[float, ...] | None
@@ -76,7 +76,9 @@ def allocated(widths: Sequence[ClassWidth], members: Sequence[Member], terms: Te
         found = _Search(widths, [members[place] for place in working], terms).found() if working else None
         if found is None:
             break
-        over = every.proven(found.values)
+        # What no width helps is told by what the narrowest leave.
+        proven = every.proven(found.values)
+        over = [least[place] if place in helpless else share for place, share in enumerate(proven)]
         lacking = [place for place in helped if over[place] > terms.target]
         if not lacking:
             wanted = (1 - _TIGHT) * _inverse_square(terms.target)
