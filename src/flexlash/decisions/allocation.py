@@ -55,7 +55,7 @@ def _of_class(owner: str, presents: Sequence[Present], terms: Terms) -> Iterator
     """Yield the rows of one class."""
     nearest = sorted(presents, key=lambda one: (-one.quantiles.get(_TAIL, 0.0) / one.limit, one.variant.row))
     members = [
-        Member(variant=one.variant, limit=one.limit, limits=limits_as_submitted(one.variant, terms)[0])
+        Member(variant=one.variant, limit=one.limit, over=one.over, limits=limits_as_submitted(one.variant, terms)[0])
         for one in nearest[:MOST_MEMBERS]
     ]
     widths = list(class_widths(terms.classes[owner], members, terms))

@@ -67,24 +67,28 @@ def allocated(widths: Sequence[ClassWidth], members: Sequence[Member], terms: Te
     the rows that a submission would have. Room that a variant lacks then is taken from it, and the rest looked for
     again.
     """
-    every = _Search(widths, members, terms)
-    least = every.over(np.log([width.least for width in widths]))
-    helpless = tuple(place for place, over in enumerate(least) if over > terms.target)
+    least = [member.over for member in members]
+    hopeful = [place for place, member in enumerate(members) if not member.is_hopeless]
+    every = _Search(widths, [members[place] for place in hopeful], terms)
+    narrowest = every.over(np.log([width.least for width in widths])) if hopeful else []
+    for place, share in zip(hopeful, narrowest, strict=True):
+        least[place] = share
+    helpless = tuple(place for place, share in enumerate(least) if share > terms.target)
     helped = [place for place in range(len(members)) if place not in helpless]
+    all_helped = _Search(widths, [members[place] for place in helped], terms)
     working = helped[:_TOGETHER]
     for _ in range(_REPAIRS):
         found = _Search(widths, [members[place] for place in working], terms).found() if working else None
         if found is None:
             break
-        # What no width helps is told by what the narrowest leave.
-        proven = every.proven(found.values)
-        over = [least[place] if place in helpless else share for place, share in enumerate(proven)]
-        lacking = [place for place in helped if over[place] > terms.target]
+        shares = dict(zip(helped, all_helped.proven(found.values), strict=True))
+        lacking = [place for place, share in shares.items() if share > terms.target]
         if not lacking:
             wanted = (1 - _TIGHT) * _inverse_square(terms.target)
-            tight = tuple(place for place in helped if _inverse_square(over[place]) >= wanted)
-            return Allocation(values=found.values, over=tuple(over), helpless=helpless, tight=tight, equal=found.equal)
-        working = [*working, *sorted(lacking, key=lambda place: -over[place])[:_TOGETHER]]
+            tight = tuple(place for place, share in shares.items() if _inverse_square(share) >= wanted)
+            over = tuple(shares.get(place, least[place]) for place in range(len(members)))
+            return Allocation(values=found.values, over=over, helpless=helpless, tight=tight, equal=found.equal)
+        working = [*working, *sorted(lacking, key=lambda place: -shares[place])[:_TOGETHER]]
     return Allocation(values=None, over=tuple(least), helpless=helpless)
 
 

@@ -29,6 +29,9 @@ MOST_GRADES = 5
 _PERCENT_STEP = 0.01
 """Step of a width in per cent of the value."""
 
+_HOPELESS = 0.9999
+"""Share over the limit that no narrower tolerances bring below a half."""
+
 _SAME = 1e-10
 """Deviations [m] that differ by less are the same."""
 
@@ -39,11 +42,17 @@ Kind = Literal["deviations", "per cent", "grade"]
 
 @dataclass(frozen=True, kw_only=True)
 class Member:
-    """A variant of a class with a limit [rad], and its limits as they are."""
+    """A variant of a class with a limit [rad], the share of its units over it, and its limits as they are."""
 
     variant: Variant
     limit: float
+    over: float
     limits: Mapping[str, Limits]
+
+    @property
+    def is_hopeless(self) -> bool:
+        """Whether its units are over the limit however narrow they are made about the same middle."""
+        return self.over > _HOPELESS and not any(limits.mean_shift for limits in self.limits.values())
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -54,7 +54,7 @@ def width_words(row: Mapping[str, Any], key: str) -> str:
 def _line(rows: pl.DataFrame, target: str) -> str:
     """Return what the tolerances of one class may be."""
     name = shown(rows["tolerance_class"][0], longest=_NAME)
-    reason, cost = rows["reason"][0], rows["relative_cost"].sum()
+    reason, cost = rows["reason"][0], float(rows["relative_cost"].sum())
     changed = rows.filter(pl.col("to_value").is_not_null() & (pl.col("to_value") != pl.col("from_value"))).to_dicts()
     if rows["to_value"].is_null().all():
         return f"Class {name}: no tolerances keep its variants within their limits: {reason}."
