@@ -22,7 +22,7 @@ from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.distribution_curves import CURVE_SCORES
 
 SHEETS = [
-    "Summary", "Levers", "Results", "Explorer", "Compare", "Ranking", "Contributions", "Trade-offs",
+    "Summary", "Levers", "Allocation", "Results", "Explorer", "Compare", "Ranking", "Contributions", "Trade-offs",
     "Trace", "Trace spread",
     "Sensitivity", "Tolerances used", "Sections", "Strength", "Findings", "Submission", "Materials", "Tolerances",
     "Settings", "About", "Curves", "Compared", "Inputs", "Scatter", "Trace steps", "Trace slope", "Carried",

@@ -6,6 +6,8 @@ import pytest
 from report_entries import opened
 
 from flexlash.analysis.used_tolerances import used_tolerances
+from flexlash.decisions.levers import levers_of
+from flexlash.decisions.width_table import width_table
 from flexlash.report import extent, report_data
 from flexlash.report.used_sheet import USED
 from flexlash.report.workbook import report_bytes
@@ -25,10 +27,12 @@ def _rows(sheet):
 def test_the_sheet_has_every_number(study):
     """Rows, their order and every number are those of the frame; what no variant has takes no column."""
     outcome, path = study
-    frame, rows = used_tolerances(outcome.computed.values()), _rows(opened(path)[USED])
+    widths = width_table(levers_of(outcome.computed, outcome.settings, {}, outcome.options))
+    frame, rows = used_tolerances(outcome.computed.values(), widths), _rows(opened(path)[USED])
     assert frame.height == len(rows) > 60
     empty = {key for key in frame.columns if frame[key].is_null().all()}
-    assert "relax_to" in empty
+    assert "tighten_to" in empty
+    assert frame["relax_to"].drop_nulls().len() > 10
     for row, expected in zip(rows, frame.to_dicts(), strict=True):
         assert set(row) == set(expected) - empty
         for key in row:

@@ -16,11 +16,13 @@ __all__ = ["explain", "schema"]
 def schema(*, as_json: bool) -> None:
     """Print the data dictionary: every column of every sheet, and the rules of its cells."""
     from flexlash.schema.columns import ENTRY_SHEETS
+    from flexlash.schema.decision_results import ALLOCATION
     from flexlash.schema.part_rules import PART_RULES
     from flexlash.schema.result_columns import FINDINGS, RESULTS
     from flexlash.schema.used_columns import TOLERANCES_USED
 
-    sheets = {**ENTRY_SHEETS, "Results": RESULTS, "Tolerances used": TOLERANCES_USED, "Findings": FINDINGS}
+    shown = {"Results": RESULTS, "Tolerances used": TOLERANCES_USED, "Allocation": ALLOCATION, "Findings": FINDINGS}
+    sheets = {**ENTRY_SHEETS, **shown}
     columns = [column for sheet in sheets.values() for column in sheet]
     if as_json:
         click.echo(json.dumps([column.as_dictionary() for column in columns], ensure_ascii=False, indent=1))

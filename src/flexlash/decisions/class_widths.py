@@ -177,4 +177,5 @@ def _graded(width: ClassWidth) -> ClassWidth:
         for number in range(round(width.value) - MOST_GRADES, round(width.value) + MOST_GRADES + 1)
         if is_grade(f"{parts[0]}{number}")
     ]
-    return replace(width, least=width.factor(min(numbers)), most=width.factor(max(numbers)), bound=f"IT{max(numbers)}")
+    bound = f"grade {max(numbers)}, the coarsest there is"
+    return replace(width, least=width.factor(min(numbers)), most=width.factor(max(numbers)), bound=bound)

@@ -8,6 +8,7 @@ from typing import Any
 from xlsxwriter.utility import quote_sheetname
 
 from flexlash.analysis.outcome import Outcome
+from flexlash.report.allocation_sheet import ALLOCATED
 from flexlash.report.extent import MOST_FINDINGS, Extent, extent_of
 from flexlash.report.layout.links import write_link
 from flexlash.report.layout.styles import Book
@@ -17,6 +18,7 @@ from flexlash.report.wording.measured_parts import how_left_open
 from flexlash.report.wording.verdict import NO_VERDICT, verdict_rules
 from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, SETTINGS
+from flexlash.schema.decision_results import ALLOCATION
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.number_words import grouped
 from flexlash.schema.result_columns import result_columns
@@ -30,6 +32,7 @@ __all__ = ["CHECKSUMS", "ERRATA", "LEFT_OUT", "MODEL", "PROOF", "SHEETS", "TABS"
 
 SHEETS = {
     "Summary": "One page: what was computed, what fails, by how much, why and what to change.",
+    "Allocation": "What the tolerances of each class may be, at least cost, so that all of its variants are kept.",
     "Levers": "Which one change brings a failing variant within its limit; how far those of a sound one may go.",
     "Results": "Every number of every variant, in submitted order, to filter and to copy.",
     "Explorer": "One variant picked from a list: the share over any limit, the limit for any share, its curves.",
@@ -292,6 +295,7 @@ def write_about(book: Book, outcome: Outcome, later: Sequence[str] = ()) -> None
         ("Errata of the published study", [("", text) for text in ERRATA]),
         ("Columns of Results", [(column.label, column.help) for column in _result_columns(outcome)]),
         ("Columns of Tolerances used", [(column.label, column.help) for column in TOLERANCES_USED]),
+        ("Columns of Allocation", [(column.label, column.help) for column in ALLOCATION if ALLOCATED in present]),
         ("Dimensions", [(name, f"{column.sheet}: {column.label}") for name, column in DIMENSIONS.items()]),
     )
     for title, entries in sections:

@@ -12,6 +12,7 @@ from flexlash.analysis.computed import Computed
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.tolerance_spread import drawn_curves
 from flexlash.analysis.whole_batch import DRAWN, worst_rows
+from flexlash.decisions.allocation import allocation_of
 from flexlash.decisions.levers import levers_of
 from flexlash.decisions.sweep import Study, sweeps_of
 from flexlash.schema.variant import Settings
@@ -44,6 +45,11 @@ def no_levers() -> pl.DataFrame:
     return levers_of({}, Settings(), {})
 
 
+def no_allocation() -> pl.DataFrame:
+    """Return the table of allocated tolerances without a row."""
+    return allocation_of({}, Settings(), {})
+
+
 @dataclass(frozen=True, kw_only=True)
 class Drawn:
     """A variant with its Results row, what was computed of it, and its whole distribution."""
@@ -58,13 +64,14 @@ class ReportData:
     """What the report draws beside an outcome.
 
     `drawn` are the variants that it shows, worst first; `pictured` the elasticity checks of the worst, with their
-    stress fields, by name; `levers` the table of single changes of those drawn that have a limit; `studies` the sweeps
-    that were asked for.
+    stress fields, by name; `levers` the table of single changes of those drawn that have a limit; `allocation` that of
+    the tolerances of their classes; `studies` the sweeps that were asked for.
     """
 
     drawn: Sequence[Drawn]
     pictured: Mapping[str, ElasticityCheck] = field(default_factory=dict)
     levers: pl.DataFrame = field(default_factory=no_levers)
+    allocation: pl.DataFrame = field(default_factory=no_allocation)
     studies: Sequence[Study] = ()
 
 
@@ -76,6 +83,7 @@ def report_data(outcome: Outcome) -> ReportData:
         drawn=drawn,
         pictured=_pictured(outcome, worst),
         levers=levers_of_variants(outcome, [one.row[ROW] for one in drawn]),
+        allocation=_allocation(outcome),
         studies=sweeps_of(outcome),
     )
 
@@ -120,3 +128,10 @@ def levers_of_variants(outcome: Outcome, rows: Sequence[int]) -> pl.DataFrame:
         return no_levers()
     computed = {row: outcome.computed[row] for row in rows}
     return levers_of(computed, outcome.settings, outcome.validated.levers, outcome.options)
+
+
+def _allocation(outcome: Outcome) -> pl.DataFrame:
+    """Return the table of allocated tolerances; empty where the outcome does not hold all variants of a class."""
+    if outcome.validated is None or outcome.whole is not None:
+        return no_allocation()
+    return allocation_of(outcome.computed, outcome.settings, outcome.validated.levers, outcome.options)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import polars as pl
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.used_tolerances import used_tolerances
+from flexlash.decisions.width_table import width_table
 from flexlash.report.extent import extent_of
 from flexlash.report.layout.paper import SMALL, print_readably
 from flexlash.report.layout.result_formats import SHARE_OF_VARIANCE_ERROR
 from flexlash.report.layout.styles import Book, decimals_of, percent_of
-from flexlash.report.report_data import Drawn
+from flexlash.report.report_data import ReportData
 from flexlash.schema.column import Column
 from flexlash.schema.entry_words import dimension_title
 from flexlash.schema.used_columns import TOLERANCES_USED
@@ -25,7 +25,8 @@ _NOTES = (
     "Limits are the drawing's, whatever the process does: worst case and shares outside the drawing take them. Mean "
     "and standard deviation are those of the parts. A dimension without a row is exact.",
     "What Trace spread adds up for one variant stands here for all; the file of -o NAME.json holds "
-    "the same with every digit, under tolerances.",
+    "the same with every digit, under tolerances. Relax to, Tighten to: half the width to which this tolerance alone "
+    "may go, or must, by sheet Levers.",
 )
 _HEADER = len(_NOTES) + 2
 _WIDTHS = {"variant": 26.0, "dimension": 24.0, "unit": 7.0, "distribution": 17.0, "scatters_with": 24.0, "source": 44.0}
@@ -35,11 +36,11 @@ _MORE_DIGITS = {"mean": 10, "standard_deviation": 100}
 """A mean is shown with one digit more than the first of the standard deviation, this with two."""
 
 
-def write_used(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
+def write_used(book: Book, outcome: Outcome, data: ReportData) -> None:
     """Write one row for each dimension that scatters or is shifted, of all variants or of those drawn of many."""
     extent = extent_of(outcome)
-    variants = [one.computed for one in drawn] if extent.is_part else outcome.computed.values()
-    frame = used_tolerances(variants)
+    variants = [one.computed for one in data.drawn] if extent.is_part else outcome.computed.values()
+    frame = used_tolerances(variants, width_table(data.levers))
     columns = [column for column in TOLERANCES_USED if frame.is_empty() or frame[column.key].is_not_null().any()]
     sheet = book.sheet(USED)
     sheet.write_string(0, 0, "Tolerances as they were used", book.format("title"))

@@ -9,6 +9,7 @@ import xlsxwriter
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.about_sheet import write_about
+from flexlash.report.allocation_sheet import write_allocation
 from flexlash.report.carried_sheet import write_carried
 from flexlash.report.compare.compare_sheet import write_compare
 from flexlash.report.compare.compared import COMPARED_NOTE, compared_variants
@@ -61,6 +62,7 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     extent = extent_of(outcome)
     write_summary(book, outcome, data, curves)
     write_levers(book, outcome, data)
+    write_allocation(book, data.allocation, outcome.settings.target_percent)
     write_results(book, outcome, drawn)
     write_explorer(book, curves, extent, outcome.settings.verdict_bounds)
     compared = compared_variants(drawn)
@@ -72,7 +74,7 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     write_trade_offs(book, outcome, drawn)
     trace, trace_spread = trace_sheet(book), trace_spread_sheet(book)
     write_sensitivity(book, outcome, drawn)
-    write_used(book, outcome, drawn)
+    write_used(book, outcome, data)
     write_samples(book, outcome, drawn)
     write_sections(book, drawn, extent)
     write_strength(book, drawn, extent)

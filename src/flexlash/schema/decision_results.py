@@ -109,12 +109,18 @@ LEVERS_TABLE = (
 ALLOCATION = (
     _allocated("tolerance_class", "Tolerance class", "The class.", type="text", role="identity"),
     _allocated("dimension", "Dimension", "A dimension of the class that scatters.", type="text", role="identity"),
-    _allocated("unit", "Unit", "Unit of the deviations: % where the class has them so.", type="text"),
-    _allocated("from_value", "± now", "Half the width of the limits as it is.", minimum=0),
+    _allocated(
+        "unit",
+        "Unit",
+        "Unit of the widths: that of the dimension; % where the class has them so; IT grade where sizes differ.",
+        type="text",
+    ),
+    _allocated("from_value", "± now", "Half the width of the limits as it is, or the grade.", minimum=0),
     _allocated(
         "to_value",
         "± allocated",
-        "Half the width that keeps every variant of the class within its limit at the least relative cost.",
+        "Half the width, or the grade, that keeps every variant of the class within its limit at the least relative "
+        "cost. In whole steps of the drawing, so that it can be entered in Tolerances.",
         minimum=0,
     ),
     _allocated("grade_steps", "IT grades wider", "How many IT grades wider that is; negative: finer."),
@@ -122,7 +128,7 @@ ALLOCATION = (
     _allocated(
         "limited_by",
         "Limited by",
-        "Variants that are at their limit with these tolerances, or the greatest width that was allowed.",
+        "Variants that are at their limit with these tolerances, the greatest width that was allowed, or why it stays.",
         type="text",
     ),
     _allocated(

@@ -146,7 +146,7 @@ def _add_variants(facts: PageFacts, outcome: Outcome, data: ReportData) -> None:
     drawn = data.drawn[:PAGED]
     facts["sentences"] = [
         Sentence(topic=topic, text=text, kind=_KINDS.get(topic, "note"))  # type: ignore[typeddict-item]
-        for topic, text in sentences(outcome, data.levers)
+        for topic, text in sentences(outcome, data.levers, data.allocation)
     ]
     facts["chart"] = chart_of(summary, rows, names, len(drawn))
     facts["table"] = list(table_rows(summary, rows, names, len(drawn)))

@@ -9,6 +9,7 @@ from typing import Any
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_summary import counted, points_words
+from flexlash.report.allocation_sheet import ALLOCATED
 from flexlash.report.drive.drive_page import SHEET as DRIVE_SHEET
 from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
@@ -18,6 +19,7 @@ from flexlash.report.layout.wrapping import LINE_HEIGHT, fitted, lines_of, merge
 from flexlash.report.levers_sheet import LEVERS, lever_places
 from flexlash.report.report_data import Drawn, ReportData
 from flexlash.report.summary.summary_chart import chart_words, variants_chart
+from flexlash.report.wording.allocation_sentences import CLASSES
 from flexlash.report.wording.distances import distance, distance_format
 from flexlash.report.wording.drive_sentences import DRIVE
 from flexlash.report.wording.lever_sentences import CHANGE, LENGTH, RELAX
@@ -68,7 +70,7 @@ def write_summary(book: Book, outcome: Outcome, data: ReportData, curves: Stored
     page.heading()
     page.key_figures()
     targets = _targets(data)
-    for topic, text in sentences(outcome, data.levers):
+    for topic, text in sentences(outcome, data.levers, data.allocation):
         page.sentence(topic, text, targets.get(topic, ""))
     if swept := summary_sentence(data.studies, outcome.settings.target_percent):
         page.sentence("Sweep", swept, "Sweep!A1")
@@ -249,7 +251,7 @@ def _targets(data: ReportData) -> dict[str, str]:
     """Return the cells to which topics lead: sheets of their own, and the changes that a sentence tells first."""
     levers = shown_levers(data.levers)
     places, first = lever_places(levers), {CHANGE: "meet", RELAX: "relax", LENGTH: "relax"}
-    targets = {FINDINGS: f"{FINDINGS}!A1", DRIVE: f"{DRIVE_SHEET}!A1"}
+    targets = {FINDINGS: f"{FINDINGS}!A1", CLASSES: f"{ALLOCATED}!A1", DRIVE: f"{DRIVE_SHEET}!A1"}
     for topic, direction in first.items():
         for variant in levers.filter(levers["direction"] == direction)["variant"].head(1):
             targets[topic] = f"{LEVERS}!A{places[variant] + 1}"

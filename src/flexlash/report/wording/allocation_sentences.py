@@ -1,4 +1,4 @@
-"""The Allocation table → sentences: how wide the tolerances of a class may be, what that saves, and what limits them."""
+"""The Allocation table → sentences: how wide the tolerances of a class may be, and what that saves."""
 
 from __future__ import annotations
 
@@ -7,16 +7,18 @@ from typing import Any
 
 import polars as pl
 
-from flexlash.analysis.run_summary import listed
+from flexlash.analysis.run_summary import grouped, listed
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import shown, spelled_out
 
-__all__ = ["allocation_lines", "width_words"]
+__all__ = ["CLASSES", "allocation_lines", "class_tolerances", "width_words"]
 
-_CLASSES = 2
-"""Most classes that the Summary tells of."""
+CLASSES = "Tolerance classes"
+"""The topic of the sentence that leads to the sheet Allocation."""
 
-_NAMED = 3
+_NAMED, _BRIEFLY = 3, 2
+"""Most dimensions that a sentence names, and on the Summary."""
+
 _NAME = 40
 _DIGITS = 3
 
@@ -26,13 +28,23 @@ _FINE = 1000.0
 _GRADE = "IT grade"
 
 
-def allocation_lines(allocation: pl.DataFrame, target_percent: float, most: int = _CLASSES) -> Iterator[str]:
-    """Yield for each of the first classes what its tolerances may be; how many classes more there are, last."""
-    classes = allocation.partition_by("tolerance_class", maintain_order=True)
-    for rows in classes[:most]:
-        yield _line(rows, f"{target_percent:.10g} %")
-    if (more := len(classes) - most) > 0:
-        yield f"{more} more {'class is' if more == 1 else 'classes are'} on Allocation."
+def class_tolerances(allocation: pl.DataFrame | None, target_percent: float) -> Iterator[str]:
+    """Yield for the Summary what the tolerances of one class may be: of that which changes most in cost."""
+    if allocation is None or allocation.is_empty():
+        return
+    cost = pl.col("relative_cost").fill_null(0.0).sum().over("tolerance_class").abs()
+    first = allocation.with_columns(cost.alias("_cost")).sort("_cost", descending=True, maintain_order=True)
+    names = allocation["tolerance_class"].unique(maintain_order=True).to_list()
+    rows = allocation.filter(pl.col("tolerance_class") == first["tolerance_class"][0])
+    yield _line(rows, f"{target_percent:.10g} %", _BRIEFLY, without="; who stays over is on Allocation")
+    if (more := len(names) - 1) > 0:
+        yield f"{grouped(more)} more {'class is' if more == 1 else 'classes are'} on Allocation."
+
+
+def allocation_lines(allocation: pl.DataFrame, target_percent: float, most: int) -> Iterator[str]:
+    """Yield for each of the first classes what its tolerances may be."""
+    for rows in allocation.partition_by("tolerance_class", maintain_order=True)[:most]:
+        yield _line(rows, f"{target_percent:.10g} %", _NAMED)
 
 
 def width_words(row: Mapping[str, Any], key: str) -> str:
@@ -51,29 +63,29 @@ def width_words(row: Mapping[str, Any], key: str) -> str:
     return f"± {value:.10g}{'' if unit == '-' else f' {unit}'}"
 
 
-def _line(rows: pl.DataFrame, target: str) -> str:
-    """Return what the tolerances of one class may be."""
+def _line(rows: pl.DataFrame, target: str, most: int, without: str = "") -> str:
+    """Return what the tolerances of one class may be, naming so many; `without` stands for the reason where one is."""
     name = shown(rows["tolerance_class"][0], longest=_NAME)
     reason, cost = rows["reason"][0], float(rows["relative_cost"].sum())
-    changed = rows.filter(pl.col("to_value").is_not_null() & (pl.col("to_value") != pl.col("from_value"))).to_dicts()
     if rows["to_value"].is_null().all():
-        return f"Class {name}: no tolerances keep its variants within their limits: {reason}."
-    but = f" Mind: {reason}." if reason else ""
-    kept = "every variant" if not reason else "every other variant"
+        return f"Class {name}: no tolerances keep its variants within their limits{without or f': {reason}'}."
+    but = without or f". Mind: {reason}" if reason else ""
+    kept = f"{target} of units of every {'other ' if reason else ''}variant within"
+    changed = rows.filter(pl.col("to_value") != pl.col("from_value")).to_dicts()
     if not changed:
-        return f"Class {name} can have no wider tolerances that keep {target} of units of {kept} within its limit.{but}"
-    wider = f"{spelled_out(abs(cost), _DIGITS)} in relative cost"
-    told = _changes(changed)
+        return f"Class {name} has the widest tolerances that keep {kept}{but}."
+    told, amount = _changes(changed, most), f"{spelled_out(abs(cost), _DIGITS)} in relative cost"
     if cost < 0:
-        return f"Class {name} may have {told}: that saves {wider} and keeps {target} of units of {kept} within.{but}"
-    return f"Class {name} needs {told} to keep {target} of units of {kept} within: that takes {wider}.{but}"
+        return f"Class {name} may have {told}: that saves {amount} and keeps {kept}{but}."
+    return f"Class {name} needs {told} to keep {kept}: that takes {amount}{but}."
 
 
-def _changes(rows: Sequence[Mapping[str, Any]]) -> str:
+def _changes(rows: Sequence[Mapping[str, Any]], most: int) -> str:
     """Return which widths change to what, those that change most first."""
     ranked = sorted(rows, key=lambda row: -abs(row["grade_steps"]))
-    parts = [
-        f"{dimension_words(row['dimension'])} {width_words(row, 'to_value')} instead of {width_words(row, 'from_value')}"
-        for row in ranked
-    ]
-    return listed(parts[:_NAMED], _NAMED, len(parts))
+    return listed([_change(row) for row in ranked[:most]], most, len(ranked))
+
+
+def _change(row: Mapping[str, Any]) -> str:
+    now, then = (width_words(row, key) for key in ("from_value", "to_value"))
+    return f"{dimension_words(row['dimension'])} {then} instead of {now}"

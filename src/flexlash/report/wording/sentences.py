@@ -12,6 +12,7 @@ from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_summary import counted, grouped, listed, points_range, spread_notes
 from flexlash.report.layout.links import rule_counts
 from flexlash.report.report_data import ROW
+from flexlash.report.wording.allocation_sentences import CLASSES, class_tolerances
 from flexlash.report.wording.drive_sentences import DRIVE, whole_drive
 from flexlash.report.wording.lever_sentences import (
     CHANGE,
@@ -63,10 +64,12 @@ _LEAST_CAUSE = 0.01
 """Share of the variance below which a dimension is not named."""
 
 
-def sentences(outcome: Outcome, levers: pl.DataFrame) -> Iterator[tuple[str, str]]:
+def sentences(
+    outcome: Outcome, levers: pl.DataFrame, allocation: pl.DataFrame | None = None
+) -> Iterator[tuple[str, str]]:
     """Yield topic and sentences: what a design review wants to know, rounded by the standard error.
 
-    `levers` are the single changes of the variants that the report shows.
+    `levers` are the single changes of the variants that the report shows, `allocation` the tolerances of classes.
     """
     facts = summary_facts(outcome, levers)
     topics = {
@@ -79,6 +82,7 @@ def sentences(outcome: Outcome, levers: pl.DataFrame) -> Iterator[tuple[str, str
         CHANGE: what_to_change(facts),
         RELAX: relaxing(facts),
         LENGTH: lengths(facts),
+        CLASSES: class_tolerances(allocation, outcome.settings.target_percent),
         DRIVE: whole_drive(facts),
         "Cylinder-only formula": _classical(facts),
         "Strength": _strength(facts),
