@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import openpyxl
 import pytest
+from finding_examples import SUBMISSIONS
 
 from flexlash.pipeline import run
 from flexlash.report.layout.links import FIRST_FINDING, finding_list, rules_of
@@ -83,3 +84,17 @@ def test_nothing_found_is_said(table, sound, tmp_path):
     sheet = openpyxl.load_workbook(write_outcome(outcome, tmp_path / "bare.xlsx"))["Findings"]
     assert [cell.value for cell in sheet["A"] if cell.value] == ["Findings", "Nothing was found."]
     assert sheet.auto_filter.ref is None
+
+
+@pytest.mark.slow
+def test_columns_of_one_key_are_called_by_their_own_sheet(tmp_path):
+    """A step of Sweep is no drawing step of Levers, whatever the sheets of the report are called."""
+    path, options = SUBMISSIONS["decided"](tmp_path)
+    run(path, tmp_path / "report.xlsx", samples=16, method="random", **options)
+    texts = {
+        (row[1], row[3]): row[5]
+        for row in openpyxl.load_workbook(tmp_path / "report.xlsx")["Findings"].iter_rows(values_only=True)
+        if row[2] in {"Levers", "Sweep"}
+    }
+    assert texts["E368", "D4"] == "Step\nstep"
+    assert texts["W463", "D3"] == "Drawing step\nstep"

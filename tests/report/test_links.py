@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import io
+import re
+import zipfile
 
 import openpyxl
 import pytest
 import xlsxwriter
+from finding_examples import SUBMISSIONS
 
 from flexlash.pipeline import run
 from flexlash.report.layout import links
@@ -73,3 +76,18 @@ def test_links_end_where_excel_ends_them(monkeypatch):
     assert [cell.hyperlink.display for cell in cells[:2]] == [None, None] or not any(
         cell.hyperlink.display for cell in cells[:2]
     )
+
+
+@pytest.mark.slow
+def test_names_of_sheets_with_spaces_are_quoted(tmp_path):
+    """A link to a mirrored sheet such as Levers entered names it as Excel follows it: between quotes."""
+    path, options = SUBMISSIONS["decided"](tmp_path)
+    run(path, tmp_path / "report.xlsx", samples=16, method="random", **options)
+    with zipfile.ZipFile(tmp_path / "report.xlsx") as archive:
+        sheets = [archive.read(name).decode() for name in archive.namelist() if name.startswith("xl/worksheets/sheet")]
+    places = {place for sheet in sheets for place in re.findall(r'<hyperlink [^>]*location="([^"]*)"', sheet)}
+    assert {"'Levers entered'!B2", "'Sweep entered'!D4", "'Other sources'!E4"} <= places
+    titles = {place.rpartition("!")[0] for place in places}
+    assert [title for title in titles if " " in title and not (title[0] == title[-1] == "'")] == []
+    names = {title.strip("'") for title in titles}
+    assert names <= {*openpyxl.load_workbook(tmp_path / "report.xlsx").sheetnames}

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from xlsxwriter.utility import quote_sheetname
-
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.allocation_sheet import ALLOCATED
 from flexlash.report.extent import MOST_FINDINGS, Extent, extent_of
@@ -325,7 +323,7 @@ def _write_section(book: Book, sheet: Any, row: int, title: str, entries: Sequen
         if not name:
             sheet.merge_range(row, 0, row, 1, f"•  {text}", book.format("wrap"))
         elif title == "Sheets":
-            write_link(sheet, row, 0, f"{quote_sheetname(name)}!A1", name, style=book.format("link"))
+            write_link(sheet, row, 0, f"{name}!A1", name, style=book.format("link"))
         else:
             sheet.write_string(row, 0, name, book.format("wrap"))
         if name:

@@ -20,7 +20,7 @@ from flexlash.report.layout.links import (
 )
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import Drawn
-from flexlash.report.submission_sheets import SUBMISSION, titles_of
+from flexlash.report.submission_sheets import SUBMISSION, mirrored_schema, titles_of
 from flexlash.schema.columns import ENTRY_SHEETS
 from flexlash.schema.finding_explanations import explanation_of
 from flexlash.schema.findings import CATALOGUE, Finding, shown
@@ -142,7 +142,7 @@ def _write_finding(
     """
     cell, result = links
     texts = finding.as_dictionary()
-    label = _LABELS.get((_schema(title), finding.column)) or _BY_KEY.get(finding.column)
+    label = _LABELS.get((mirrored_schema(title), finding.column)) or _BY_KEY.get(finding.column)
     if label:
         texts["column"] = f"{label}\n{finding.column}"
     lines = [1 + len(texts[key]) // width for key, width in _PER_LINE.items()]
@@ -164,8 +164,3 @@ def _write_finding(
             )
         elif text:
             sheet.write_string(row, column_index, text, wrap)
-
-
-def _schema(title: str) -> str:
-    """Return the entry sheet that a sheet of the report mirrors."""
-    return "Variants" if title == SUBMISSION else title

@@ -26,7 +26,7 @@ from flexlash.validation.entry_sheets import sheet_names
 from flexlash.validation.headers import STATUS_HEADER, plain
 from flexlash.validation.materials_and_classes import BUILT_IN_SHEETS, built_in_sheet
 
-__all__ = ["MOST_COMMENTS", "SUBMISSION", "titles_of", "write_submission"]
+__all__ = ["MOST_COMMENTS", "SUBMISSION", "mirrored_schema", "titles_of", "write_submission"]
 
 MOST_COMMENTS = 2000
 """Most guilty cells that say in a comment what is wrong; Findings lists all."""
@@ -49,6 +49,15 @@ _RESULT_SHEETS = frozenset({"Levers", "Sweep"})
 _TITLES = {name: f"{name} entered" if name in _RESULT_SHEETS else name for name in ENTRY_SHEETS} | {
     "Variants": SUBMISSION
 }
+
+
+def mirrored_schema(title: str) -> str:
+    """Return the entry sheet that a sheet of the report mirrors, the title itself for one that mirrors none.
+
+    >>> mirrored_schema("Submission"), mirrored_schema("Levers entered")
+    ('Variants', 'Levers')
+    """
+    return next((schema for schema, mirror in _TITLES.items() if mirror == title), title)
 
 
 def titles_of(submission: Submission) -> dict[str, str]:

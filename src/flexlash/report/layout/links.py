@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from xlsxwriter.url import Url
+from xlsxwriter.utility import quote_sheetname
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.extent import MOST_FINDINGS, extent_of
@@ -50,7 +51,8 @@ def write_link(sheet: Any, row: int, column: int, target: str, text: str, *, sty
     if sheet.hlink_count >= MOST_LINKS:
         sheet.write_string(row, column, text, style)
         return
-    url = Url(f"internal:{target}")
+    title, _, cell = target.rpartition("!")
+    url = Url(f"internal:{quote_sheetname(title)}!{cell}")
     url.text = text
     sheet.write_url(row, column, url, style)
     # The cell has the text already; a second copy of it beside every link would be a tenth of the file.
