@@ -453,6 +453,13 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "percentages": _percentages,
     "elastic": _elastic,
     "whole drives": _whole_drives,
+    "many sources": lambda folder: _book(
+        folder,
+        {
+            "Variants": _lines([CUP]),
+            "Other sources": [["Source", "Value"], *([f"play {n}", 0.1] for n in range(1, 53))],
+        },
+    ),
     "measured": _measured,
     "numbers as text": lambda folder: _book(folder, {"Variants": _lines([CUP | {"torque_Nm": "800"}])}),
     "report": _marked("flexlash", "report"),

@@ -809,6 +809,13 @@ CATALOGUE = _rules(
         "has no mean radius of its own, a cylinder no disk; a dimension that another one bounds cannot pass it.",
     ),
     (
+        "E385",
+        "too many sources",
+        "{place}: {known} sources of a drive are entered; at most {other} can be combined.",
+        "Put sources of one kind into one row: add their values; of deviations take the root of the sum of squares.",
+        "Every source that scatters is drawn with every variant. A real drive has a handful that count.",
+    ),
+    (
         "W401",
         "disk does not meet the wall",
         "{place} {name} = {value} mm differs from the mean radius {other} mm.",

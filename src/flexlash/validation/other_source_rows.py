@@ -16,7 +16,7 @@ from flexlash.schema.units import find_unit
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import Table
 
-__all__ = ["SourceRows", "other_sources_of", "report_unused_limits"]
+__all__ = ["MOST_SOURCES", "SourceRows", "other_sources_of", "report_unused_limits"]
 
 _COLUMNS = columns_of("Other sources")
 _DEVIATIONS = ("lower_deviation", "upper_deviation")
@@ -24,6 +24,9 @@ _SCATTER = ("distribution", "limits_sigma")
 _ANGLE, _RADIAL = "arcmin", "mm radial play"
 _PLAUSIBLE = {"arcmin": 600.0, "mm": 1.0}
 """Greatest play and deviation that is plausible, in the unit of the entry."""
+
+MOST_SOURCES = 50
+"""Most sources of a drive: the work for each variant grows with every one that scatters."""
 
 _EDGE = PartRow.edge
 """What counts as 0: deviations that cancel a value as decimals may miss it by a last binary digit."""
@@ -49,6 +52,10 @@ def other_sources_of(table: Table, ledger: Ledger) -> SourceRows:
             are_faulty = True
         elif record["row"] not in doubled and not any((record["row"], key) in table.faulty for key in _COLUMNS):
             sound.append(_source(record))
+    if table.frame.height > MOST_SOURCES:
+        first = table.frame["row"][MOST_SOURCES]
+        ledger.add_in(table, "E385", first, "source", known=table.frame.height, other=MOST_SOURCES)
+        are_faulty = True
     return SourceRows(rows=tuple(sound), are_faulty=are_faulty)
 
 
