@@ -227,3 +227,15 @@ def test_every_dimension_can_be_named_with_and_without_its_unit():
         else:
             with pytest.raises(ValueError, match="cannot be swept"):
                 swept_column(column.key)
+
+
+@pytest.mark.slow
+def test_what_it_wrote_is_no_submission(submission, tmp_path):
+    """Of a folder its reports and tables are skipped, as those of `run` are."""
+    for arguments in ((), ("-o", tmp_path / "points.csv"), ("-o", tmp_path / "points.parquet")):
+        assert _call(submission, "--variant", THIRD, "--vary", "torque=700,800", *arguments).exit_code == 0
+    done = CliRunner().invoke(cli, ["check", str(tmp_path), "--json"])
+    objects = [json.loads(line) for line in done.stdout.splitlines()]
+    codes = {one["submission"]: one["findings"][0]["code"] for one in objects if one.get("findings")}
+    assert codes.pop("study.xlsx")[0] != "E"
+    assert codes == {"study-sweep.xlsx": "I508", "points.csv": "I527", "points.parquet": "I527"}

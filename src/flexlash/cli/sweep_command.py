@@ -55,6 +55,7 @@ _SHOWN = 5
 @option("materials")
 @option("measurements")
 @option("correlations")
+@option("other_sources")
 def sweep(
     submission: Path, vary: tuple[str, ...], variant: str | None, output: Path | None, *, quiet: bool, **options: Any
 ) -> None:
