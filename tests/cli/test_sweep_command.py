@@ -106,6 +106,10 @@ def test_points_without_numbers_end_with_3(submission, tmp_path):
     """Where some points are no part the others are computed, and the exit code is that of rows with errors."""
     done = _call(submission, "--variant", THIRD, "--vary", "disk_inner_radius=60:100:10", "-o", tmp_path / "p.csv")
     assert done.exit_code == 3
+    again = _call(
+        submission, "--variant", THIRD, "--vary", "disk_inner_radius=70,90", "-o", tmp_path / "q.csv", "--json"
+    )
+    assert json.loads(again.stdout)["exit_code"] == again.exit_code == 3
     assert "3 of 5 points are not computed: E303" in done.stdout
 
 
@@ -227,6 +231,17 @@ def test_every_dimension_can_be_named_with_and_without_its_unit():
         else:
             with pytest.raises(ValueError, match="cannot be swept"):
                 swept_column(column.key)
+
+
+@pytest.mark.slow
+def test_json(submission, tmp_path):
+    """With --json one object is printed, which has points and crossings beside what `run --json` says."""
+    done = _call(submission, "--variant", THIRD, "--vary", LENGTHS, "--json", "-o", tmp_path / "points.parquet")
+    found = json.loads(done.stdout)
+    assert found["exit_code"] == done.exit_code == 0
+    assert [round(one["value"], 1) for one in found["crossings"]] == [168.6, 164.1, 161.9]
+    assert [row["cylinder_length_mm"] for row in found["sweep"]] == [100, 120, 140, 160, 180, 200]
+    assert found["outputs"] == [str(tmp_path / "points.parquet")]
 
 
 @pytest.mark.slow

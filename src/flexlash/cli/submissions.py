@@ -117,8 +117,8 @@ class Submissions:
         if ended is None:
             self.codes.append(ExitCode.FINE)
         else:
-            self.further_codes += attempt.codes
-            self.tell(replace(ended, seconds=time.perf_counter() - start), attempt)
+            code = most_severe([ended.code, *attempt.codes])
+            self.tell(replace(ended, code=code, seconds=time.perf_counter() - start), attempt)
 
     def _ended(self, path: Path, outcome: Outcome | None) -> Ended | None:
         """Return how a file ended that came to an outcome."""

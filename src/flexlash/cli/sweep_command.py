@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexlash.analysis.options import TABLES
-from flexlash.cli.click_types import LIMITS, QUIET, option, planned
+from flexlash.cli.click_types import JSON, LIMITS, QUIET, SUBMISSION, option, planned
 from flexlash.cli.submissions import Attempt, Submissions
 from flexlash.cli.terminal import progress
 from flexlash.cli.vary_texts import sentence, varied
@@ -33,7 +33,7 @@ _SHOWN = 5
 
 
 @click.command()
-@click.argument("submission", type=click.Path(path_type=Path, readable=False))
+@SUBMISSION
 @click.option(
     "--vary", multiple=True, metavar="KEY=FROM:TO:STEP",
     help="A dimension of Variants and its values, in the unit of its column; also KEY=V1,V2,… . Twice: each value of "
@@ -50,6 +50,7 @@ _SHOWN = 5
 @option("samples")
 @option("jobs", default=os.cpu_count() or 1, show_default="all cores")
 @LIMITS
+@JSON
 @QUIET
 @option("tolerances")
 @option("materials")
@@ -57,7 +58,14 @@ _SHOWN = 5
 @option("correlations")
 @option("other_sources")
 def sweep(
-    submission: Path, vary: tuple[str, ...], variant: str | None, output: Path | None, *, quiet: bool, **options: Any
+    submission: Path,
+    vary: tuple[str, ...],
+    variant: str | None,
+    output: Path | None,
+    *,
+    as_json: bool,
+    quiet: bool,
+    **options: Any,
 ) -> None:
     """Compute variants over the values of one dimension or two, and where the backlash crosses its limit.
 
@@ -71,8 +79,8 @@ def sweep(
         raise click.UsageError("--variant needs --vary; without it the sheet Sweep says what is swept.")
     beside = [options[name] for name in TABLES if options[name]]
     target = planned(sweep_output, Plan(inputs=[submission, *beside]), submission, output)
-    told = Submissions(several=False, as_json=False, quiet=quiet, ran=True)
-    with told.one(submission) as attempt, progress(quiet=quiet) as advance:
+    told = Submissions(several=False, as_json=as_json, quiet=quiet, ran=True)
+    with told.one(submission) as attempt, progress(quiet=quiet or as_json) as advance:
         _carry_out(attempt, submission, target, values, variant, progress=advance, **options)
     sys.exit(told.code)
 
@@ -88,12 +96,14 @@ def _carry_out(
     """Compute and write the sweep, and fill in what is told of it; a usage error for what cannot be swept."""
     from flexlash.decisions.asked_sweep import SweepError
     from flexlash.pipeline import sweep as swept
+    from flexlash.report.sweep_output import sweep_fields
 
     given = _given(submission, variant, options["limits"])
     try:
         attempt.outcome, studies = swept(given, target, vary=values or None, variant=variant, **options)
     except SweepError as fault:
         raise click.UsageError(sentence(f"Nothing is swept: {fault}")) from fault
+    attempt.further = sweep_fields(studies)
     attempt.closing = list(_lines(studies, attempt.outcome.settings.target_percent))
     attempt.codes = [_code_of(study) for study in studies]
 

@@ -6,6 +6,7 @@ import io
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
+from typing import Any
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.decisions.sweep import Study, sweep_table
@@ -13,7 +14,7 @@ from flexlash.report.output import ROLE, ROWS_TOGETHER
 from flexlash.report.results_table import csv_text
 from flexlash.schema.stamps import placeholder
 
-__all__ = ["sweep_bytes"]
+__all__ = ["sweep_bytes", "sweep_fields"]
 
 
 def sweep_bytes(studies: Sequence[Study], outcome: Outcome, ending: str) -> tuple[bytes, str]:
@@ -28,15 +29,17 @@ def sweep_bytes(studies: Sequence[Study], outcome: Outcome, ending: str) -> tupl
         buffer = io.BytesIO()
         table.write_parquet(buffer, row_group_size=ROWS_TOGETHER, metadata={"flexlash": placeholder(ROLE)})
         return buffer.getvalue(), ROLE
-    content = {
-        "sweep": table.to_dicts(),
-        "crossings": [
-            {"variant": study.variant, "key": study.first.key, "second_key": study.second and study.second.key}
-            | asdict(crossing)
-            for study in studies
-            for crossing in study.crossings
-        ],
-        "findings": [found.as_dictionary() for found in outcome.findings],
-        "stamp": placeholder(ROLE),
-    }
+    found = [one.as_dictionary() for one in outcome.findings]
+    content = sweep_fields(studies) | {"findings": found, "stamp": placeholder(ROLE)}
     return (json.dumps(content, ensure_ascii=False, indent=1) + "\n").encode(), ROLE
+
+
+def sweep_fields(studies: Sequence[Study]) -> dict[str, Any]:
+    """Return the points and the crossings of studies as JSON has them."""
+    crossings = [
+        {"variant": study.variant, "key": study.first.key, "second_key": study.second and study.second.key}
+        | asdict(crossing)
+        for study in studies
+        for crossing in study.crossings
+    ]
+    return {"sweep": sweep_table(studies).to_dicts(), "crossings": crossings}
