@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.report.report_data import DRAWN, ROW, levers_of_variants, ranked
+from flexlash.report import report_data
 from flexlash.report.wording.sentences import sentences
 
 __all__ = ["said_of"]
@@ -11,5 +11,5 @@ __all__ = ["said_of"]
 
 def said_of(outcome: Outcome) -> dict[str, str]:
     """Return the Summary's sentences by topic."""
-    drawn = ranked(outcome)[ROW].head(DRAWN).to_list()
-    return dict(sentences(outcome, levers_of_variants(outcome, drawn)))
+    drawn = report_data.ranked(outcome)[report_data.ROW].head(report_data.DRAWN).to_list()
+    return dict(sentences(outcome, report_data.levers_of_variants(outcome, drawn)))
