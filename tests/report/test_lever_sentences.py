@@ -35,8 +35,8 @@ def test_the_three_questions_are_answered(told):
 def test_what_no_tolerance_can_do_is_said(told):
     """Case 3 is over its limit in the middle of its tolerances: tightening is named as what cannot help."""
     assert told(study_levers())[CHANGE].endswith(
-        "Tighter tolerances cannot bring “B3-160 case 3” within, not even all of them at once: half of its units or "
-        "more are over the limit."
+        "Tighter tolerances cannot bring it within, not even all of them at once: half of its units or more are over "
+        "the limit."
     )
 
 
@@ -114,12 +114,12 @@ def test_nothing_is_said_without_a_lever(told):
 
 
 def test_many_failing_variants_are_told_in_part(study, told):
-    """Of many failing variants the worst three are told, with how many more the sheet has."""
+    """Of many failing variants the worst two are told, with how many more the sheet has."""
     names = study[0].results["variant"].to_list()
     rows = [lever(*_HUB) | {"variant": name} for name in names]
     said = told(levers_table(*rows))[CHANGE]
-    assert said.count("Cheapest single change for") == 3
-    assert f"The changes of {len(names) - 3} more are on Levers." in said
+    assert said.count("Cheapest single change for") == 2
+    assert f"The changes of {len(names) - 2} more are on Levers." in said
 
 
 def test_the_screen_names_the_cheapest_change():

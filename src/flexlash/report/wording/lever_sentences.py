@@ -40,6 +40,9 @@ CHANGE, RELAX, LENGTH = "What to change", "What may be relaxed", "Length allowed
 LEVER_TOPICS = (CHANGE, RELAX, LENGTH)
 """Topics of the sentences that lead to the sheet Levers: the three questions of who decides."""
 
+_TOLD = 2
+"""Most variants of which a topic tells: the sheet has all."""
+
 _IDLE = 0.01
 """Share of the variance below which a tolerance does nothing for the spread."""
 
@@ -53,7 +56,7 @@ _MEGAPASCAL = 1e6
 _NAME = 200
 
 
-def what_to_change(facts: SummaryFacts, most: int = NAMED) -> Iterator[str]:
+def what_to_change(facts: SummaryFacts, most: int = _TOLD) -> Iterator[str]:
     """Yield the cheapest single change of the worst variants that miss their limit, or why there is none."""
     names = _names(facts.levers, "meet")
     stuck = []
@@ -68,8 +71,9 @@ def what_to_change(facts: SummaryFacts, most: int = NAMED) -> Iterator[str]:
     hopeless = [name for name in names[:most] if _no_tolerance_can(facts, name)]
     if hopeless:
         whose = "its units" if len(hopeless) == 1 else "their units"
+        whom = facts.names(hopeless) if hopeless != names[:most] else "it" if len(hopeless) == 1 else "them"
         yield (
-            f"Tighter tolerances cannot bring {facts.names(hopeless)} within, not even all of them at once: half of "
+            f"Tighter tolerances cannot bring {whom} within, not even all of them at once: half of "
             f"{whose} or more are over the limit."
         )
     if (more := len(names) - most) > 0:
@@ -121,10 +125,10 @@ def lengths(facts: SummaryFacts) -> Iterator[str]:
     parts = [
         f"from {_told(lever, 'from_value')} to {_told(lever, 'drawing_value')}{shown_unit(lever)} in "
         f"{facts.named(lever['variant'])}"
-        for lever in longer.head(NAMED).iter_rows(named=True)
+        for lever in longer.head(_TOLD).iter_rows(named=True)
     ]
     if parts:
-        yield f"Cylinder length may grow {listed(parts, NAMED, longer.height)}, all else as drawn."
+        yield f"Cylinder length may grow {listed(parts, _TOLD, longer.height)}, all else as drawn."
 
 
 def _cheapest(facts: SummaryFacts, lever: Lever) -> str:
