@@ -51,10 +51,7 @@ _NO_DATE = datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=Non
 def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     """Return the report as an .xlsx file; `data` is what it draws, made here where it is None."""
     buffer = io.BytesIO()
-    workbook = xlsxwriter.Workbook(buffer, {"in_memory": True, "strings_to_urls": False})
-    created = outcome.submission.modified or _NO_DATE
-    workbook.set_properties({"title": f"flexlash report on {outcome.submission.name}", "created": created})
-    workbook.set_custom_property("flexlash", "report")
+    workbook = _begun(buffer, outcome)
     book = Book(workbook)
     data = report_data(outcome) if data is None else data
     drawn = data.drawn
@@ -101,3 +98,12 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     write_carried(book, outcome)
     workbook.close()
     return buffer.getvalue()
+
+
+def _begun(buffer: io.BytesIO, outcome: Outcome) -> xlsxwriter.Workbook:
+    """Return a workbook without sheets that says what it reports on."""
+    workbook = xlsxwriter.Workbook(buffer, {"in_memory": True, "strings_to_urls": False})
+    created = outcome.submission.modified or _NO_DATE
+    workbook.set_properties({"title": f"flexlash report on {outcome.submission.name}", "created": created})
+    workbook.set_custom_property("flexlash", "report")
+    return workbook
