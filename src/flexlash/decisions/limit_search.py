@@ -36,7 +36,7 @@ _ROUNDS, _HALVINGS, _MORE_STEPS = 5, 36, 3
 _INTERVAL = 2 * 1.96
 """Standard errors that an interval spans."""
 
-_TOLD, _GUESSED = 3e-2, 0.3
+_TOLD, _GUESSED = 8e-2, 0.3
 """Part of the way to the target that a step may miss, with a slope that two points tell or the tail as it is now."""
 
 _NEAR, _NEARER = (1e-5, 3e-4), (1e-6, 3e-4)

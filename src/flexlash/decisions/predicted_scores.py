@@ -174,9 +174,10 @@ class ChangedAlike:
     def moments(self, values: Array) -> Moments:
         """Return the moments of the backlash (variants, k) at values of that shape.
 
-        Equation: μ = y + Σ cᵢ, σ² = Σ (dᵢ² + (mᵢ − 1) cᵢ²) + 2 Σ ρᵢⱼ dᵢ dⱼ, γ₁ σ³ = 3 Σ dᵢ² cᵢ (mᵢ − 1),
+        Equation: μ = y + Σ cᵢ, σ² = Σ (dᵢ² + (mᵢ − 1) cᵢ²) + 2 Σ ρᵢⱼ dᵢ dⱼ, γ₁ σ³ = 6 d² c + 3 Σ dᵢ² cᵢ (mᵢ − 3),
             γ₂ σ⁴ = Σ dᵢ⁴ (mᵢ − 3), with dᵢ = (y₊ − y₋)/2 and cᵢ = (y₊ + y₋)/2 − y of the backlash one standard
-            deviation of an input above and below its mean, m the fourth moment of its standard score
+            deviation of an input above and below its mean, m the fourth moment of its standard score; d is the length
+            of all dᵢ, and c the same as cᵢ one standard deviation along their direction
         """
         sizes, limits = self._at(values)
         model, shapes = BACKLASH_OF[self.kind], {row.dimension: row.distribution for row in self.rows}
@@ -185,15 +186,22 @@ class ChangedAlike:
             centre = sizes | {name: mean for name, (mean, _) in inputs.items()}
             middle = np.broadcast_to(model(centre), values.shape)
             mean, slopes = middle, {}
-            variance = third = fourth = np.zeros(values.shape)
+            variance = third = fourth = length = np.zeros(values.shape)
             for name, (own, sd) in inputs.items():
                 above, below = model({**centre, name: own + sd}), model({**centre, name: own - sd})
                 slope, curve = (above - below) / 2, (above + below) / 2 - middle
                 mean, slopes[name], square = mean + curve, slope, slope * slope
                 moment = _SHAPES.get(shapes[name], (0.0, _NORMAL))[1]
                 variance = variance + square + (moment - 1) * curve * curve
-                third = third + 3 * (moment - 1) * square * curve
+                third = third + 3 * (moment - _NORMAL) * square * curve
+                length = length + square
                 fourth = fourth + (moment - _NORMAL) * square * square
+            root = np.sqrt(np.where(length > 0, length, 1.0))
+            along = [
+                model(centre | {name: own + side * sd * slopes[name] / root for name, (own, sd) in inputs.items()})
+                for side in (-1, 1)
+            ]
+            third = third + 6 * length * ((along[0] + along[1]) / 2 - middle)
             for (first, second), tie in self.ties.items():
                 if first in slopes and second in slopes:
                     variance = variance + 2 * tie * slopes[first] * slopes[second]
