@@ -39,6 +39,10 @@ def faults_of(numbers: PartNumbers) -> list[dict[str, str]]:
             strength,
         ),
     }
+    soft = "softer than catalogue drives of its size, {} N·m/rad beside at least {}"
+    for place in np.flatnonzero(numbers["least_stiffness"] > numbers["stiffness"]).tolist():
+        pair = (spelled_out(float(numbers[name][place])) for name in ("stiffness", "least_stiffness"))
+        found[place]["soft"] = soft.format(*pair)
     for name, (words, stress, allowed) in told.items():
         for place in np.flatnonzero(getattr(numbers, name)).tolist():
             pair = (spelled_out(float(values[place]) / 1e6) for values in (numbers[stress], allowed))
