@@ -152,7 +152,7 @@ def _kept(validated, spoilt):
     withheld = {
         "wall_thickness" if one.code == "E361" else LEVERS[one.row - 2]["dimension"] for one in by_sheet["Levers"]
     }
-    if not withheld <= validated.withheld_levers or not {*validated.levers}.isdisjoint(withheld):
+    if not withheld <= validated.withheld_levers or any(validated.levers[name].row for name in withheld):
         yield "levers"
     if not by_sheet["Levers"] and validated.withheld_levers:
         yield "all levers"

@@ -17,6 +17,14 @@ def _found(*rows):
     return validated(levers=rows)
 
 
+def _advised(found):
+    """Return the dimensions with a row that lets the value change; of withheld ones the tolerance may not either."""
+    assert not any(
+        found.levers[name].may_change or found.levers[name].tolerance_may_change for name in found.withheld_levers
+    )
+    return {row.dimension for row in found.levers.values() if row.may_change is not False}
+
+
 def test_levers_in_si():
     """Range and step are in SI by the unit of the dimension's column, answers are yes or no, costs as entered."""
     found = _found(
@@ -59,8 +67,9 @@ def test_a_fault_withholds_its_dimension_alone(row, fault):
     """Each contradiction is told once at its cell; its dimension is left out of the levers, no other is."""
     found = _found({"dimension": "wall_thickness", "may_change": "no"}, row)
     assert told(found) == [(*fault, 3)]
-    assert set(found.levers) == {"wall_thickness"}
+    assert set(found.levers) == {"wall_thickness", row["dimension"]}
     assert found.withheld_levers == {row["dimension"]}
+    assert _advised(found) == set()
     assert len(found.variants) == 2
 
 
@@ -68,7 +77,8 @@ def test_a_dimension_twice_is_left_out():
     """Both rows are told with each other, and neither counts."""
     found = _found(LENGTH, {"dimension": "Cylinder length"}, {"dimension": "torque"})
     assert [one for one in told(found) if one[0][0] == "E"] == [("E361", "dimension", 2), ("E361", "dimension", 3)]
-    assert (set(found.levers), found.withheld_levers) == ({"torque"}, {"cylinder_length"})
+    assert found.withheld_levers == {"cylinder_length"}
+    assert _advised(found) == {"torque"}
 
 
 @pytest.mark.parametrize("entry", ["length", None, True])
@@ -79,8 +89,8 @@ def test_a_row_of_an_unknown_dimension_withholds_all(entry):
     )
     (fault,) = told(found)
     assert (fault[0][0], fault[1:]) == ("E", ("dimension", 3))
-    assert found.withheld_levers == EVERY
-    assert found.levers == {}
+    assert found.withheld_levers == EVERY == set(found.levers)
+    assert _advised(found) == set()
 
 
 WARNINGS = [

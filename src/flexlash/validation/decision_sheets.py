@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from flexlash.validation.ledger import Ledger
-from flexlash.validation.lever_rows import ALL_LEVERS, Levers, lever_rows_of
+from flexlash.validation.lever_rows import ALL_LEVERS, Levers, lever_rows_of, withheld_levers
 from flexlash.validation.other_source_rows import SourceRows, other_sources_of, report_unused_limits
 from flexlash.validation.sweep_rows import Sweeps, sweep_rows_of
 from flexlash.validation.validated import Table
@@ -40,7 +40,7 @@ def decided_by(
         levers=(
             lever_rows_of(tables["Levers"], variants, own["Levers"])
             if "Levers" in tables
-            else Levers(withheld=ALL_LEVERS if "Levers" in unread else frozenset())
+            else (Levers(rows=withheld_levers(ALL_LEVERS), withheld=ALL_LEVERS) if "Levers" in unread else Levers())
         ),
         sweeps=(
             sweep_rows_of(tables["Sweep"], variants, ledger.rows, own["Sweep"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,7 +15,7 @@ from flexlash.schema.findings import spelled_out
 from flexlash.validation.ledger import Ledger
 from flexlash.validation.validated import Table
 
-__all__ = ["ALL_LEVERS", "Levers", "lever_rows_of"]
+__all__ = ["ALL_LEVERS", "Levers", "lever_rows_of", "withheld_levers"]
 
 _COLUMNS = columns_of("Levers")
 ALL_LEVERS = frozenset(_COLUMNS["dimension"].choices)
@@ -27,7 +27,10 @@ _TOLERANCE = ("tolerance_may_change", "cost_per_grade")
 
 @dataclass(frozen=True, kw_only=True)
 class Levers:
-    """The sound rows of Levers by dimension; `withheld` are dimensions of which nothing is known for an error there."""
+    """What Levers says by dimension; `withheld` are dimensions that an error there leaves unknown.
+
+    Advice that overlooks what nobody can do is worse than none: of these neither value nor tolerance may change.
+    """
 
     rows: Mapping[str, LeverRow] = field(default_factory=dict)
     withheld: frozenset[str] = frozenset()
@@ -55,9 +58,15 @@ def lever_rows_of(table: Table, variants: Table | None, ledger: Ledger) -> Lever
             withheld.add(dimension)
         else:
             rows[dimension] = _lever(record)
-    return Levers(
-        rows={name: lever for name, lever in rows.items() if name not in withheld}, withheld=frozenset(withheld)
-    )
+    return Levers(rows=rows | withheld_levers(withheld), withheld=frozenset(withheld))
+
+
+def withheld_levers(dimensions: Iterable[str]) -> dict[str, LeverRow]:
+    """Return the rows of dimensions of which nothing may be advised, in the order of the list."""
+    return {
+        name: LeverRow(row=0, dimension=name, may_change=False, tolerance_may_change=False)
+        for name in sorted(dimensions, key=_COLUMNS["dimension"].choices.index)
+    }
 
 
 def _report_twice(table: Table, ledger: Ledger) -> set[int]:

@@ -135,10 +135,10 @@ class Validated:
     `correlations` are those sheets, None where there are none, `correlation_rows` the sound rows of the latter,
     `measured` what was measured, by plain name of the sample and dimension; `other_sources`, `levers` (by
     dimension) and `sweeps` are the sound rows of those sheets. What other rows of them with errors take away:
-    `sources_are_faulty` leaves no budget of the drive, since it would lack a source; `withheld_levers` are dimensions
-    (or material) of which nothing may be advised; `faulty_sweeps` rows of Sweep whose studies are left out.
-    `decision_tables` are these sheets by name.
-    `variants` are the rows of Variants without an error; `header_rows` the row of each entry sheet's headers.
+    `sources_are_faulty` leaves no budget of the drive, since it would lack a source; `withheld_levers` are dimensions,
+    or material, of which nothing may be advised, so that `levers` says that they may not change; `faulty_sweeps` are
+    rows of Sweep whose studies are left out. `decision_tables` are these sheets by name. `variants` are the rows of
+    Variants without an error; `header_rows` the row of each entry sheet's headers.
     """
 
     file: str = ""
