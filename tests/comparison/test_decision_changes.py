@@ -97,6 +97,7 @@ CHANGES = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CHANGES)
 def test_a_changed_row_is_told_with_the_variants_it_concerns(name, between):
     """A changed cell, a row more and one less each get their line, in the unit that the row gives."""

@@ -83,6 +83,7 @@ def test_a_sound_drive_is_complete_and_sound(tmp_path):
     assert [one.code for one in check(path).findings] == ["W423"]
 
 
+@pytest.mark.slow
 def test_a_template_with_the_sheets_moves_unchanged(tmp_path):
     """Upgraded, a template keeps the sheets without being asked, to the byte."""
     for name, filling in {"drive": drive(), "faulty": FAULTY, "empty": Filling(optional=["Sweep"])}.items():
@@ -130,6 +131,7 @@ def test_the_marked_copy_marks_them(faulty, tmp_path):
     assert outcome.exit_code == 3
 
 
+@pytest.mark.slow
 def test_certain_fixes_mend_them(faulty, tmp_path):
     """What can only be one slip is mended, in the unit of its row; what a person must decide stays."""
     _, fixes = mend(faulty, tmp_path / "mended.xlsx")
