@@ -452,7 +452,13 @@ def test_schema_json_is_the_dictionary():
     assert all(fields <= set(column) for column in columns)
     keys = [column["key"] for column in columns if column["sheet"] == "Variants"]
     assert keys == [column.key for column in ENTRY_SHEETS["Variants"]]
-    assert {column["sheet"] for column in columns} == {*ENTRY_SHEETS, "Results", "Tolerances used", "Findings"}
+    assert {column["sheet"] for column in columns} == {
+        *ENTRY_SHEETS,
+        "Results",
+        "Tolerances used",
+        "Allocation",
+        "Findings",
+    }
 
 
 def test_schema_in_words():
