@@ -132,7 +132,7 @@ def test_an_allocation_holds_and_costs_less_than_equal_scaling(table, sound, cla
     assert compared >= 6
 
 
-ROWS = ({"variant": "long", "cylinder_length_mm": 160.0}, {"variant": "short", "cylinder_length_mm": 120.0})
+ROWS = ({"variant": "long", "cylinder_length_mm": 160.0}, {"variant": "short", "cylinder_length_mm": 119.0})
 DEVIATIONS = {"wall_thickness": (-0.02, 0.02, "", "normal"), "disk_inner_radius": (-0.2, 0.2, "", "normal")}
 
 
@@ -229,3 +229,13 @@ def test_lots_are_never_allocated(table, sound, classes):
     frame = _allocation(_outcome(table, sound, classes, (3.8, 3.3)))
     assert frame["dimension"].to_list() == list(DEVIATIONS)
     assert np.isfinite(frame["relative_cost"].to_numpy()).all()
+
+
+def test_a_general_tolerance_of_different_sizes_stays(table, sound, classes):
+    """A general tolerance of different sizes has no width that could be entered: it stays, and the reason is told."""
+    lines = [*_lines({"disk_inner_radius": (-0.1, 0.1, "", "normal")}), "shop,cylinder_length,,,,2768-m,,"]
+    frame = _allocation(_outcome(table, sound, classes, (3.79, 3.27), lines))
+    row = frame.row(by_predicate=pl.col("dimension") == "cylinder_length", named=True)
+    assert (row["from_value"], row["to_value"], row["relative_cost"]) == (None, None, 0.0)
+    assert "a general tolerance" in row["limited_by"]
+    assert set(frame["possible"]) == {"yes"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -69,14 +70,19 @@ def _of_class(owner: str, presents: Sequence[Present], terms: Terms) -> Iterator
             "tolerance_class": presents[0].variant.tolerance_class,
             "dimension": width.dimension,
             "unit": width.unit,
-            "from_value": width.value,
-            "to_value": value,
+            "from_value": _number(width.value),
+            "to_value": _number(value),
             "grade_steps": None if grades is None else 0.0 - grades,
             "relative_cost": cost,
             "limited_by": None if value is None else _limited_by(width, value, allocation, members),
             "possible": "no" if allocation.helpless or value is None else "yes",
             "reason": _reason(allocation, members) or None,
         }
+
+
+def _number(value: float | None) -> float | None:
+    """Return a width; None of a general tolerance, which has no number."""
+    return None if value is None or math.isnan(value) else value
 
 
 _TAIL = 0.99865

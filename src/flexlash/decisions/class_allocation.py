@@ -39,6 +39,9 @@ _FAR = 0.2
 _TIGHT = 0.03
 """Part of the room that a variant at its limit may have left, since drawings have steps."""
 
+_REFUSED = frozenset({"impossible", "untabulated"})
+"""Problems of limits for which a submission is not computed."""
+
 _LEAST_COST = 1e-3
 """Part of the dearest cost per grade that a tolerance costs at least, so that none is narrowed for nothing."""
 
@@ -128,15 +131,19 @@ class _Search:
         changed = {
             width.dimension: width.changed(value)
             for width, value in zip(self._widths, values, strict=True)
-            if value != width.value
+            if not width.fixed and value != width.value
         }
         rows = [changed.get(row.dimension, row) for row in self._terms.classes[owner]]
         terms = replace(self._terms, classes={**self._terms.classes, owner: rows})
-        limits = (limits_as_submitted(one.variant, terms)[0] for one in self._members)
-        return over_limit(
-            [toleranced(one.variant, own, one.limit, terms) for one, own in zip(self._members, limits, strict=True)],
-            self._terms,
-        )
+        over, parts = [1.0] * len(self._members), dict[int, TolerancedRow]()
+        for place, one in enumerate(self._members):
+            limits, problems = limits_as_submitted(one.variant, terms)
+            # What a submission refuses keeps no limit.
+            if not any(problem.kind in _REFUSED for problem in problems):
+                parts[place] = toleranced(one.variant, limits, one.limit, terms)
+        for place, share in zip(parts, over_limit(list(parts.values()), self._terms), strict=True):
+            over[place] = share
+        return over
 
     def found(self) -> _Found | None:
         """Return the values, and the factor at which all widths alike keep the variants; None where none was found."""
@@ -259,6 +266,8 @@ class _Search:
 
 def cost_of(width: ClassWidth, value: float) -> tuple[float, float]:
     """Return how many IT grades finer a value is, and what that costs: less than nothing where it is wider."""
+    if width.fixed:
+        return 0.0, 0.0
     grades = width.value - value if width.kind == "grade" else grades_finer(width.factor(value))
     return grades + 0.0, width.cost * grades + 0.0
 

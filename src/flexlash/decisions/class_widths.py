@@ -81,6 +81,8 @@ class ClassWidth:
 
     def factor(self, value: float) -> float:
         """Return how many times as wide the limits are with another value."""
+        if self.fixed:
+            return 1.0
         return GRADE ** (value - self.value) if self.kind == "grade" else value / self.value
 
     def drawn(self, factor: float, *, upwards: bool = False) -> float:
