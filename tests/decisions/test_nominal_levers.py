@@ -9,6 +9,8 @@ import pytest
 from lever_rows import CLASSES, changed_rows, drawn_rows, write_rows
 
 import flexlash
+from flexlash.analysis.options import Options
+from flexlash.decisions import levers as levers_module
 from flexlash.decisions.levers import levers_of
 from flexlash.schema.decision_results import LEVERS_TABLE
 from flexlash.schema.decision_rows import LeverRow
@@ -73,6 +75,8 @@ def test_what_alone_brings_case_3_within_its_limit(study):
         assert (lever["direction"], lever["possible"], lever["in_range"]) == ("meet", "yes", "yes"), change
     assert found["disk_inner_radius", None]["rank"] == 1
     assert {one["rank"] for one in found.values()} == {1, 2, 3, 4, 5, 6}
+    assert "tolerance class grinding has no row" in found["disk_thickness", None]["range_note"]
+    assert found["wall_thickness", "disk_thickness"]["range_note"] is None
     assert "coned more steeply" in found["cylinder_length", None]["range_note"]
 
 
@@ -169,7 +173,7 @@ def test_exact_values_are_those_of_halving(submitted):
 
 
 @pytest.mark.slow
-def test_neighbours_and_processes_change_no_bit(study):
+def test_neighbours_and_processes_change_no_bit(study, monkeypatch):
     """A variant's levers are the same alone, among others, in another order, and by several processes."""
     whole = levers(study)
     for name in ("B3-160 case 3", "B3-160 hat"):
@@ -177,6 +181,9 @@ def test_neighbours_and_processes_change_no_bit(study):
     turned = replace(study, computed=dict(reversed([*study.computed.items()])))
     order = [one.variant.name for one in turned.computed.values()]
     assert levers(turned) == sorted(whole, key=lambda one: order.index(one["variant"]))
+    monkeypatch.setattr(levers_module, "_TOGETHER", 3)
+    monkeypatch.setattr(levers_module, "_PER_WORKER", 1)
+    assert levers_of(study.computed, study.settings, {}, Options(jobs=2)).to_dicts() == whole
 
 
 @pytest.mark.slow

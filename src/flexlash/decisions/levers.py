@@ -112,7 +112,7 @@ def _told(levers: Sequence[Lever], changed: Sequence[tuple[Variant, Variant]], t
     faults = zip(faults_of(before), faults_of(after), strict=True)
     for lever, effects, (old, new) in zip(levers, effects_between(before, after), faults, strict=True):
         beyond = [words for name, words in new.items() if name not in old] + [*beyond_entered_range(lever, terms)]
-        notes = (*lever.notes, *beyond, *growing_worse(lever))
+        notes = (*lever.notes, *beyond, *growing_worse(lever, terms))
         yield replace(lever, effects=effects, leaves_range=lever.leaves_range or bool(beyond), notes=notes)
 
 

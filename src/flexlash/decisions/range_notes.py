@@ -11,9 +11,14 @@ from flexlash.decisions.part_range import broken_rules
 from flexlash.decisions.side_effects import PartNumbers
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import spelled_out
+from flexlash.schema.spellings import plain
 from flexlash.schema.units import as_entered
 
 __all__ = ["beyond_entered_range", "faults_of", "growing_worse"]
+
+_DISK = "disk_thickness"
+_OWN_DISK = {_DISK, "disk_thickness_exponent"}
+"""What a disk has whose thickness is not the wall's."""
 
 
 def faults_of(numbers: PartNumbers) -> list[dict[str, str]]:
@@ -63,11 +68,23 @@ def beyond_entered_range(lever: Lever, terms: Terms) -> Iterator[str]:
         yield f"above the highest value of Levers, {most:.10g}{behind}"
 
 
-def growing_worse(lever: Lever) -> Iterator[str]:
-    """Yield what gets worse with a lever though no number of the report shows it."""
+def growing_worse(lever: Lever, terms: Terms) -> Iterator[str]:
+    """Yield what gets worse with a lever, or is left open by it, though no number of the report shows it."""
+    yield from _left_without_tolerance(lever, terms)
     drawing, before, kind = lever.drawing_value, lever.from_value, lever.variant.flexspline_type
     if lever.dimension != "cylinder_length" or drawing is None or before is None or kind == "cylinder":
         return
     if drawing < before:
         more = f"{100 * (before / drawing - 1):.3g} %"
         yield f"a shorter {kind} is coned more steeply by the wave generator: that part of its bending rises by {more}"
+
+
+def _left_without_tolerance(lever: Lever, terms: Terms) -> Iterator[str]:
+    """Yield that a disk which was as thick as the wall has no tolerance once it is not."""
+    variant = lever.variant
+    shared = variant.flexspline_type != "cylinder" and not _OWN_DISK & variant.dimensions.keys()
+    if not shared or lever.what != "nominal" or lever.moves or lever.dimension not in {"wall_thickness", _DISK}:
+        return
+    if not any(row.dimension == _DISK for row in terms.classes[plain(variant.tolerance_class)]):
+        name = variant.tolerance_class
+        yield f"the disk then has a thickness of its own, for which tolerance class {name} has no row: exact"
