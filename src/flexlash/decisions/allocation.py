@@ -95,8 +95,15 @@ def _limited_by(width: ClassWidth, value: float, allocation: Allocation, members
         return width.fixed
     if value >= width.drawn(width.most) - width.step / 2:
         return width.bound
-    tight = [members[place].variant.name for place in allocation.tight if width.dimension in members[place].limits]
-    return _names(tight) if tight else "steps of the drawing"
+    having = [place for place, member in enumerate(members) if width.dimension in member.limits]
+    tight = [members[place].variant.name for place in allocation.tight if place in having]
+    if tight:
+        return _names(tight)
+    kept = [place for place in having if place not in allocation.helpless]
+    if not kept:
+        return "steps of the drawing"
+    nearest = max(kept, key=lambda place: allocation.over[place])
+    return f"steps of the drawing; nearest to its limit: {_names([members[nearest].variant.name])}"
 
 
 def _reason(allocation: Allocation, members: Sequence[Member]) -> str:
