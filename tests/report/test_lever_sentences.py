@@ -29,7 +29,7 @@ def test_the_three_questions_are_answered(told):
         "Holding the wall and disk thickness of “B3-160 case 1” so tight buys nothing: ± 29 µm instead of ± 2.5 µm "
         "still keeps 99.865 % within 3.8′; 99.6 % of the spread is the material's."
     )
-    assert said[LENGTH] == "Cylinder length may grow from 160 to 161.5 mm in “B3-160 case 1”, all else as drawn."
+    assert said[LENGTH] == "Cylinder length may grow from 160 to 161.5 mm in “B3-160 case 1”."
 
 
 def test_what_no_tolerance_can_do_is_said(told):
@@ -97,7 +97,7 @@ def test_all_tolerances_together_are_told_beside_the_one_that_matters_most(told)
     ]  # fmt: skip
     said = told(levers_table(*both))[RELAX]
     assert said.startswith("Holding the wall thickness of “B3-160 case 1” so tight buys nothing: ± 2 mm instead of ± 1")
-    assert said.endswith(" All 3 tolerances of “B3-160 case 1” together may be 11.76 times as wide.")
+    assert said.endswith(" All 3 of its tolerances together may be 11.76 times as wide.")
 
 
 def test_a_tolerance_that_matters_may_be_relaxed_but_does_not_buy_nothing(told):

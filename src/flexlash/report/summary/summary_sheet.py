@@ -54,7 +54,7 @@ _FIGURES = ((0, 0), (1, 3), (4, 6), (7, 7), (8, 8))
 _PAGE = 940.0
 """Height [pt] of what fits on a Letter page when it is as wide as the table; A4 is higher."""
 
-_CHART = (230.0, 340.0)
+_CHART = (170.0, 340.0)
 """Least and greatest height [pt] of the chart."""
 
 _CHART_WIDTH = sum(7 * width + 5 for width in _WIDTHS)

@@ -13,7 +13,6 @@ from flexlash.report.wording.lever_words import (
     Lever,
     change_words,
     lever_name,
-    sentence_start,
     shown_levers,
     shown_unit,
     shown_value,
@@ -114,7 +113,9 @@ def relaxing(facts: SummaryFacts) -> Iterator[str]:
         yield _relaxed(facts, row, lever, shares)
     for lever in (lever for lever in own if lever["dimension"] == ALL):
         wide = _told(lever, "drawing_value")
-        yield f"{sentence_start(lever_name(lever))} of {facts.named(name)} together may be {wide} times as wide."
+        whose = "its" if single else f"the tolerances of {facts.named(name)}"
+        count = len(lever["moves"].split("+"))
+        yield f"All {count} of {whose}{' tolerances' if single else ''} together may be {wide} times as wide."
 
 
 def lengths(facts: SummaryFacts) -> Iterator[str]:
@@ -128,7 +129,7 @@ def lengths(facts: SummaryFacts) -> Iterator[str]:
         for lever in longer.head(_TOLD).iter_rows(named=True)
     ]
     if parts:
-        yield f"Cylinder length may grow {listed(parts, _TOLD, longer.height)}, all else as drawn."
+        yield f"Cylinder length may grow {listed(parts, _TOLD, longer.height)}."
 
 
 def _cheapest(facts: SummaryFacts, lever: Lever) -> str:
