@@ -20,7 +20,7 @@ from flexlash.validation.validate import validate
 
 LIMITS = ReadingLimits()
 STAGES = ("read", "validate", "assess", "spread", "outcome")
-BETWEEN, RESULTS = 2000, 800
+BETWEEN, RESULTS = 2000, 900
 """Bytes that a row of nine cells may hold before its Results are made, and in its Results."""
 
 

@@ -84,8 +84,9 @@ def test_the_page_of_the_service_has_the_verdict(judged_by):
     tiles = {tile["words"]: tile["number"] for tile in verdict_tiles(outcome)}
     meeting = verdicts.count("meets")
     assert tiles[f"{'meets' if meeting == 1 else 'meet'} {target} %"] == str(meeting)
-    facts = summary_facts(outcome, ())
-    for one, verdict in zip(report_data(outcome).drawn, verdicts, strict=True):
+    data = report_data(outcome)
+    facts = summary_facts(outcome, data.levers)
+    for one, verdict in zip(data.drawn, verdicts, strict=True):
         assert f"({COLOURS[verdict]}): " in " ".join(judged(facts, one.row))
 
 
