@@ -349,22 +349,23 @@ class Workers:
         self._closing = False
         self._lock = threading.Lock()
         self._workers: dict[int, Worker] = {}
-        self._threads: list[threading.Thread] = []
         self._places = set(range(number))
+        self._threads = [
+            threading.Thread(target=self._work, args=(place,), name=f"flexlash worker {place}", daemon=True)
+            for place in range(number)
+        ]
         try:
-            for place in range(number):
-                self._workers[place] = Worker(*self._made_of)
+            # A thread that sees its worker end, as it does when Ctrl-C ends this process, would start another.
+            with _uninterrupted():
+                for place in range(number):
+                    self._workers[place] = Worker(*self._made_of)
+                for thread in self._threads:
+                    thread.start()
         except BaseException as fault:
             self.close()
             if isinstance(fault, OSError):
                 raise WorkerLostError(f"no worker process can be started: {fault}") from fault
             raise
-        self._threads = [
-            threading.Thread(target=self._work, args=(place,), name=f"flexlash worker {place}", daemon=True)
-            for place in range(number)
-        ]
-        for thread in self._threads:
-            thread.start()
 
     def __enter__(self) -> Self:
         return self
@@ -400,7 +401,8 @@ class Workers:
         for piece in given_up:
             _give_up(piece)
         for thread in self._threads:
-            thread.join()
+            if thread.ident is not None:
+                thread.join()
         for worker in self._workers.values():
             worker.end()
 

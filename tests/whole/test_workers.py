@@ -6,13 +6,15 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
+from multiprocessing import active_children
 
 import pytest
 import regenerate
 from worker_tasks import die, die_once, square
 
-from flexlash.workers import WorkerLostError, mapped
+from flexlash.workers import WorkerLostError, Workers, mapped
 
 
 def test_one_worker_is_this_process():
@@ -96,3 +98,19 @@ def test_no_worker_stays(how, tmp_path):
     while _processes_of(command.pid) and time.monotonic() < end:
         time.sleep(0.2)
     assert _processes_of(command.pid) == []
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="no signals are held back here")
+def test_ctrl_c_while_workers_start_leaves_none(monkeypatch):
+    """Ctrl-C between the start of the processes and that of the threads beside them ends them all, and is heard."""
+    start = threading.Thread.start
+
+    def interrupted(thread):
+        signal.raise_signal(signal.SIGINT)
+        start(thread)
+
+    monkeypatch.setattr(threading.Thread, "start", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        Workers(2)
+    assert active_children() == []
+    assert not [thread for thread in threading.enumerate() if thread.name.startswith("flexlash worker")]
