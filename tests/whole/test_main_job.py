@@ -7,13 +7,12 @@ import json
 import re
 import subprocess
 import sys
-import time
-import urllib.request
 
 import openpyxl
 import polars as pl
 import pytest
 import regenerate
+from page_requests import got, handed_in, shown_at_last
 
 from flexlash.schema.columns import VARIANTS
 
@@ -174,33 +173,10 @@ def test_a_file_handed_in_on_the_page_gets_its_report(folder):
     command = [sys.executable, "-m", "flexlash", "serve", "--store", "served", "--port", "0"]
     with subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, text=True) as server:
         try:
-            address = server.stdout.readline().split()[1].rstrip("/")
-            page = _got(address)
-            token = re.search(r'name="token" value="([^"]+)"', page)[1]
-            place = _handed_in(address, token, "study.xlsx", (folder / "study.xlsx").read_bytes())
-            while "/files/report" not in (shown := _got(place)):
-                assert "rejected" not in shown
-                time.sleep(0.2)
-            assert _got(f"{place}/files/results").startswith('"variant","status"')
+            address = server.stdout.readline().split()[1]
+            place = handed_in(address, "study.xlsx", (folder / "study.xlsx").read_bytes())
+            shown_at_last(place, "/files/report")
+            assert got(f"{place}/files/results").startswith('"variant","status"')
         finally:
             server.terminate()
     assert server.returncode == 0
-
-
-def _got(address):
-    with urllib.request.urlopen(address, timeout=60) as answer:  # noqa: S310
-        return answer.read().decode("utf-8-sig")
-
-
-def _handed_in(address, token, name, data):
-    """Hand a file in as a browser does; return where its page is."""
-    limit = "-----a-limit-of-parts"
-    fields = {"token": token, "action": "run"}
-    parts = [f'--{limit}\r\nContent-Disposition: form-data; name="{key}"\r\n\r\n{value}\r\n'
-             for key, value in fields.items()]  # fmt: skip
-    head = f'--{limit}\r\nContent-Disposition: form-data; name="file"; filename="{name}"\r\n\r\n'
-    body = "".join([*parts, head]).encode() + data + f"\r\n--{limit}--\r\n".encode()
-    headers = {"Content-Type": f"multipart/form-data; boundary={limit}", "Sec-Fetch-Site": "same-origin"}
-    request = urllib.request.Request(f"{address}/submissions", body, headers)  # noqa: S310
-    with urllib.request.urlopen(request, timeout=60) as answer:  # noqa: S310
-        return answer.url

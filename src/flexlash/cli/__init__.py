@@ -10,6 +10,7 @@ from flexlash import __version__
 from flexlash.cli.check_command import check
 from flexlash.cli.diff_command import diff
 from flexlash.cli.levers_command import levers
+from flexlash.cli.program import command_given, keep_window_open
 from flexlash.cli.reference_commands import explain, schema
 from flexlash.cli.run_command import run
 from flexlash.cli.serve_command import serve
@@ -61,13 +62,15 @@ def main() -> None:
         if lost := lost_output():
             complain(f"Standard output could not be written: {reason(lost)}.")
             code = code or ExitCode.NO_FILE
+        if code:
+            keep_window_open()
     sys.exit(code)
 
 
 def _ended() -> int:
     """Run the command and return its exit code."""
     try:
-        return int(cli.main(standalone_mode=False) or ExitCode.FINE)
+        return int(cli.main(command_given(), standalone_mode=False) or ExitCode.FINE)
     except SystemExit as stop:
         return int(stop.code or ExitCode.FINE)
     except click.ClickException as fault:

@@ -8,6 +8,7 @@ import logging
 import os
 import signal
 import socket
+import sys
 import threading
 import webbrowser
 from collections.abc import Iterator
@@ -145,4 +146,24 @@ def open_browser(address: str, folder: Path) -> bool:
     with temporary(folder, lambda file: file.write(page.encode())) as made:
         made.chmod(0o600)
         made.replace(path)
-    return webbrowser.open(path.absolute().as_uri())
+    with _libraries_of_the_system():
+        return webbrowser.open(path.absolute().as_uri())
+
+
+@contextlib.contextmanager
+def _libraries_of_the_system() -> Iterator[None]:
+    """Have another program find the system's libraries, where the program without Python has put its own before them.
+
+    What the variable held before is kept by PyInstaller under the second name.
+    """
+    own, before = (os.environ.get(name) for name in ("LD_LIBRARY_PATH", "LD_LIBRARY_PATH_ORIG"))
+    if own is None or not getattr(sys, "frozen", False):
+        yield
+        return
+    os.environ.pop("LD_LIBRARY_PATH")
+    if before is not None:
+        os.environ["LD_LIBRARY_PATH"] = before
+    try:
+        yield
+    finally:
+        os.environ["LD_LIBRARY_PATH"] = own
