@@ -21,6 +21,7 @@ from flexlash.report.page.shape import (
     UsedLimits,
     VariantPage,
 )
+from flexlash.report.page.sketch_facts import sketch_facts
 from flexlash.report.page.variants import verdict_of
 from flexlash.report.report_data import ROW, Drawn
 from flexlash.report.wording.drive_sentences import DRIVE, whole_drive_of
@@ -95,6 +96,7 @@ def variant_pages(
             shares=list(_shares(variant)),
             segments=list(_segments(variant)),
             limits=list(_limits(variant)),
+            sketch=sketch_facts(variant.computed.variant, name),
             levers=lever_table(facts.levers, row["variant"]),
             numbers=own,
             findings=[finding_facts(one) for one in found[:_FINDINGS]],

@@ -249,6 +249,29 @@ class LeverTable(TypedDict):
     more: int
 
 
+class SketchMark(TypedDict):
+    """An area, a line through points or words at the first of them [px]; what a kind has not is blank or 0."""
+
+    kind: Literal["area", "stroke", "label"]
+    points: list[list[float]]
+    colour: str
+    hatch: str
+    width: float
+    dashed: bool
+    words: str
+    anchor: str
+
+
+class Sketch(TypedDict):
+    """The sketch of a part, and the words that stand for it."""
+
+    width: float
+    height: float
+    title: str
+    description: str
+    marks: list[SketchMark]
+
+
 class Number(TypedDict):
     """A number of Results as the report shows it, with what it means."""
 
@@ -262,7 +285,7 @@ class Number(TypedDict):
 class VariantPage(TypedDict):
     """A variant's own page: sentences, distribution, what causes the spread, where the wind-up sits, its numbers.
 
-    `levers` is null without a limit; facts of earlier versions have none.
+    `levers` is null without a limit; facts of earlier versions have none, nor a `sketch`.
     """
 
     variant: str
@@ -276,6 +299,7 @@ class VariantPage(TypedDict):
     shares: list[Share]
     segments: list[Segment]
     limits: list[UsedLimits]
+    sketch: NotRequired[Sketch]
     levers: NotRequired[LeverTable | None]
     numbers: list[Number]
     findings: list[FindingFacts]

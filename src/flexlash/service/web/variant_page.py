@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from flexlash.report.page.shape import PageFacts, VariantPage
+from flexlash.mechanics.sketch.drawing_marks import Area, Drawing, Label, Mark, Stroke
+from flexlash.mechanics.sketch.sketch_svg import svg
+from flexlash.report.page.shape import PageFacts, Sketch, SketchMark, VariantPage
 from flexlash.service.records import StoredSubmission
 from flexlash.service.web.chart import UNIT, Cause, causes_chart, density_chart, shares_chart
 
-__all__ = ["VariantView", "variant_view"]
+__all__ = ["VariantView", "sketch_picture", "variant_view"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,6 +26,7 @@ class VariantView:
     of: int
     before: str
     after: str
+    sketch: Markup | None
     density: Markup
     causes: Markup | None
     segments: Markup | None
@@ -46,7 +49,30 @@ def variant_view(submission: StoredSubmission, facts: PageFacts, place: int) -> 
         of=len(pages),
         before=pages[place - 1]["variant"] if place else "",
         after=pages[place + 1]["variant"] if place + 1 < len(pages) else "",
+        sketch=sketch_picture(page["sketch"]) if "sketch" in page else None,
         density=density_chart("density", page["density"], UNIT),
         causes=causes_chart("causes", causes, page["density"]["nominal"], UNIT) if causes else None,
         segments=shares_chart("segments", "Where the wind-up sits", segments) if segments else None,
     )  # fmt: skip
+
+
+def sketch_picture(sketch: Sketch) -> Markup:
+    """Return the sketch of the part as SVG, in which everything is escaped as XML."""
+    drawing = Drawing(
+        width=sketch["width"],
+        height=sketch["height"],
+        title=sketch["title"],
+        description=sketch["description"],
+        marks=tuple(map(_mark, sketch["marks"])),
+    )
+    return Markup(svg(drawing))  # noqa: S704
+
+
+def _mark(mark: SketchMark) -> Mark:
+    points = tuple((x, y) for x, y in mark["points"])
+    if mark["kind"] == "area":
+        return Area(points=points, fill=mark["colour"], hatch=mark["hatch"])
+    if mark["kind"] == "stroke":
+        return Stroke(points=points, colour=mark["colour"], width=mark["width"], dashed=mark["dashed"])
+    (x, y), *_ = points
+    return Label(x=x, y=y, words=mark["words"], colour=mark["colour"], anchor=mark["anchor"])
