@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from flexlash.decisions.sweep import Study
     from flexlash.feedback.fixing.fix import Fix
 
-__all__ = ["Options", "Outcome", "check", "computed", "levers", "mend", "run", "spread_out", "sweep"]
+__all__ = ["Options", "Outcome", "check", "computed", "distribution", "levers", "mend", "run", "spread_out", "sweep"]
 
 
 def check(submission: str | Path | Source | ReadReport, **options: Any) -> Outcome:
@@ -104,6 +104,35 @@ def levers(
     if outputs.output is not None and outcome.computed:
         data = levers_bytes(outcome, table, outputs.output.ending)
     return outputs.written(outcome, data, ROLE), table
+
+
+def distribution(
+    submission: str | Path | Source | ReadReport,
+    output: str | Path | Output,
+    *,
+    units: int | None = None,
+    **options: Any,
+) -> Outcome:
+    """Return the outcome of a submission and write the distribution of its variants to `output`, for other programs.
+
+    One that ends in .parquet has so many random `units` of each variant, 10,000 unless said, with their dimensions; one
+    in .csv the percentiles of the backlash; one in .json these as metalogs, a library of the SIPmath 3.0 standard.
+    Options and errors are those of `run`; ValueError for less than one unit or more than a million.
+    """
+    from flexlash.analysis.drawn_units import MOST_UNITS, UNITS
+    from flexlash.report.distribution_output import ROLE, distribution_bytes
+    from flexlash.schema.argument_checks import whole_number
+
+    chosen = Options.of("distribution()", options)
+    count = UNITS if units is None else whole_number("units", units, least=1, most=MOST_UNITS)
+    outputs = delivery(submission, chosen, output, TABLES)
+    source = opened(submission, chosen)
+    outputs.require()
+    outcome = computed(source, chosen)
+    data = None
+    if outputs.output is not None and outcome.computed:
+        data = distribution_bytes(outcome, outputs.output.ending, count)
+    return outputs.written(outcome, data, ROLE)
 
 
 def sweep(

@@ -9,6 +9,7 @@ import click
 from flexlash import __version__
 from flexlash.cli.check_command import check
 from flexlash.cli.diff_command import diff
+from flexlash.cli.distribution_command import distribution
 from flexlash.cli.levers_command import levers
 from flexlash.cli.program import command_given, keep_window_open
 from flexlash.cli.reference_commands import explain, schema
@@ -45,12 +46,13 @@ def cli() -> None:
       flexlash run folder -o reports         all submissions of a folder
       flexlash levers variants.xlsx          which single change meets the limit
       flexlash sweep study.xlsx --vary cylinder_length_mm=100:200:20
+      flexlash distribution variants.xlsx -o units.parquet
       flexlash diff old.xlsx new.xlsx        what changed between two reports or submissions
       flexlash serve --open                  a page to hand templates in
     """  # noqa: D301
 
 
-for _command in (template, check, run, levers, sweep, diff, serve, watch, schema, explain, status, retry):
+for _command in (template, check, run, levers, sweep, distribution, diff, serve, watch, schema, explain, status, retry):
     cli.add_command(_command)
 
 

@@ -19,6 +19,7 @@ from flexlash.reading.raw import Submission
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.columns import VARIANTS
 from flexlash.schema.decision_results import LEVERS_TABLE
+from flexlash.schema.distribution_keys import LAST_OF_UNITS, PERCENTILES_TABLE, UNITS_TABLE
 from flexlash.schema.result_columns import FINDINGS, result_columns
 
 __all__ = [
@@ -46,11 +47,18 @@ SUMMARY_NAME = "flexlash-summary"
 
 _MADE = re.compile(rf"(?P<stem>.+)(?P<what>{REPORT_NAME}|{CHECKED_NAME}|{FIXED_NAME}|{SWEEP_NAME})(?: \(\d+\))?")
 _FIXED = "mended"
-_PRODUCTS = {"report": "I508", "summary": "I508", "results": "I527", "levers": "I527", "checked": "I513"}
+_PRODUCTS = {
+    "report": "I508",
+    "summary": "I508",
+    "results": "I527",
+    "levers": "I527",
+    "distribution": "I527",
+    "checked": "I513",
+}
 """By its role, the finding that says why a file that flexlash wrote is skipped."""
 
 _RESULTS = tuple(column.key for column in result_columns(cross_check=False, elasticity=False))
-_OTHERS = tuple(tuple(column.key for column in columns) for columns in (FINDINGS, LEVERS_TABLE))
+_OTHERS = (*(tuple(column.key for column in columns) for columns in (FINDINGS, LEVERS_TABLE)), PERCENTILES_TABLE)
 _SWEPT = frozenset(column.key for column in VARIANTS if column.role == "dimension")
 _LARGEST = 2**27
 """Largest file whose digest is taken to find out whether it is the original of a fixed one [bytes]."""
@@ -62,11 +70,13 @@ def fixed_role(original: bytes) -> str:
 
 
 def results_header(keys: Iterable[object]) -> bool:
-    """Whether a header row is that of Results, behind which further columns may follow, of findings or of levers.
+    """Whether a header row is that of Results, behind which further columns may follow, of findings or the like.
 
-    Of a sweep the swept columns stand behind the variant.
+    Of a sweep the swept columns stand behind the variant, of random units those that scatter.
     """
     header = list(keys)
+    if header[-1:] == [LAST_OF_UNITS] and tuple(header[:2]) == UNITS_TABLE:
+        return True
     swept = [key for key in header if key not in _SWEPT]
     return tuple(header) in _OTHERS or (tuple(swept[:2]) == _RESULTS[:2] and set(_RESULTS) <= set(header))
 

@@ -39,8 +39,8 @@ def placeholder(role: str) -> str:
 def stamped(data: bytes, role: str) -> bytes:
     """Return a file's bytes with its stamp, where they have room for one; the same bytes for the same bytes.
 
-    `role` says what the file is: `report`, `results`, `levers`, `checked`, `recreated`, `summary`, or `mended` and the
-    SHA-256 of the submission that was mended.
+    `role` says what the file is: `report`, `results`, `levers`, `distribution`, `checked`, `recreated`, `summary`, or
+    `mended` and the SHA-256 of the submission that was mended.
     """
     file = io.BytesIO(data)
     stamp(file, role)
