@@ -73,7 +73,7 @@ def test_the_worst_variant_is_picked_and_answered(study):
     within, between = (f"{row[f'{name}_arcmin']:.4f}" for name in ("within_lot_sd", "between_lots_sd"))
     assert [values[cell] for cell in LOTS] == [within, between, "practically all"]
     assert _number(values[FOUND]) == pytest.approx(row["p99_865_arcmin"], abs=row["p99_865_standard_error_arcmin"])
-    assert values[VERDICT] == "red"
+    assert values[VERDICT] == "fails"
     assert not error_cells(values)
 
 
@@ -163,7 +163,7 @@ def test_any_variant_and_any_limit_agree_with_the_program(table, sound, tmp_path
         told_reach = [program[f"probability_over_limit_{end}"] - share for end in ("low", "high")]
         assert reach == pytest.approx(told_reach, rel=0.6, abs=1e-3 * min(share, 1 - share) + step)
     assert len({nominal for nominal, _ in seen}) == 5
-    assert {verdict for _, verdict in seen} == {"green", "red"} | ({"amber"} if shape == "mixed" else set())
+    assert {verdict for _, verdict in seen} == {"meets", "fails"} | ({"marginal"} if shape == "mixed" else set())
 
 
 def _at(curve, share):
@@ -303,24 +303,24 @@ def test_without_limit_or_scatter_nothing_is_an_error(table, sound, tmp_path):
     assert (_number(far[LOW]), _number(near[HIGH])) == (0, 1)
     assert far["E19"] == "The limit 99.00 lies outside the pictures."
     assert (under[SHARE], over[SHARE]) == ("0.0000 %", "100.0000 %")
-    assert (under[VERDICT], over[VERDICT]) == ("green", "red")
+    assert (under[VERDICT], over[VERDICT]) == ("meets", "fails")
 
 
 @pytest.mark.slow
 @needs_libreoffice
 def test_the_verdict_follows_the_target_that_is_typed(table, sound, tmp_path):
-    """With 756 ppm over its limit a variant is green by a target of 99.9 %, amber by 99.95 %; nonsense is not used."""
+    """With 756 ppm over its limit a variant meets a target of 99.9 %, is marginal by 99.95 %; nonsense is not used."""
     outcome = run(table([{**sound, "backlash_limit_arcmin": 3.785}]), tmp_path / "report.xlsx")
     report = _explorer_alone(outcome, tmp_path / "alone.xlsx")
-    asked = {0.975: "green", 0.999: "green", 0.9995: "amber", 0.999999: "amber"}
-    verdicts = [*asked.items(), (0.9, "green"), (1.0, "green"), ("x", "green")]
+    asked = {0.975: "meets", 0.999: "meets", 0.9995: "marginal", 0.999999: "marginal"}
+    verdicts = [*asked.items(), (0.9, "meets"), (1.0, "meets"), ("x", "meets")]
     books = [typed(report, tmp_path / f"{n}.xlsx", "Explorer", {TARGET: one}) for n, (one, _) in enumerate(verdicts)]
     for (target, verdict), again in zip(verdicts, convert_all(books, "xlsx", tmp_path / "again"), strict=True):
         values = values_of(again, "Explorer")
         assert not error_cells(values)
         assert values[VERDICT] == verdict
         used = target if target in asked else 0.99865
-        assert values["C15"] == f"green to {100 * (1 - used):.4f} %, amber to 2.5 %"
+        assert values["C15"] == f"meets to {100 * (1 - used):.4f} %, marginal to 2.5 %"
         assert ("not used" in values["C8"]) is (used != target)
 
 
@@ -367,7 +367,7 @@ def test_nonsense_is_told_and_gives_no_number(study, tmp_path):
         (cell,) = entries
         if cell == WANTED:
             assert values[FOUND] == values[FOUND_ERROR] == "none"
-            assert values[VERDICT] == "red"
+            assert values[VERDICT] == "fails"
         else:
             assert values[SHARE] == values[LOW] == values[PPM] == values["F14"] == "none"
             assert values[VERDICT] == "–"
@@ -381,12 +381,12 @@ def test_nonsense_is_told_and_gives_no_number(study, tmp_path):
 
 @pytest.mark.slow
 def test_a_verdict_that_is_not_settled_has_a_question_mark(table, sound, tmp_path):
-    """Sixteen plain draws cannot tell 0.135 %: what they show green is green with a question mark."""
+    """Sixteen plain draws cannot tell 0.135 %: what they show to meet has a question mark."""
     rows = [{**sound, "backlash_limit_arcmin": "99"}]
     run(table(rows), tmp_path / "few.xlsx", method="random", samples=16)
     run(table(rows), tmp_path / "lines.xlsx")
     few, lines = (values_of(tmp_path / f"{name}.xlsx", "Explorer") for name in ("few", "lines"))
-    assert (few[VERDICT], lines[VERDICT]) == ("green?", "green")
+    assert (few[VERDICT], lines[VERDICT]) == ("meets?", "meets")
     assert _number(few[LOW]) == 0
 
 

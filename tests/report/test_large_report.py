@@ -166,8 +166,8 @@ def test_summary_and_about_say_what_is_where(large):
     assert texts["Computed"].startswith(
         "1999 of 2001 variants were computed. Results holds all of them; the other sheets show the 500 worst."
     )
-    red = verdicts_of(outcome.results, outcome.settings.verdict_bounds)[0]["fails"]
-    assert f"{red} of 1799 variants with a limit are red" in texts["Which fail"]
+    failing = verdicts_of(outcome.results, outcome.settings.verdict_bounds)[0]["fails"]
+    assert f"{failing} of 1799 variants with a limit fail" in texts["Which fail"]
     assert re.search("Main contributor of (all )?1999 variants: ", texts["Why"])
     told = {row[0]: row[1] for row in book["About"].iter_rows(values_only=True)}
     assert told["Variants shown"].startswith("The 500 worst of 1999 variants; all are in Results.")
@@ -244,14 +244,14 @@ def test_the_report_of_the_worst_of_a_million_says_where_all_are(worst_of_many):
         text = str(book[title][cell].value)
         assert re.search(r"6 worst of 999,998\b", text), (title, text)
     cells = [cell for row in book["Summary"].iter_rows(values_only=True) for cell in row if isinstance(cell, str)]
-    for tile in ("999,998 of 1,000,000", "4998 red?", "5000 amber", "990,000 green", "2 errors"):
+    for tile in ("999,998 of 1,000,000", "4998 fail?", "5000 marginal", "990,000 meet", "2 errors"):
         assert tile in cells
     texts = {row[0]: row[1] for row in book["Summary"].iter_rows(values_only=True) if row[0]}
     assert texts["Computed"] == (
         "999,998 of 1,000,000 variants were computed. This report shows the 6 worst of them; all Results are in "
         "gears-results.parquet, all findings in gears-findings.parquet."
     )
-    assert texts["Which fail"].startswith("4998 of 999,998 variants with a limit are red, 12 of them not settled")
+    assert texts["Which fail"].startswith("4998 of 999,998 variants with a limit fail, 12 of them not settled")
     for topic in ("Why", CHANGE, "Cylinder-only formula", "Strength"):
         assert texts[topic].startswith("Of the 6 worst: ")
     assert "155,000 warnings" in texts["Findings"]

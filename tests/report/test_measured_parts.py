@@ -78,7 +78,7 @@ def test_a_verdict_that_holds_at_both_ends_is_told_so():
     """Where the whole interval has one verdict, nothing is left open of it."""
     assert " ".join(left_open_by(facts_of(60, 60), row(118e-6, 12e-6, 8e-4))) == (
         "Units over the limit are 118 ppm by calculation; 60 measured parts (wall thickness and disk thickness) leave "
-        "open 12 to 800 ppm (95 %). At either end the verdict is green."
+        "open 12 to 800 ppm (95 %). At either end the verdict is “meets”."
     )
 
 
@@ -86,17 +86,17 @@ def test_a_verdict_that_is_left_open_says_what_it_may_be_and_how_many_parts_woul
     """The other verdicts are named, and the parts are those that draw the score's interval in to the bound."""
     said = " ".join(left_open_by(facts_of(60, 24), row(118e-6, 2e-6, 4e-3)))
     assert "60 measured parts (wall thickness) and 24 measured parts (disk thickness) leave open 2 ppm to 0.4 %" in said
-    assert "So the verdict, green, may as well be amber." in said
-    # Scores 3.6777 now, 2.6521 at the end and 3.0000 where green ends: (1.0256/0.6777)² = 2.29.
+    assert "So the verdict “meets” may as well be “marginal”." in said
+    # Scores 3.6777 now, 2.6521 at the end and 3.0000 where “meets” ends: (1.0256/0.6777)² = 2.29.
     assert said.endswith("About 2.3 times as many parts would settle it, if they come out alike.")
 
 
 @for_each(
     "case",
     [
-        (0.01, 1e-3, 0.04, "may as well be green or red."),
-        (0.01, 3e-3, 0.04, "may as well be red."),
-        (1e-5, 0.0, 0.03, "may as well be amber or red."),
+        (0.01, 1e-3, 0.04, "may as well be “meets” or “fails”."),
+        (0.01, 3e-3, 0.04, "may as well be “fails”."),
+        (1e-5, 0.0, 0.03, "may as well be “marginal” or “fails”."),
     ],
 )
 def test_every_verdict_within_the_interval_is_named(case):
@@ -115,7 +115,7 @@ def test_an_interval_without_units_is_told_as_such():
     """Where the calculation finds no unit over the limit and measured parts leave none open, both are said at once."""
     assert " ".join(left_open_by(facts_of(60), row(1e-13, 0.0, 1e-11))) == (
         "Units over the limit are practically none by calculation, and whatever 60 measured parts (wall thickness) "
-        "leave open (95 %). At either end the verdict is green."
+        "leave open (95 %). At either end the verdict is “meets”."
     )
 
 

@@ -15,7 +15,7 @@ from flexlash.pipeline import check, run
 from flexlash.report.page.excel_texts import number_text
 from flexlash.report.page.page_facts import PAGED, TABLED, Found, page_bytes, page_facts
 from flexlash.report.report_data import ROW, ranked, report_data
-from flexlash.report.wording.verdict import light
+from flexlash.report.wording.verdict import verdict_word
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.result_columns import RESULTS
 from flexlash.schema.units import ARCMIN
@@ -76,10 +76,7 @@ def test_the_chart_has_the_numbers_of_results(facts, worst):
     assert (chart["drawn"], chart["of"]) == (len(chart["variants"]), len(worst))
     for bar, row in zip(chart["variants"], worst, strict=True):
         assert {name: bar[name] for name in keys} == {name: row[f"{key}_arcmin"] for name, key in keys.items()}
-        assert (
-            bar["verdict"]
-            == {"red": "fails", "amber": "marginal", "green": "meets"}[light(row, VerdictBounds()).rstrip("?")]
-        )
+        assert bar["verdict"] == verdict_word(row, VerdictBounds()).rstrip("?")
     assert chart["limits"] == [3.8]
     assert chart["axis"]["start"] < min(bar["low"] for bar in chart["variants"])
 
@@ -155,7 +152,7 @@ def test_a_variant_says_what_the_summary_says_of_it(facts):
     assert own["Why"] in said["Why"]
     assert own["What to change"].partition(" Tighter")[0] in said["What to change"]
     assert "97.5 % of its units stay below 6.262′, 2.462′ over its limit of 3.8′" in own["Verdict"]
-    assert "It fails (red): fewer than 97.5 % of units within the limit." in own["Verdict"]
+    assert "It fails: fewer than 97.5 % of units within the limit." in own["Verdict"]
     assert own["Verdict"].split(" With every")[1] in said["How sure"]
 
 

@@ -13,7 +13,7 @@ from flexlash.report.compare.compared import COMPARED_NOTE, compared_variants
 from flexlash.report.compare.ranking_sheet import BASE_ROW, DIFFERENCES, FIRST_ROW, HEADER, write_ranking
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import drawn_variants
-from flexlash.report.wording.verdict import light
+from flexlash.report.wording.verdict import verdict_word
 from flexlash.schema.entry_words import dimension_words
 
 KEYS = {
@@ -65,7 +65,7 @@ def test_rows_repeat_results_worst_first(study):
         assert cells["Rank"].value == rank
         assert cells["Variant"].value == row["variant"]
         assert cells["Variant"].hyperlink.location == f"Results!A{results.index(row['variant']) + 3}"
-        assert cells["Verdict"].value == light(row, outcome.settings.verdict_bounds)
+        assert cells["Verdict"].value == verdict_word(row, outcome.settings.verdict_bounds)
         assert cells["Units over the limit"].value == share_words(row)
         assert cells["Main contributor"].value == dimension_words(row["main_contributor"])
         assert {heading: cells[heading].value for heading in KEYS} == {

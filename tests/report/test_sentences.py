@@ -47,10 +47,10 @@ def test_the_study_in_words(outcome):
     worst = rows["B3-160 case 5"]
     assert told["Computed"] == "11 of 11 variants were computed."
     assert told["Which fail"].startswith(
-        f"3 of 11 variants with a limit are red: “B3-160 case 5” (97.5 % of its units stay below "
+        f"3 of 11 variants with a limit fail: “B3-160 case 5” (97.5 % of its units stay below "
         f"{worst['p97_5_arcmin']:.3f}′, {worst['p97_5_arcmin'] - 3.8:.3f}′ over its limit of 3.8′), “B3-160 case 3” ("
     )
-    assert told["Which fail"].endswith(" 8 are green.")
+    assert told["Which fail"].endswith(" 8 meet it.")
     # Its 95 % interval is narrower than the digits that words tell, so that none is told.
     assert re.search(r"“B3-160 case 4 r_m 80” 99\.452 %\. With every dimension", told["How sure"])
     shares = (100 * worst["main_contributor_share"], "Young's modulus")
@@ -73,30 +73,30 @@ LIMITS = {
         [""],
         "No limit was given, so nothing is judged. 97.5 % of the units of “v0” stay below 3.748′.",
     ),
-    "all green": (
+    "all meet it": (
         [5, 4],
-        "None: all 2 variants with a limit are green. Nearest to its limit is “v1” (99.865 % of its units stay below "
+        "None: all 2 variants with a limit meet it. Nearest to its limit is “v1” (99.865 % of its units stay below "
         "3.780′, 0.220′ under its limit of 4′).",
     ),
-    "one green": (
+    "one that meets it": (
         [5],
-        "None: the 1 variant with a limit is green. Nearest to its limit is “v0” (99.865 % of its units stay below "
+        "None: the 1 variant with a limit meets it. Nearest to its limit is “v0” (99.865 % of its units stay below "
         "3.780′, 1.220′ under its limit of 5′).",
     ),
-    "red, amber, green and none": (
+    "fails, marginal, meets and none": (
         [3.7, 3.76, 5, ""],
-        "1 of 3 variants with a limit is red: “v0” (97.5 % of its units stay below 3.748′, 0.048′ over its limit of "
-        "3.7′). 1 of 3 variants with a limit is amber: “v1” (99.865 % of its units stay below 3.780′, 0.020′ "
-        "over its limit of 3.76′). 1 is green. 1 has no limit.",
+        "1 of 3 variants with a limit fails: “v0” (97.5 % of its units stay below 3.748′, 0.048′ over its limit of "
+        "3.7′). 1 of 3 variants with a limit is marginal: “v1” (99.865 % of its units stay below 3.780′, 0.020′ "
+        "over its limit of 3.76′). 1 meets it. 1 has no limit.",
     ),
     "more than are named": (
         [3.5, 3.6, 3.7, 3.72],
-        "4 of 4 variants with a limit are red: “v0” (97.5 % of its units stay below 3.748′, 0.248′ over its limit of "
+        "4 of 4 variants with a limit fail: “v0” (97.5 % of its units stay below 3.748′, 0.248′ over its limit of "
         "3.5′), “v1” (3.748′, 0.148′ over 3.6′), “v2” (3.748′, 0.048′ over 3.7′) and 1 more.",
     ),
     "far over": (
         [0.5],
-        "1 of 1 variant with a limit is red: “v0” (97.5 % of its units stay below 3.748′, 3.248′ over its limit of "
+        "1 of 1 variant with a limit fails: “v0” (97.5 % of its units stay below 3.748′, 3.248′ over its limit of "
         "0.5′).",
     ),
 }
@@ -174,7 +174,7 @@ def test_all_variants_are_counted_not_only_those_drawn(told, monkeypatch):
     """Counts and the classical formula's range are of all variants, however few the report draws."""
     monkeypatch.setattr("flexlash.report.report_data.DRAWN", 2)
     said = told(*({"backlash_limit_arcmin": 3.5} for _ in range(5)))
-    assert said["Which fail"].startswith("5 of 5 variants with a limit are red: ")
+    assert said["Which fail"].startswith("5 of 5 variants with a limit fail: ")
     assert said["Why"].endswith("Main contributor of all 5 variants: Young's modulus.")
     assert "Over all 5 cups and hats" in said["Cylinder-only formula"]
 
@@ -259,7 +259,7 @@ def test_few_points_leave_verdicts_open(told):
     """A share of which 64 points saw nothing settles no verdict: the Summary says so, and what would settle it."""
     limits = [{"backlash_limit_arcmin": limit} for limit in (5, 4, 3, "")]
     said = told(*limits, **FEW)
-    assert said["Which fail"].endswith("2 are green, none of them settled. 1 has no limit.")
+    assert said["Which fail"].endswith("2 meet it, none of them settled. 1 has no limit.")
     assert (
         "2 verdicts with ? are not settled: 64 points leave open whether more than 0.135 or 2.5 % of units are over "
         "the limit. Run with more samples or with the method line." in said["How sure"]
@@ -269,15 +269,15 @@ def test_few_points_leave_verdicts_open(told):
 
 
 def test_some_open_verdicts_are_counted(told):
-    """Of several amber or red variants those are counted that more points may change."""
+    """Of several marginal or failing variants those are counted that more points may change."""
     limits = [{"backlash_limit_arcmin": limit} for limit in (3.0, 3.745)]
     said = told(*limits, method="random", samples=256)
-    assert said["Which fail"].startswith("2 of 2 variants with a limit are red, 1 of them not settled: “v0” (")
+    assert said["Which fail"].startswith("2 of 2 variants with a limit fail, 1 of them not settled: “v0” (")
     assert "1 verdict with ? is not settled: 256 points leave open whether more than 2.5 % of" in said["How sure"]
 
 
 def test_a_limit_at_the_percentile_is_open_by_lines_too(told, table, sound):
-    """Where the limit is the P99.865 itself the lines' own error leaves green and amber open; more lines may help."""
+    """Where the limit is the P99.865 itself the lines' own error leaves the verdict open; more lines may help."""
     tail = run(table([sound], "first.csv"), samples=64).results["p99_865_arcmin"][0]
     said = told({"backlash_limit_arcmin": tail}, samples=64)["How sure"]
     assert "1 verdict with ? is not settled: 64 lines leave open whether more than 0.135 % of units are over" in said

@@ -20,14 +20,14 @@ from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
 from flexlash.report.report_data import drawn_variants, report_data
 from flexlash.report.summary.summary_sheet import write_summary
-from flexlash.report.wording.verdict import light, verdict_rules
+from flexlash.report.wording.verdict import verdict_rules, verdict_word
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.limit_verdict import VerdictBounds
 
 _ASCENT_AND_DESCENT = 1.22
 """Height of a word's box over the size of its letters, in Calibri and Carlito."""
 
-FILLS = {"red": "FFF8CBAD", "amber": "FFFFE699", "green": "FFC6E5D8"}
+FILLS = {"fails": "FFF8CBAD", "marginal": "FFFFE699", "meets": "FFC6E5D8"}
 NUMBERS = ("backlash_arcmin", "p50_arcmin", "p97_5_arcmin", "backlash_limit_arcmin")
 
 
@@ -57,14 +57,20 @@ def _many(count, first=700.0):
 
 
 def test_key_figures_and_their_rule(study):
-    """Computed, red, amber, green and findings stand in words above their rule; only what occurs is coloured."""
+    """Computed, verdicts and findings stand in words above their rule; only what occurs is coloured."""
     sheet = opened(study[1])["Summary"]
     places = (1, 2, 5, 8, 9)
-    assert [sheet.cell(4, place).value for place in places] == ["11 of 11", "3 red", "0 amber", "8 green", "5 warnings"]
+    assert [sheet.cell(4, place).value for place in places] == [
+        "11 of 11",
+        "3 fail",
+        "0 marginal",
+        "8 meet",
+        "5 warnings",
+    ]
     captions = [sheet.cell(5, place).value for place in places]
     assert captions == ["variants computed", *verdict_rules(VerdictBounds()).values(), "see Findings"]
     fills = [sheet.cell(4, place).fill.fgColor.rgb for place in places]
-    assert fills == ["00000000", FILLS["red"], "00000000", FILLS["green"], "00000000"]
+    assert fills == ["00000000", FILLS["fails"], "00000000", FILLS["meets"], "00000000"]
 
 
 def test_every_sentence_stands_beside_its_topic(study):
@@ -90,7 +96,7 @@ def test_the_table_holds_the_worst_with_their_numbers(study):
         cells = [sheet.cell(row, place) for place in range(1, 10)]
         name, verdict, *numbers, excess, share, cause = (cell.value for cell in cells)
         assert name == one.row["variant"]
-        assert verdict == light(one.row, VerdictBounds())
+        assert verdict == verdict_word(one.row, VerdictBounds())
         assert cells[1].fill.fgColor.rgb == FILLS[verdict]
         assert numbers == [pytest.approx(one.row[key], rel=1e-15) for key in NUMBERS]
         assert excess == pytest.approx(one.row["p97_5_arcmin"] - one.row["backlash_limit_arcmin"], rel=1e-12)
@@ -122,7 +128,7 @@ def test_links_lead_to_their_variants(table, sound, tmp_path):
 
 
 def test_distances_are_the_same_in_sentence_and_table(study):
-    """What a sentence says a red variant is over its limit by is what its row of the table shows."""
+    """What a sentence says a failing variant is over its limit by is what its row of the table shows."""
     sheet = opened(study[1])["Summary"]
     cells = [sheet.cell(_row(sheet, "Variant") + 1 + place, 7) for place in range(3)]
     shown = [f"{cell.value:.{len(cell.number_format.split(';')[0].partition('.')[2])}f}" for cell in cells]
@@ -132,17 +138,17 @@ def test_distances_are_the_same_in_sentence_and_table(study):
 
 @pytest.mark.slow
 def test_verdicts_of_few_points_have_a_mark(folder):
-    """By 64 draws eight green verdicts have a ? in cell and key figure, in the colour of green, and shares an ≈."""
+    """By 64 draws eight variants meet with a ? in cell and key figure, in the same colour, and shares an ≈."""
     study = regenerate.ROOT / "data" / "b3-160-study.xlsx"
     run(study, folder / "few.xlsx", method="random", samples=64)
     sheet = opened(folder / "few.xlsx")["Summary"]
-    assert [sheet.cell(4, place).value for place in (2, 5, 8)] == ["3 red", "0 amber", "8 green?"]
-    assert sheet.cell(5, 8).value == f"{verdict_rules(VerdictBounds())['green']}; 8 not settled"
-    assert sheet.cell(4, 8).fill.fgColor.rgb == FILLS["green"]
+    assert [sheet.cell(4, place).value for place in (2, 5, 8)] == ["3 fail", "0 marginal", "8 meet?"]
+    assert sheet.cell(5, 8).value == f"{verdict_rules(VerdictBounds())['meets']}; 8 not settled"
+    assert sheet.cell(4, 8).fill.fgColor.rgb == FILLS["meets"]
     first = _row(sheet, "Variant") + 1
     cells = [sheet.cell(row, 2) for row in range(first, first + 11)]
-    assert [cell.value for cell in cells] == ["red"] * 3 + ["green?"] * 8
-    assert [cell.fill.fgColor.rgb for cell in cells] == [FILLS["red"]] * 3 + [FILLS["green"]] * 8
+    assert [cell.value for cell in cells] == ["fails"] * 3 + ["meets?"] * 8
+    assert [cell.fill.fgColor.rgb for cell in cells] == [FILLS["fails"]] * 3 + [FILLS["meets"]] * 8
     assert sheet.cell(first, 9).value == "Young's modulus (≈68 %)"
     assert {sheet.row_dimensions[row].height or LINE_HEIGHT for row in range(first, first + 11)} == {LINE_HEIGHT}
 
@@ -228,8 +234,8 @@ def test_the_chart_holds_every_variant(study):
         values = re.search(r"<c:val>.*?</c:val>", one, re.DOTALL)[0]
         assert [float(value) for value in re.findall(r"<c:v>([^<]+)</c:v>", values)] == pytest.approx(numbers)
     colours = re.findall(r'<c:dPt>.*?<a:solidFill>\s*<a:srgbClr val="(\w+)"', series[1], re.DOTALL)
-    names = {"red": "red", "amber": "orange"}
-    assert colours == [PALETTE[names.get(light(one.row, VerdictBounds()), "sky")].strip("#") for one in drawn]
+    names = {"fails": "red", "marginal": "orange"}
+    assert colours == [PALETTE[names.get(verdict_word(one.row, VerdictBounds()), "sky")].strip("#") for one in drawn]
     low = float(re.search(r'<c:min val="([^"]+)"', text)[1])
     assert 0 < low < min(expected[0])
 

@@ -13,13 +13,16 @@ from flexlash.report.report_data import report_data
 from flexlash.report.wording.summary_facts import summary_facts
 from flexlash.report.wording.verdict_sentences import judged
 from flexlash.schema.exit_codes import ExitCode
+from flexlash.schema.limit_verdict import VERDICTS as NAMES
 
 LIMITS = (3.7, 3.77, 3.785, 3.8, 3.82)
 """With these limits 34 %, 0.37 %, 756 ppm, 120 ppm and 7 ppm of units are over them."""
 
 VERDICTS = {97.5: "fails meets meets meets meets", 99.865: "fails marginal meets meets meets"}
 VERDICTS |= {99.95: "fails marginal marginal meets meets", 99.99: "fails marginal marginal marginal meets"}
-COLOURS = {"fails": "red", "marginal": "amber", "meets": "green"}
+
+
+OPENINGS = {"fails": "It fails", "marginal": "It is marginal", "meets": "It meets its limit"}
 
 
 @pytest.fixture(scope="module", params=VERDICTS)
@@ -36,14 +39,14 @@ def judged_by(request, tmp_path_factory):
 
 
 def _numbers(verdicts):
-    return {verdict: verdicts.count(verdict) for verdict in COLOURS}
+    return {verdict: verdicts.count(verdict) for verdict in NAMES}
 
 
 @pytest.mark.slow
 def test_counts_and_exit_code(judged_by):
     """What an outcome counts, and whether a run fails, follow the target."""
     _, verdicts, outcome, _ = judged_by
-    assert {name: outcome.counts[name] for name in COLOURS} == _numbers(verdicts)
+    assert {name: outcome.counts[name] for name in NAMES} == _numbers(verdicts)
     assert outcome.exit_code == ExitCode.OVER_LIMIT
 
 
@@ -60,21 +63,20 @@ def test_a_screen_names_the_target(judged_by):
 
 @pytest.mark.slow
 def test_every_sheet_has_the_verdict(judged_by):
-    """Summary and Ranking colour each variant by the target, and say by which rule."""
+    """Summary and Ranking judge each variant by the target, and say by which rule."""
     target, verdicts, outcome, book = judged_by
-    colours = [COLOURS[verdict] for verdict in verdicts]
     ranking = book["Ranking"]
-    assert [ranking.cell(row, 3).value for row in range(8, 13)] == colours
-    assert f"green, at least {target} % of units within the limit" in ranking["A2"].value
+    assert [ranking.cell(row, 3).value for row in range(8, 13)] == verdicts
+    assert f"meets, at least {target} % of units within the limit" in ranking["A2"].value
     summary = [[cell.value for cell in row] for row in book["Summary"].iter_rows()]
-    assert [row[1] for row in summary if str(row[0]).startswith("to 3")] == colours
+    assert [row[1] for row in summary if str(row[0]).startswith("to 3")] == verdicts
     assert [value for value in summary[4] if value][2].startswith(
         f"97.5 to {target} %" if target > 97.5 else "none by 97.5 %"
     )
     about = {str(row[0].value).removeprefix("•  ") for row in book["About"].iter_rows()}
-    assert f"Green: at least {target} % of units within the limit." in about
+    assert f"Meets: at least {target} % of units within the limit." in about
     said = said_of(outcome)["Which fail"]
-    assert ("amber" in said) is ("marginal" in verdicts)
+    assert ("marginal" in said) is ("marginal" in verdicts)
 
 
 @pytest.mark.slow
@@ -87,7 +89,7 @@ def test_the_page_of_the_service_has_the_verdict(judged_by):
     data = report_data(outcome)
     facts = summary_facts(outcome, data.levers)
     for one, verdict in zip(data.drawn, verdicts, strict=True):
-        assert f"({COLOURS[verdict]}): " in " ".join(judged(facts, one.row))
+        assert f"{OPENINGS[verdict]}: " in " ".join(judged(facts, one.row))
 
 
 @pytest.mark.slow

@@ -224,18 +224,19 @@ def _lots(acceptable_ppm: float) -> Iterator[str]:
 
 def _verdict(bounds: VerdictBounds) -> Iterator[str]:
     """Yield how the verdict on a variant is formed."""
-    amber = "amber where P97.5 is, else " if bounds.any_marginal else ""
-    yield from (f"{colour.capitalize()}: {rule}." for colour, rule in verdict_rules(bounds).items())
+    marginal = "is marginal where P97.5 is, " if bounds.any_marginal else ""
+    yield from (f"{verdict.capitalize()}: {rule}." for verdict, rule in verdict_rules(bounds).items())
     yield (
-        f"By percentiles: green where P{bounds.target_words.removesuffix(' %')} is at most the limit, else {amber}red; "
-        f"{NO_VERDICT} where no limit was given. It judges the backlash alone, by the estimate as it stands; a ? says "
-        "that the 95 % interval of the share over the limit reaches another verdict, so that more samples may turn it."
+        f"By percentiles: a variant meets its limit where P{bounds.target_words.removesuffix(' %')} is at most it, "
+        f"{marginal}else fails; {NO_VERDICT} where no limit was given. It judges the backlash alone, by the estimate "
+        "as it stands; a ? says that the 95 % interval of the share over the limit reaches another verdict, so that "
+        "more samples may turn it."
     )
     yield (
         "It is about the units of all lots together. How many lots fail by themselves is told beside it and changes no "
         "verdict."
     )
-    yield "A variant with warnings has its verdict all the same: a part beyond yield can be green. See Findings."
+    yield "A variant with warnings has its verdict all the same: a part beyond yield can meet its limit. See Findings."
 
 
 def _digits() -> Iterator[str]:

@@ -17,7 +17,7 @@ from flexlash.report.layout.links import result_rows, write_link
 from flexlash.report.layout.styles import Book, decimals_of
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
-from flexlash.report.wording.verdict import COLOURS, light, verdict_rules
+from flexlash.report.wording.verdict import COLOURS, verdict_rules, verdict_word
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.lot_words import lots_words
 
@@ -91,7 +91,7 @@ def write_ranking(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
                 book,
                 sheet,
                 rank,
-                (variant, light(variant.row, bounds)),
+                (variant, verdict_word(variant.row, bounds)),
                 (labels[rank], results[variant.computed.variant.row]),
             )
             _write_figures(book, sheet, rank, variant, compared)

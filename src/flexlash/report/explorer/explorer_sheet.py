@@ -170,24 +170,24 @@ def _write_share(book: Book, sheet: Any, choice: Choice, reading: tuple[Working,
     put(sheet, _PPM, 1, IF(none, NONE, FIXED(share_told * 1e6, decimals - _PPM_DECIMALS)), figure)
     allowed = working.cell("share over a limit that meets it", choice.allowed)
     put(sheet, _VERDICT, 1, IF(none, "–", _verdict(allowed, read.share, *ends)), figure)
-    rule = CONCATENATE("green to ", FIXED(allowed * 100, 4.0), f" %, amber to {100 * MARGINAL:g} %")
+    rule = CONCATENATE("meets to ", FIXED(allowed * 100, 4.0), f" %, marginal to {100 * MARGINAL:g} %")
     remark = IF(none, rule, IF(_settled(allowed, read.share, *ends), rule, "◄ the interval reaches another"))
     put(sheet, _VERDICT, 2, remark, quiet)
-    for word, style in (("green", "ok"), ("amber", "warning"), ("red", "error")):
+    for word, style in (("meets", "ok"), ("marginal", "warning"), ("fails", "error")):
         colour = {"type": "text", "criteria": "begins with", "value": word, "format": book.format(style)}
         sheet.conditional_format(_VERDICT, 1, _VERDICT, 1, colour)
 
 
 def _verdict(allowed: Live, share: Live, low: Live, high: Live) -> Live:
     """Return the verdict on a share where so much is allowed, with ? where its interval reaches another one."""
-    word = IF(share <= allowed, "green", IF(share <= MARGINAL, "amber", "red"))
+    word = IF(share <= allowed, "meets", IF(share <= MARGINAL, "marginal", "fails"))
     return CONCATENATE(word, IF(_settled(allowed, share, low, high), "", "?"))
 
 
 def _settled(allowed: Live, share: Live, low: Live, high: Live) -> Live:
     """Return whether the whole interval of a share has the same verdict."""
-    amber = AND(low > allowed, high <= MARGINAL)
-    return IF(share <= allowed, high <= allowed, IF(share <= MARGINAL, amber, low > MARGINAL))
+    marginal = AND(low > allowed, high <= MARGINAL)
+    return IF(share <= allowed, high <= allowed, IF(share <= MARGINAL, marginal, low > MARGINAL))
 
 
 def _write_figures(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:

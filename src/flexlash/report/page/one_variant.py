@@ -30,7 +30,7 @@ from flexlash.report.wording.lot_sentences import LOTS, lots_of
 from flexlash.report.wording.measured_parts import PARTS, left_open_by
 from flexlash.report.wording.sentences import cause_of
 from flexlash.report.wording.summary_facts import SummaryFacts, rough
-from flexlash.report.wording.verdict import light, straddled
+from flexlash.report.wording.verdict import straddled, verdict_word
 from flexlash.report.wording.verdict_sentences import extremes, judged
 from flexlash.report.wording.wave_generator import BENDING, TWO_LOBES, bending_of, two_lobes_of
 from flexlash.schema.columns import DIMENSIONS, Column
@@ -90,7 +90,7 @@ def variant_pages(
             place=place + 1,
             verdict=verdict_of(row, facts.bounds),
             settled=not straddled(row, facts.bounds),
-            light="" if row["backlash_limit_arcmin"] is None else light(row, facts.bounds),
+            light="" if row["backlash_limit_arcmin"] is None else verdict_word(row, facts.bounds),
             sentences=list(_sentences(facts, variant)),
             density=_density(variant),
             shares=list(_shares(variant)),

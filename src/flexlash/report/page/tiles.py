@@ -7,18 +7,13 @@ from typing import Literal
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.page.shape import Tile
-from flexlash.report.wording.verdict import LIGHTS, NO_VERDICT, UNSETTLED, verdict_counts
+from flexlash.report.wording.verdict import NO_VERDICT, UNSETTLED, verdict_counts, verdict_verb
 from flexlash.schema.limit_verdict import VERDICTS, Verdict
 from flexlash.schema.number_words import grouped
 
 __all__ = ["finding_tiles", "verdict_tiles"]
 
-_LOOKS: dict[Verdict, tuple[str, str, Literal["good", "bad", "warn"]]] = {
-    "fails": ("fails", "fail", "bad"),
-    "marginal": ("marginal", "marginal", "warn"),
-    "meets": ("meets {target}", "meet {target}", "good"),
-}
-"""What one variant of a verdict does or is, what several, and how that looks; `target` is what must be within."""
+_LOOKS: dict[Verdict, Literal["good", "bad", "warn"]] = {"fails": "bad", "marginal": "warn", "meets": "good"}
 
 
 def finding_tiles(outcome: Outcome, *, ran: bool, to_fix: int, fixable: int) -> Iterator[Tile]:
@@ -41,12 +36,12 @@ def verdict_tiles(outcome: Outcome) -> Iterator[Tile]:
     counts = verdict_counts(outcome)
     judged, without = counts.total() - counts[NO_VERDICT], counts[NO_VERDICT]
     for verdict in reversed(VERDICTS) if judged else ():
-        doubtful = counts[f"{LIGHTS[verdict]}{UNSETTLED}"]
-        count = counts[LIGHTS[verdict]] + doubtful
-        one, several, kind = _LOOKS[verdict]
-        words = (one if count == 1 else several).format(target=outcome.settings.verdict_bounds.target_words)
+        doubtful = counts[f"{verdict}{UNSETTLED}"]
+        count = counts[verdict] + doubtful
+        target = f" {outcome.settings.verdict_bounds.target_words}" if verdict == "meets" else ""
+        words = f"{verdict_verb(verdict, count)}{target}"
         doubt = f", {grouped(doubtful)} not settled" if doubtful else ""
-        yield Tile(number=grouped(count), words=f"{words}{doubt}", kind=kind)
+        yield Tile(number=grouped(count), words=f"{words}{doubt}", kind=_LOOKS[verdict])
     if without:
         yield Tile(number=grouped(without), words="without a limit", kind="plain")
     if judged or without:

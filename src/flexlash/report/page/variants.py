@@ -14,7 +14,7 @@ from flexlash.report.summary.summary_chart import CHARTED, chart_axis, chart_tit
 from flexlash.report.wording.distances import distance_words
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.summary_facts import Row, SummaryFacts, main_cause
-from flexlash.report.wording.verdict import light, straddled
+from flexlash.report.wording.verdict import straddled, verdict_word
 from flexlash.schema.findings import shown
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.number_words import angle_words, share_words
@@ -91,7 +91,7 @@ def table_rows(facts: SummaryFacts, rows: Sequence[Row], names: Sequence[str], p
             status=row["status"],
             verdict=verdict_of(row, facts.bounds),
             settled=not straddled(row, facts.bounds),
-            light="" if limit is None else light(row, facts.bounds),
+            light="" if limit is None else verdict_word(row, facts.bounds),
             nominal=angle_words(row["backlash_arcmin"]),
             median=_percentile(row, "p50"),
             p97_5=_percentile(row, "p97_5"),

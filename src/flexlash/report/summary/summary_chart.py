@@ -11,7 +11,7 @@ from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.report_data import Drawn
-from flexlash.report.wording.verdict import firm, light
+from flexlash.report.wording.verdict import firm, verdict_word
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.number_words import grouped
 
@@ -20,7 +20,7 @@ __all__ = ["CHARTED", "chart_axis", "chart_title", "chart_words", "variants_char
 CHARTED = 60
 """Most variants whose names can be read below a chart."""
 
-_COLOURS = {"red": "red", "amber": "orange"}
+_COLOURS = {"fails": "red", "marginal": "orange"}
 _LOOKS: tuple[tuple[int, dict[str, int]], ...] = (
     (3, {"gap": 500, "turned": 0, "font": 9, "median": 6, "limit": 14}),
     (12, {"gap": 150, "turned": -45, "font": 9, "median": 5, "limit": 12}),
@@ -43,7 +43,7 @@ def variants_chart(book: Book, drawn: Sequence[Drawn], curves: Stored, outcome: 
         (
             bars,
             "P2.5 to P97.5",
-            "P2.5 to P97.5 (orange: amber, dark orange: red)",
+            "P2.5 to P97.5 (orange: marginal, dark orange: fails)",
             _bars(shown, outcome.settings.verdict_bounds),
         ),
         (marks, "P50", "Median", _marker("diamond", PALETTE["ink"], look["median"])),
@@ -67,8 +67,8 @@ def chart_words(drawn: Sequence[Drawn]) -> str:
     """Return the alternative text of the chart."""
     return (
         f"For {min(len(drawn), CHARTED)} variants, worst first: a bar from the backlash that 2.5 % of units stay "
-        "below to that which 97.5 % stay below, the median as a diamond, the limit as a dash. Bars of variants with "
-        "verdict red are dark orange, with amber orange, others blue."
+        "below to that which 97.5 % stay below, the median as a diamond, the limit as a dash. Bars of variants that "
+        "fail are dark orange, of marginal ones orange, of others blue."
     )
 
 
@@ -78,7 +78,7 @@ def _bars(shown: Sequence[Drawn], bounds: VerdictBounds) -> dict[str, Any]:
     def look(colour: str) -> dict[str, Any]:
         return {"fill": {"color": PALETTE[colour]}, "border": {"color": PALETTE[colour]}}
 
-    colours = [_COLOURS.get(firm(light(variant.row, bounds)), "sky") for variant in shown]
+    colours = [_COLOURS.get(firm(verdict_word(variant.row, bounds)), "sky") for variant in shown]
     return {**look("sky"), "points": [look(colour) for colour in colours]}
 
 

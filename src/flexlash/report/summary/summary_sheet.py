@@ -27,11 +27,20 @@ from flexlash.report.wording.lever_words import shown_levers
 from flexlash.report.wording.sentences import FINDINGS, sentences
 from flexlash.report.wording.summary_facts import labels_of, main_cause
 from flexlash.report.wording.sweep_words import summary_sentence
-from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, UNSETTLED, light, verdict_counts, verdict_rules
+from flexlash.report.wording.verdict import (
+    COLOURS,
+    NO_VERDICT,
+    UNSETTLED,
+    verdict_counts,
+    verdict_rules,
+    verdict_verb,
+    verdict_word,
+)
 from flexlash.schema.findings import shown
+from flexlash.schema.limit_verdict import VERDICTS, Verdict
 from flexlash.schema.number_words import glance, grouped, share_words
 
-__all__ = ["light", "sentences", "write_summary"]
+__all__ = ["write_summary"]
 
 _LISTED = 12
 """Most variants in the table."""
@@ -122,14 +131,17 @@ class _Page:
         """Write how many were computed, have which verdict by which rule, and how much was found."""
         counts, verdicts = self.outcome.counts, verdict_counts(self.outcome)
         judged = sum(verdicts.values()) - verdicts[NO_VERDICT]
+        rules = verdict_rules(self.outcome.settings.verdict_bounds)
         level = "error" if counts["errors"] else "warning"
         without = f", {grouped(verdicts[NO_VERDICT])} without a limit" if verdicts[NO_VERDICT] else ""
         others = f"and {counted(counts['warnings'], 'warning')}; " if counts["errors"] and counts["warnings"] else ""
         figures = [
             (f"{grouped(counts['computed'])} of {grouped(counts['rows'])}", f"variants computed{without}", ""),
             *(
-                _verdict_figure(verdict, rule, verdicts) if judged else (f"{NO_VERDICT} {verdict}", rule, "")
-                for verdict, rule in verdict_rules(self.outcome.settings.verdict_bounds).items()
+                _verdict_figure(verdict, rules[verdict], verdicts)
+                if judged
+                else (f"{NO_VERDICT} {verdict_verb(verdict, 0)}", rules[verdict], "")
+                for verdict in reversed(VERDICTS)
             ),
             (
                 counted(counts[f"{level}s"], level),
@@ -190,7 +202,7 @@ class _Page:
 
     def _variant(self, row: dict[str, Any], name: str, target: int) -> None:
         """Write a variant's row of the table."""
-        verdict = light(row, self.outcome.settings.verdict_bounds)
+        verdict = verdict_word(row, self.outcome.settings.verdict_bounds)
         link = self.book.format("link")
         write_link(self.sheet, self.row, 0, f"Results!A{target + 1}", name, style=link)
         self.sheet.write_string(self.row, 1, verdict, self.book.format(COLOURS[verdict]))
@@ -258,13 +270,17 @@ def _targets(data: ReportData) -> dict[str, str]:
     return targets
 
 
-def _verdict_figure(verdict: str, rule: str, counts: Counter[str]) -> tuple[str, str, str]:
+def _verdict_figure(verdict: Verdict, rule: str, counts: Counter[str]) -> tuple[str, str, str]:
     """Return how many have a verdict, its rule and what colours it; with ? where some of them are not settled."""
     doubtful = counts[f"{verdict}{UNSETTLED}"]
     count = counts[verdict] + doubtful
-    word = f"{verdict}{UNSETTLED}" if doubtful else verdict
+    mark = UNSETTLED if doubtful else ""
     doubt = f"; {grouped(doubtful)} not settled" if doubtful else ""
-    return f"{grouped(count)} {word}", f"{rule}{doubt}", word if count else ""
+    return (
+        f"{grouped(count)} {verdict_verb(verdict, count)}{mark}",
+        f"{rule}{doubt}",
+        f"{verdict}{mark}" if count else "",
+    )
 
 
 def _fitted(label: str, width: float) -> str:

@@ -10,7 +10,7 @@ from flexlash.report.layout.result_formats import usual_format
 from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of, merged_width
 from flexlash.report.wording.sweep_words import swept_title
-from flexlash.report.wording.verdict import COLOURS, light
+from flexlash.report.wording.verdict import COLOURS, verdict_word
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.result_columns import RESULTS
 
@@ -59,7 +59,7 @@ def write_points(book: Book, sheet: Any, top: int, study: Study, bounds: Verdict
         sheet.write_number(row, 0, value, book.format("label" if value == entered else "text", "general"))
         for column, key in enumerate(_KEYS, start=1):
             if record[key] is not None:
-                look = COLOURS[light(record, bounds)] if column == _OVER else "text"
+                look = COLOURS[verdict_word(record, bounds)] if column == _OVER else "text"
                 sheet.write_number(row, column, record[key], book.format(look, codes[key]))
         if findings := _findings(record["findings"]):
             sheet.merge_range(row, _FINDINGS, row, LAST_COLUMN, findings, book.format("indented wrap"))

@@ -11,7 +11,7 @@ from flexlash.decisions.sweep import Study, percentile_key, sweep_levels
 from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.wording.sweep_words import allowed_words, level_title, shown_level, swept_title
-from flexlash.report.wording.verdict import COLOURS, light
+from flexlash.report.wording.verdict import COLOURS, verdict_word
 from flexlash.schema.column import Column
 from flexlash.schema.columns import columns_of
 from flexlash.schema.limit_verdict import VerdictBounds
@@ -134,7 +134,10 @@ class _Table:
     def _look(self, row: int, column: int) -> dict[str, Any]:
         """Return the format of a cell, with the contour where a neighbour is on the other side of it."""
         point = self.cells[row][column]
-        look = self.book.properties(COLOURS[light(point, self.bounds)]) | {"align": "center", "num_format": "0.000"}
+        look = self.book.properties(COLOURS[verdict_word(point, self.bounds)]) | {
+            "align": "center",
+            "num_format": "0.000",
+        }
         meets = self._meets(point)
         for side, (down, right) in _SIDES.items():
             beside, along = row + down, column + right

@@ -13,7 +13,7 @@ from flexlash.schema.units import ARCMIN
 
 __all__ = ["front_chart"]
 
-_COLOURS = {"red": "red", "amber": "orange", "green": "blue", NO_VERDICT: "grey"}
+_COLOURS = {"fails": "red", "marginal": "orange", "meets": "blue", NO_VERDICT: "grey"}
 _AXES: dict[Figure, str] = {"mass": "Mass [kg]", "cost": "Relative cost"}
 _NAMED = 12
 """Most variants of the fronts whose names are drawn: more of them cannot be read."""
@@ -40,7 +40,7 @@ def front_chart(book: Book, table: FrontTable, figure: Figure) -> Any:
         start, left = start + len(front) + 1, left - min(left, len(front))
     for verdict, places in table.by_verdict(figure):
         ink = {"color": PALETTE[_COLOURS[verdict]]}
-        name = "No limit" if verdict == NO_VERDICT else f"Verdict {verdict}"
+        name = "No limit" if verdict == NO_VERDICT else verdict.capitalize()
         chart.add_series({
             **places, "name": name, "line": {"none": True},
             "marker": {"type": "circle", "size": 7, "fill": ink, "border": {"color": "white"}},

@@ -10,7 +10,7 @@ from typing import Any, Literal
 from flexlash.decisions.trade_offs import TradeOff
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import Drawn
-from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, firm, light
+from flexlash.report.wording.verdict import COLOURS, NO_VERDICT, firm, verdict_word
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.units import ARCMIN
 
@@ -63,7 +63,7 @@ class FrontTable:
     @cached_property
     def verdicts(self) -> list[str]:
         """The verdict of each variant."""
-        return [light(variant.row, self.bounds) for variant in self.drawn]
+        return [verdict_word(variant.row, self.bounds) for variant in self.drawn]
 
     def write(self) -> None:
         """Write headings and rows."""
@@ -155,5 +155,5 @@ class FrontTable:
         }
 
 
-_COLUMNS = ("red", "amber", "green", NO_VERDICT)
+_COLUMNS = ("fails", "marginal", "meets", NO_VERDICT)
 """Verdicts in the order of the columns beside the page."""

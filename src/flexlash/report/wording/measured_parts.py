@@ -10,9 +10,9 @@ from scipy.special import ndtri
 
 from flexlash.analysis.run_summary import counted, grouped, listed
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows
-from flexlash.report.wording.verdict import LIGHTS, firm, light
+from flexlash.report.wording.verdict import firm, verdict_word
 from flexlash.schema.entry_words import dimension_words
-from flexlash.schema.limit_verdict import VerdictBounds
+from flexlash.schema.limit_verdict import VERDICTS, VerdictBounds
 from flexlash.schema.number_words import angle_words, brief_share, range_words
 
 __all__ = ["PARTS", "how_left_open", "left_open_by", "left_open_words", "measured_parts"]
@@ -119,15 +119,14 @@ def _verdict(row: Row, bounds: VerdictBounds) -> Iterator[str]:
     low, high = (row[end] for end in _ENDS)
     if low is None or high is None:
         return
-    told = firm(light(row, bounds))
-    colours = {LIGHTS[bounds.verdict(share)] for share in (low, high)} | {told}
-    if len(colours) == 1:
-        yield f"At either end the verdict is {told}."
+    told = firm(verdict_word(row, bounds))
+    verdicts = {bounds.verdict(share) for share in (low, high)} | {told}
+    if len(verdicts) == 1:
+        yield f"At either end the verdict is “{told}”."
         return
-    others = [
-        colour for colour in ("green", "amber", "red") if colour in _between(low, high, bounds) and colour != told
-    ]
-    yield f"So the verdict, {told}, may as well be {' or '.join(others)}."
+    possible = _between(low, high, bounds)
+    others = [f"“{verdict}”" for verdict in VERDICTS if verdict in possible and verdict != told]
+    yield f"So the verdict “{told}” may as well be {' or '.join(others)}."
     times = _times_to_settle(row, bounds)
     if times > _MANY:
         yield "It lies so near to where the verdict changes that no number of parts would settle it."
@@ -138,7 +137,7 @@ def _verdict(row: Row, bounds: VerdictBounds) -> Iterator[str]:
 def _between(low: float, high: float, bounds: VerdictBounds) -> set[str | None]:
     """Return the verdicts that shares between two have."""
     shares = [low, high, *(share for share in bounds.shares if low <= share <= high)]
-    return {LIGHTS[bounds.verdict(share)] for share in shares}
+    return {bounds.verdict(share) for share in shares}
 
 
 def _times_to_settle(row: Row, bounds: VerdictBounds) -> float:

@@ -18,7 +18,6 @@ from flexlash.report.extent import Extent, extent_of
 from flexlash.report.report_data import DRAWN, ROW, ranked
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.lever_words import shown_levers
-from flexlash.report.wording.verdict import LIGHTS
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import shown
 from flexlash.schema.limit_verdict import VERDICTS, VerdictBounds
@@ -64,8 +63,8 @@ class SummaryFacts:
 
     @cached_property
     def failing(self) -> pl.DataFrame:
-        """The variants whose verdict is red or amber, worst first."""
-        return self.judged.filter(pl.col("verdict") != "green")
+        """The variants that fail or are marginal, worst first."""
+        return self.judged.filter(pl.col("verdict") != "meets")
 
     @cached_property
     def judged(self) -> pl.DataFrame:
@@ -87,9 +86,9 @@ class SummaryFacts:
 
 def summary_facts(outcome: Outcome, levers: pl.DataFrame) -> SummaryFacts:
     """Return what the sentences on an outcome draw on; `levers` are those of the variants that its report shows."""
-    colours = {place: LIGHTS[verdict] for place, verdict in enumerate(VERDICTS)}
+    words = dict(enumerate(VERDICTS))
     bounds = outcome.settings.verdict_bounds
-    verdict = verdict_place(bounds).replace_strict(colours, return_dtype=pl.String)
+    verdict = verdict_place(bounds).replace_strict(words, return_dtype=pl.String)
     rows = ranked(outcome).with_columns(verdict=verdict, straddled=is_straddled(bounds))
     labels = labels_of(outcome, rows["variant"].head(DRAWN).to_list())
     return SummaryFacts(

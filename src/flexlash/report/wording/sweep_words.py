@@ -206,10 +206,10 @@ def _table_sentence(study: Study, target: float) -> str:
     if study.limit is None:
         return f"{what}; the redder, the greater. No limit is given."
     bounds = VerdictBounds.of(target)
-    amber = f"; amber: at least {100 - 100 * bounds.marginal:.10g} %" if bounds.any_marginal else ""
+    marginal = f"; amber, marginal: at least {100 - 100 * bounds.marginal:.10g} %" if bounds.any_marginal else ""
     return (
-        f"{what}. Green: at least {target:.10g} % of units are within {_limit(study)}{amber}; red: fewer. The thick "
-        f"line is the contour of green. Below stands, for each {inner_name(second)}, which "
+        f"{what}. Green, meets: at least {target:.10g} % of units are within {_limit(study)}{marginal}; red, fails: "
+        f"fewer. The thick line is the contour of green. Below stands, for each {inner_name(second)}, which "
         f"{inner_name(columns_of('Variants')[study.first.key])} keeps each level within the limit."
     )
 

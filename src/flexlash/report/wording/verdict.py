@@ -1,4 +1,4 @@
-"""The share over the limit → the verdict (green, amber, red), whether it is settled, how many variants have each."""
+"""The share over the limit → the verdict in a word, whether it is settled, how many variants have each."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from flexlash.schema.limit_verdict import Verdict, VerdictBounds
 
 __all__ = [
     "COLOURS",
-    "LIGHTS",
     "NO_VERDICT",
     "UNSETTLED",
     "firm",
-    "light",
     "straddled",
     "verdict_counts",
     "verdict_rules",
+    "verdict_verb",
+    "verdict_word",
 ]
 
 NO_VERDICT = "–"
@@ -27,33 +27,43 @@ NO_VERDICT = "–"
 UNSETTLED = "?"
 """What follows a verdict that further points may change."""
 
-_FORMATS = {"red": "error", "amber": "warning", "green": "ok"}
+_FORMATS = {"fails": "error", "marginal": "warning", "meets": "ok"}
 
-COLOURS = {**_FORMATS, **{f"{verdict}{UNSETTLED}": look for verdict, look in _FORMATS.items()}, NO_VERDICT: "text"}
+COLOURS: dict[str, str] = {
+    **_FORMATS,
+    **{f"{verdict}{UNSETTLED}": look for verdict, look in _FORMATS.items()},
+    NO_VERDICT: "text",
+}
 """The cell format of each verdict, settled or not."""
-
-LIGHTS: dict[Verdict | None, str] = {"meets": "green", "marginal": "amber", "fails": "red", None: NO_VERDICT}
-"""The colour of each verdict."""
 
 
 def verdict_rules(bounds: VerdictBounds) -> dict[str, str]:
     """Return the rule of each verdict in words, the worst first.
 
-    >>> verdict_rules(VerdictBounds())["amber"]
+    >>> verdict_rules(VerdictBounds())["marginal"]
     '97.5 to 99.865 % of units within the limit'
     """
     within, target = f"{100 - 100 * bounds.marginal:.10g}", bounds.target_words
     return {
-        "red": f"fewer than {within} % of units within the limit",
-        "amber": f"{within} to {target} of units within the limit" if bounds.any_marginal else f"none by {target}",
-        "green": f"at least {target} of units within the limit",
+        "fails": f"fewer than {within} % of units within the limit",
+        "marginal": f"{within} to {target} of units within the limit" if bounds.any_marginal else f"none by {target}",
+        "meets": f"at least {target} of units within the limit",
     }
 
 
-def light(row: dict[str, Any], bounds: VerdictBounds) -> str:
-    """Return a Results row's verdict: green, amber or red, with ? where it is not settled; a dash without a limit."""
-    verdict = LIGHTS[bounds.verdict(row["probability_over_limit"])]
+def verdict_word(row: dict[str, Any], bounds: VerdictBounds) -> str:
+    """Return a Results row's verdict, with ? where it is not settled; a dash without a limit."""
+    verdict = bounds.verdict(row["probability_over_limit"]) or NO_VERDICT
     return f"{verdict}{UNSETTLED}" if straddled(row, bounds) else verdict
+
+
+def verdict_verb(verdict: Verdict, count: int) -> str:
+    """Return a verdict as so many variants have it.
+
+    >>> verdict_verb("fails", 3), verdict_verb("fails", 1), verdict_verb("marginal", 0), verdict_verb("meets", 8)
+    ('fail', 'fails', 'marginal', 'meet')
+    """
+    return verdict if count == 1 or verdict == "marginal" else verdict.removesuffix("s")
 
 
 def firm(verdict: str) -> str:
@@ -75,5 +85,5 @@ def verdict_counts(outcome: Outcome) -> Counter[str]:
     counts = {NO_VERDICT: computed - sum(every.values())}
     for verdict, count in every.items():
         unsettled = doubtful.get(verdict, 0)
-        counts |= {LIGHTS[verdict]: count - unsettled, f"{LIGHTS[verdict]}{UNSETTLED}": unsettled}
+        counts |= {verdict: count - unsettled, f"{verdict}{UNSETTLED}": unsettled}
     return Counter({verdict: count for verdict, count in counts.items() if count})

@@ -9,13 +9,23 @@ import polars as pl
 from flexlash.analysis.run_summary import are, counted, grouped, listed, points_range
 from flexlash.report.wording.distances import distance_words
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows
-from flexlash.report.wording.verdict import NO_VERDICT, UNSETTLED, firm, light, straddled, verdict_counts, verdict_rules
+from flexlash.report.wording.verdict import (
+    NO_VERDICT,
+    UNSETTLED,
+    firm,
+    straddled,
+    verdict_counts,
+    verdict_rules,
+    verdict_verb,
+    verdict_word,
+)
+from flexlash.schema.limit_verdict import VERDICTS, Verdict
 from flexlash.schema.number_words import angle_words, brief_share, share_words
 
 __all__ = ["extremes", "failing", "judged", "sureness"]
 
 _PERCENTILES = {"p97_5": "97.5 %", "p99_865": "99.865 %"}
-_VERDICTS = {"red": "It fails", "amber": "It is marginal", "green": "It meets its limit"}
+_VERDICTS = {"fails": "It fails", "marginal": "It is marginal", "meets": "It meets its limit"}
 _IN_BRACKETS = "In brackets the 95 % interval of the calculation, for the tolerances as entered."
 
 
@@ -30,25 +40,27 @@ def failing(facts: SummaryFacts) -> Iterator[str]:
         yield "No limit was given, so nothing is judged."
         yield f"97.5 % of the units of {facts.named(worst['variant'])} stay below {_tail(worst, 'p97_5')}{greatest}."
         return
-    with_limit, doubts = counted(judged, "variant"), {colour: counts[f"{colour}{UNSETTLED}"] for colour in _VERDICTS}
-    numbers = {colour: counts[colour] + doubts[colour] for colour in _VERDICTS}
-    for colour in ("red", "amber"):
-        if number := numbers[colour]:
-            rows = first_rows(facts.judged.filter(pl.col("verdict") == colour))
+    with_limit, doubts = counted(judged, "variant"), {verdict: counts[f"{verdict}{UNSETTLED}"] for verdict in VERDICTS}
+    numbers = {verdict: counts[verdict] + doubts[verdict] for verdict in VERDICTS}
+    missing: tuple[Verdict, ...] = ("fails", "marginal")
+    for verdict in missing:
+        if number := numbers[verdict]:
+            rows = first_rows(facts.judged.filter(pl.col("verdict") == verdict))
             excess = [_excess(facts, row, first=index == 0) for index, row in enumerate(rows)]
             named = f": {listed(excess, NAMED, number)}" if excess else ""
-            count = f"{grouped(number)} of {with_limit} with a limit {are(number)}"
-            yield f"{count} {colour}{_doubt(doubts[colour], number)}{named}."
-    green = numbers["green"]
-    if green == judged:
-        which = "all" if green > 1 else "the"
-        yield f"None: {which} {with_limit} with a limit {are(green)} green{_doubt(doubts['green'], green)}."
+            verb = f"{are(number)} marginal" if verdict == "marginal" else verdict_verb(verdict, number)
+            yield f"{grouped(number)} of {with_limit} with a limit {verb}{_doubt(doubts[verdict], number)}{named}."
+    meeting = numbers["meets"]
+    if meeting == judged:
+        which = "all" if meeting > 1 else "the"
+        verb = f"{verdict_verb('meets', meeting)} it"
+        yield f"None: {which} {with_limit} with a limit {verb}{_doubt(doubts['meets'], meeting)}."
         reach = pl.col("p99_865_arcmin") / pl.col("backlash_limit_arcmin")
         nearest = facts.judged.row(facts.judged.select(reach.arg_max()).item(), named=True)
         whose = f" of the {facts.extent.drawn} worst" if facts.outcome.whole else ""
         yield f"Nearest to its limit{whose} is {_excess(facts, nearest, first=True)}."
-    elif green:
-        yield f"{grouped(green)} {are(green)} green{_doubt(doubts['green'], green)}."
+    elif meeting:
+        yield f"{grouped(meeting)} {verdict_verb('meets', meeting)} it{_doubt(doubts['meets'], meeting)}."
     if without := counts[NO_VERDICT]:
         yield f"{grouped(without)} {'has' if without == 1 else 'have'} no limit."
 
@@ -86,10 +98,10 @@ def judged(facts: SummaryFacts, row: Row) -> Iterator[str]:
         yield "No limit was given, so nothing is judged."
         return
     near, far = (distance_words(row, key) for key in _PERCENTILES)
-    limit, verdict = f"{row['backlash_limit_arcmin']:g}′", light(row, facts.bounds)
+    limit, verdict = f"{row['backlash_limit_arcmin']:g}′", verdict_word(row, facts.bounds)
     yield f"{first} of its units stay below {low}, {near} its limit of {limit}; {second} below {high}, {far} it."
-    doubt = ", which is not settled" if verdict.endswith(UNSETTLED) else ""
-    yield f"{_VERDICTS[firm(verdict)]} ({firm(verdict)}{doubt}): {verdict_rules(facts.bounds)[firm(verdict)]}."
+    doubt = " (not settled)" if verdict.endswith(UNSETTLED) else ""
+    yield f"{_VERDICTS[firm(verdict)]}{doubt}: {verdict_rules(facts.bounds)[firm(verdict)]}."
     words = share_words(row)
     yield f"Units over the limit: {words}."
     if "(" in words:
@@ -135,11 +147,11 @@ def _tail(row: Row, key: str) -> str:
 
 def _excess(facts: SummaryFacts, row: Row, *, first: bool) -> str:
     """Return a variant with the percentile that its verdict hangs on and its distance from the limit."""
-    is_red = firm(light(row, facts.bounds)) == "red"
+    fails = facts.bounds.verdict(row["probability_over_limit"]) == "fails"
     name, limit = facts.named(row["variant"]), f"{row['backlash_limit_arcmin']:g}′"
-    if not is_red and facts.bounds.target_words != _PERCENTILES["p99_865"]:
+    if not fails and facts.bounds.target_words != _PERCENTILES["p99_865"]:
         return f"{name} (units over its limit of {limit}: {brief_share(row)})"
-    key = "p97_5" if is_red else "p99_865"
+    key = "p97_5" if fails else "p99_865"
     tail, off = _tail(row, key), distance_words(row, key)
     if first:
         return f"{name} ({_PERCENTILES[key]} of its units stay below {tail}, {off} its limit of {limit})"
