@@ -23,7 +23,17 @@ from flexlash.pipeline import run
 from flexlash.reading.raw import ErrorCell, Unstored
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema import tables
-from flexlash.schema.columns import CORRELATIONS, MEASUREMENTS, SETTINGS, TOLERANCES, VARIANTS, Column
+from flexlash.schema.columns import (
+    CORRELATIONS,
+    LEVERS,
+    MEASUREMENTS,
+    OTHER_SOURCES,
+    SETTINGS,
+    SWEEP,
+    TOLERANCES,
+    VARIANTS,
+    Column,
+)
 from flexlash.schema.finding_explanations import EXAMPLES, findings_page
 from flexlash.schema.findings import CATALOGUE
 from flexlash.schema.units import ARCMIN
@@ -291,6 +301,12 @@ def generated() -> dict[str, bytes]:
             tolerances=column_table(TOLERANCES),
             measurements=measurements_table(),
             correlations=column_table(CORRELATIONS),
+        ),
+        "docs/decisions.md": document(
+            "docs/decisions.md",
+            levers=column_table(LEVERS),
+            sweep=column_table(SWEEP),
+            other_sources=column_table(OTHER_SOURCES),
         ),
         f"src/flexlash/schema/tables/{EXAMPLES}.csv": _as_table(messages()),
         "docs/findings.md": findings_page(messages()).encode(),
