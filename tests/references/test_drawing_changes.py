@@ -1,7 +1,7 @@
-"""Single changes of the published study, by the command line alone: B3-160 case 3 (misses 3.8′) and case 1 (meets it).
+"""Single changes of the published study, by the command line alone: case 3 misses 3.8′, case 1 meets it.
 
-The numbers were worked out apart from flexlash: roots of the share over the limit in one dimension, the mass of wall and
-disk, the shear stress T/(2π r² t).
+The numbers were worked out apart from flexlash: roots of the share over the limit in one dimension, the mass of wall
+and disk, the shear stress T/(2π r² t).
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ def test_no_tolerance_alone_brings_case_3_within(changes):
 
 
 def test_the_wall_of_case_1_need_not_be_ground(changes, workbook):
-    """It may go from ± 2.5 to ± 29 µm, which keeps 1,237 ppm; ± 30 µm has 1,414 ppm, half the tolerance gains nothing."""
+    """It may go from ± 2.5 to ± 29 µm, which keeps 1,237 ppm; ± 30 µm has 1,414; half of it gains nothing."""
     row = of_values(changes("B3-160 case 1"), "tolerance")["wall_thickness", None]
     assert (row["direction"], row["possible"], row["unit"]) == ("relax", "yes", "mm")
     assert row["from_value"] == pytest.approx(0.0025, rel=1e-9)
@@ -154,7 +154,7 @@ def test_the_drawn_values_fed_back_are_what_was_told(changes, workbook):
 
 
 def test_lengths_of_case_3(called):
-    """l = 100 to 200 mm gives the published backlash at each step."""
+    """Lengths of 100 to 200 mm gives the published backlash at each step."""
     table = called(None, "sweep", "study.xlsx", "--variant", "B3-160 case 3", "--vary", "cylinder_length_mm=100:200:20")
     assert table["cylinder_length_mm"].to_list() == [100, 120, 140, 160, 180, 200]
     expected = [2.897, 3.160, 3.424, 3.687, 3.950, 4.214]
@@ -191,7 +191,7 @@ SOURCES = (
 
 
 def test_the_whole_drive_of_case_3(workbook):
-    """Clearance, bearing and coupling beside the wind-up: 4.822′ on average, RSS 5.281′, Bender 5.511′, at most 5.531′."""
+    """Clearance, bearing and coupling with the wind-up: 4.822′ on average, RSS 5.281′, Bender 5.511′, at most 5.531′."""
     path = workbook([CASE_3], tolerances=GRINDING, other_sources=SOURCES)
     row = run(path).results.row(0, named=True)
     told = {"mean": 4.822, "rss_high": 5.281, "bender_high": 5.511, "worst_case_high": 5.531}
