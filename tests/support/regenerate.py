@@ -1,4 +1,4 @@
-"""Everything in the tree that is generated: template, example submissions, the README's tables, the list of findings.
+"""Everything in the tree that is generated: template, example submissions, the tables of the documents, the list of findings.
 
 `python tests/support/regenerate.py` writes what is stale; `--check` only says so and exits with 1.
 """
@@ -207,7 +207,7 @@ def column_table(columns: tuple[Column, ...] = VARIANTS) -> str:
 
 
 def limits_table() -> str:
-    """Return the README's table of the limits of reading."""
+    """Return the table of the limits of reading."""
     lines = ["| limit | at most | what |", "|---|---|---|"]
     for one in fields(ReadingLimits):
         unit = f" {one.metadata['unit']}" if one.metadata["unit"] else ""
@@ -216,7 +216,7 @@ def limits_table() -> str:
 
 
 def settings_table() -> str:
-    """Return the README's table of the settings."""
+    """Return the table of the settings."""
     lines = ["| setting | default | meaning |", "|---|---|---|"]
     for column in SETTINGS:
         default = "" if column.default is None else f"`{column.default}`"
@@ -229,7 +229,7 @@ PUBLISHED = 9.86e-4
 
 
 def proof_table() -> str:
-    """Return the README's table of B3-160 by formula, meridian integral, elasticity and published finite elements."""
+    """Return the table of B3-160 by formula, meridian integral, elasticity and published finite elements."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "proof.xlsx"
         path.write_bytes(template_bytes(proof()))
@@ -293,9 +293,9 @@ def generated() -> dict[str, bytes]:
         "data/b3-160-calibrated.xlsx": template_bytes(calibrated()),
         "data/b3-160-sweep.xlsx": template_bytes(swept()),
         "data/measured-parts.xlsx": template_bytes(measured_parts()),
-        "README.md": document(
-            "README.md", columns=column_table(), settings=settings_table(), limits=limits_table(), proof=proof_table()
-        ),
+        "docs/template.md": document("docs/template.md", columns=column_table(), settings=settings_table()),
+        "docs/checking.md": document("docs/checking.md", limits=limits_table()),
+        "docs/model.md": document("docs/model.md", proof=proof_table()),
         "docs/tolerances.md": document(
             "docs/tolerances.md",
             tolerances=column_table(TOLERANCES),

@@ -18,7 +18,10 @@ from flexlash.feedback.template.template_workbook import study
 
 ROOT = regenerate.ROOT
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-TOLERANCES = (ROOT / "docs" / "tolerances.md").read_text(encoding="utf-8")
+EXECUTED = ("template", "commands", "checking", "report", "model", "tolerances", "decisions", "python")
+"""Pages of docs/ whose commands are executed, after those of the README and in this order."""
+
+PAGES = {name: (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8") for name in EXECUTED}
 DOCUMENTS = [*ROOT.glob("*.md"), *(ROOT / "data").glob("*.md"), *(ROOT / "docs").glob("*.md")]
 
 
@@ -38,11 +41,11 @@ def copy(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_shell_blocks_run(copy, monkeypatch, capsys):
-    """Every flexlash command of README and docs/tolerances.md ends with 0, or with 3 where the example is faulty.
+    """Every flexlash command of the README and the pages ends with 0, or with 3 where the example is faulty.
 
     `serve`, which does not end, is in tests/service/test_service_commands.py.
     """
-    blocks = [*_blocks("sh"), *_blocks("sh", TOLERANCES)]
+    blocks = [block for text in (README, *PAGES.values()) for block in _blocks("sh", text)]
     commands = [line for block in blocks for line in block.replace(" && ", "\n").splitlines()]
     ours = [line for line in commands if line.startswith("flexlash ") and not line.startswith("flexlash serve")]
     assert len(ours) >= 7
@@ -70,10 +73,10 @@ def test_shell_blocks_run(copy, monkeypatch, capsys):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("block", _blocks("python"))
+@pytest.mark.parametrize("block", [*_blocks("python"), *_blocks("python", PAGES["python"])])
 def test_python_blocks_run(copy, block, capsys):  # noqa: ARG001
-    """Every Python block of the README runs as printed."""
-    exec(compile(block, "README.md", "exec"), {})  # noqa: S102
+    """Every Python block of the README and of docs/python.md runs as printed."""
+    exec(compile(block, "document", "exec"), {})  # noqa: S102
     assert capsys.readouterr().out
 
 
@@ -91,12 +94,13 @@ def test_links_lead_to_files(path):
             assert (path.parent / target).exists(), target
 
 
-def test_the_readme_counts_right():
-    """The figures that the README states in words are those of the program."""
+def test_the_documents_count_right():
+    """The figures that the documents state in words are those of the program."""
     from flexlash.tolerance.engine.line_points import LINE_REPLICATES
     from flexlash.tolerance.engine.line_precision import SD_PRECISION
 
-    words = " ".join(README.split())
+    words = " ".join(" ".join(PAGES.values()).split())
+    assert len(README.splitlines()) <= 120
     assert LINE_REPLICATES == 8
     assert "Eight independent scrambled Sobol' nets of lines" in words
     assert SD_PRECISION == 1e-3

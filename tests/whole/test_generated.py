@@ -10,7 +10,7 @@ from flexlash.pipeline import check, run
 
 @pytest.mark.slow
 def test_no_generated_file_is_stale():
-    """The template, the examples, the README's tables and the page of findings are those of today's code."""
+    """The template, the examples, the documents' tables and the page of findings are those of today's code."""
     assert list(regenerate.stale()) == []
 
 

@@ -1,6 +1,6 @@
 """The one truth about every field that is entered: what it is called, measured in, allowed to hold, good for.
 
-Template, validation, data dictionary, report and the README's tables all derive from these records. The fields of
+Template, validation, data dictionary, report and the documents' tables all derive from these records. The fields of
 Variants are in `variant_columns`, those of Materials and Settings in `dimension_columns`, those of Tolerances,
 Measurements and Correlations in `tolerance_columns`, those of Other sources, Levers and Sweep in `decision_columns`;
 those of the report in `result_columns`, `used_columns` and `decision_results`. Here they are the sheets of a template.
