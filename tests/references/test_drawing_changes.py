@@ -191,7 +191,7 @@ SOURCES = (
 
 
 def test_the_whole_drive_of_case_3(workbook):
-    """Clearance, bearing and coupling with the wind-up: 4.822′ on average, RSS 5.281′, Bender 5.511′, at most 5.531′."""
+    """Clearance, bearing, coupling and wind-up: 4.822′ on average, RSS 5.281′, Bender 5.511′, at most 5.531′."""
     path = workbook([CASE_3], tolerances=GRINDING, other_sources=SOURCES)
     row = run(path).results.row(0, named=True)
     told = {"mean": 4.822, "rss_high": 5.281, "bender_high": 5.511, "worst_case_high": 5.531}

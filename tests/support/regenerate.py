@@ -1,4 +1,4 @@
-"""Everything in the tree that is generated: template, example submissions, the tables of the documents, the list of findings.
+"""Everything in the tree that is generated: template, example submissions, tables of the documents, list of findings.
 
 `python tests/support/regenerate.py` writes what is stale; `--check` only says so and exits with 1.
 """
