@@ -1,7 +1,8 @@
 """The hidden sheet that remembers what marked cells looked like before.
 
-Each row points to a marked cell by a formula, which spreadsheet programs adjust when rows are inserted or a sheet is
-renamed, and wears the format that the cell had: a format written in words would not survive every program.
+Each row points to a marked cell by a formula, the number of its row, which spreadsheet programs adjust when rows are
+inserted or a sheet is renamed, and wears the format that the cell had: a format written in words would not survive
+every program.
 """
 
 from __future__ import annotations
@@ -24,6 +25,9 @@ RECORD = "flexlash marks"
 Cell = tuple[int, int]
 """Row and column."""
 
+_Pointer = tuple[str, int, int]
+"""Title of a sheet, row and column."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Record:
@@ -45,20 +49,25 @@ def quoted(title: str) -> str:
 
 def record_sheet(findings_title: str, record: Record) -> bytes:
     """Return the record as a worksheet."""
-    rows: list[tuple[str, str, str, str]] = [("", "", RECORD, "")]
-    rows.append((f"{quoted(findings_title)}!$A$1", "", "findings", ""))
-    rows += [("", "", "lost", plain(what)) for what in record.lost]
+    rows: list[tuple[_Pointer | None, str, str, str]] = [(None, "", RECORD, "")]
+    rows.append(((findings_title, 1, 1), "", "findings", ""))
+    rows += [(None, "", "lost", plain(what)) for what in record.lost]
     for title, cells in record.marks.items():
         for (row, column), style in sorted(cells.items()):
-            rows.append((f"{quoted(title)}!${column_letters(column)}${row}", style, "mark", ""))
+            rows.append(((title, row, column), style, "mark", ""))
     lines = []
     for number, (pointer, style, kind, text) in enumerate(rows, start=1):
-        line = [cell_xml(f"A{number}", None if pointer else kind, "", style, pointer)]
+        line = [_pointing(number, pointer, style) if pointer else cell_xml(f"A{number}", kind, "", style)]
         line += [cell_xml(f"B{number}", kind)] if number > 1 else []
         line += [cell_xml(f"C{number}", text)] if text else []
         lines.append(b'<row r="%d">%s</row>' % (number, b"".join(line)))
     head = f'<?xml version="1.0" encoding="UTF-8" standalone="yes"?><worksheet xmlns="{MAIN}"><sheetData>'
     return head.encode() + b"".join(lines) + b"</sheetData></worksheet>"
+
+
+def _pointing(number: int, pointer: _Pointer, style: str) -> bytes:
+    title, row, column = pointer
+    return cell_xml(f"A{number}", row, "", style, f"ROW({quoted(title)}!${column_letters(column)}${row})")
 
 
 def take_record(book: WorkbookParts) -> Record | None:
@@ -77,9 +86,10 @@ def _record(book: WorkbookParts, rows: Sequence[tuple[str, str, str, str, str]])
     marks: dict[str, dict[Cell, str]] = {}
     lost = []
     for formula, style, _, kind, text in rows:
-        # The cell of a pointer whose row was deleted is #REF!.
-        title, _, address = formula.removesuffix("#REF!").rpartition("!")
-        title = title.removeprefix("=").removeprefix("$")
+        # The cell of a pointer whose row was deleted is #REF!; earlier versions pointed without asking for the row.
+        pointed = formula.removeprefix("=").removeprefix("ROW(").removesuffix(")").removesuffix("#REF!")
+        title, _, address = pointed.rpartition("!")
+        title = title.removeprefix("$")
         title = title[1:-1].replace("''", "'") if title.startswith("'") else title
         cell = cell_address(address.replace("$", ""))
         if kind == "lost":

@@ -187,14 +187,13 @@ def _corner(text: str, row: int, column: int) -> tuple[int, int]:
 
 
 def cell_xml(address: str, value: str | float | None, prefix: str = "", style: str = "", formula: str = "") -> bytes:
-    """Return a cell as XML: a number as such, a text inside the cell, a formula without its result."""
+    """Return a cell as XML: a number as such, a text inside the cell, a formula with its number."""
     tag = prefix.encode()
     attributes = b' r="%s"' % address.encode() + (b' s="%s"' % style.encode() if style else b"")
-    if formula:
-        return b"<%sc%s><%sf>%s</%sf></%sc>" % (tag, attributes, tag, xml_text(formula), tag, tag)
     if value is None:
         return b"<%sc%s/>" % (tag, attributes)
     if isinstance(value, str):
         text = b'<%sis><%st xml:space="preserve">%s</%st></%sis>' % (tag, tag, xml_text(value), tag, tag)
         return b'<%sc%s t="inlineStr">%s</%sc>' % (tag, attributes, text, tag)
-    return b"<%sc%s><%sv>%s</%sv></%sc>" % (tag, attributes, tag, repr(value).encode(), tag, tag)
+    calculated = b"<%sf>%s</%sf>" % (tag, xml_text(formula), tag) if formula else b""
+    return b"<%sc%s>%s<%sv>%s</%sv></%sc>" % (tag, attributes, calculated, tag, repr(value).encode(), tag, tag)
