@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from flexlash.report.extent import Extent
-from flexlash.report.layout.styles import GRID, PALETTE, Book
+from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.schema.units import ARCMIN
@@ -91,7 +91,7 @@ def _draw(book: Book, sheet: Any, header: int, count: int) -> None:
             "categories": ["Sections", header + 1, 0, last, 0],
             "values": ["Sections", header + 1, column, last, column],
             "fill": {"color": colour},
-            "border": {"color": "#FFFFFF", "width": 0.5},
+            "border": OUTLINE,
             "gap": 40,
         })  # fmt: skip
     chart.set_y_axis({"reverse": True, "interval_unit": 1, "num_font": {"size": 9}})

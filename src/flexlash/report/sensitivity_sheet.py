@@ -9,7 +9,7 @@ from flexlash.analysis.outcome import Outcome
 from flexlash.report.extent import extent_of
 from flexlash.report.layout.paper import SMALL, fits, print_readably
 from flexlash.report.layout.result_formats import SHARE_OF_VARIANCE_ERROR
-from flexlash.report.layout.styles import GRID, PALETTE, Book, percent_of
+from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book, percent_of
 from flexlash.report.report_data import Drawn
 from flexlash.report.results_sheet import SHARE_DECIMALS
 from flexlash.report.wording.correlation_words import shared_out
@@ -93,6 +93,7 @@ def _tornado(book: Book, name: str, last: int, middle: float) -> Any:
             "categories": ["Sensitivity", 4, 0, last, 0],
             "values": ["Sensitivity", 4, column, last, column],
             "fill": {"color": colour},
+            "border": OUTLINE,
             "overlap": 100,
             "gap": 40,
         })  # fmt: skip

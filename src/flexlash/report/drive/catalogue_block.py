@@ -120,7 +120,7 @@ def _chart(book: Book, begin: int) -> Any:
     chart = book.chart("scatter", "Torque and angle, to one side", subtype="straight_with_markers")
     last = begin + len(_POINTS) - 1
     for column, label, colour in (
-        (_DRIVE, "whole drive of the catalogue", "orange"),
+        (_DRIVE, "whole drive of the catalogue", "grey"),
         (_OWN, "flexspline alone", "blue"),
     ):
         chart.add_series({

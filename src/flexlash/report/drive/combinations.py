@@ -70,10 +70,10 @@ def write_combinations(page: DrivePage, top: int, chain: Chain) -> int:
         own = put(sheet, row, 7, limit, book.format("text", "general"))
         put(sheet, row, _MARGIN, IF(own.equals(""), "", own - high), style)
     last = top + len(rules)
-    red = book.workbook.add_format({"font_color": PALETTE["red"], "bold": True})
+    red = book.workbook.add_format({"font_color": PALETTE["dark red"], "bold": True})
     over = {"type": "cell", "criteria": "<", "value": 0, "format": red}
     sheet.conditional_format(top + 1, _MARGIN, last, _MARGIN, over)
-    changed = book.workbook.add_format({"num_format": "+0.00%;-0.00%", "font_color": PALETTE["orange"]})
+    changed = book.workbook.add_format({"num_format": "+0.00%;-0.00%", "font_color": PALETTE["dark orange"]})
     moved = {"type": "formula", "criteria": f"=ABS(N($K{top + 2}))>0.000001", "format": changed}
     sheet.conditional_format(top + 1, _DIFFERENCE, last, _DIFFERENCE, moved)
     return last + 1

@@ -15,7 +15,7 @@ from flexlash.report.drive.stored_drives import drive_ratio, stored_drives
 from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.paper import SMALL, print_readably
-from flexlash.report.layout.styles import GRID, PALETTE, Book
+from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.drive_sentences import drives_over_limit
 from flexlash.report.wording.labels import distinct_labels
@@ -86,7 +86,7 @@ def _contributions(book: Book, chain: Chain, names: Sequence[str]) -> Any:
             "categories": [SHEET, *chain.series(chain.first_row - 1)],
             "values": [SHEET, *chain.series(row)],
             "fill": {"color": PALETTE[_COLOURS[place % len(_COLOURS)]]},
-            "border": {"color": "#FFFFFF"},
+            "border": OUTLINE,
             "gap": 50,
         })  # fmt: skip
     chart.set_x_axis({"num_format": "0%", "major_gridlines": GRID})

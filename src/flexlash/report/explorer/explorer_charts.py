@@ -9,7 +9,7 @@ from flexlash.report.explorer.explorer_choice import Choice
 from flexlash.report.explorer.explorer_working import COLUMN, CURVE_ROW, Working
 from flexlash.report.formula.functions import AND, CONCATENATE, FIXED, IF, INT, LOG10, MAX, MIN
 from flexlash.report.formula.live import Live, live, put
-from flexlash.report.layout.styles import GRID, PALETTE, Book
+from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
 from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS
 
 __all__ = ["write_charts"]
@@ -153,6 +153,7 @@ def _tornado(book: Book, sheet: Any, choice: Choice) -> Any:
             "categories": ["Explorer", _CAUSE_ROW, _BINS, last, _BINS],
             "values": ["Explorer", _CAUSE_ROW, _BINS + offset, last, _BINS + offset],
             "fill": {"color": PALETTE[colour]},
+            "border": OUTLINE,
             "overlap": 100,
             "gap": 40,
         })  # fmt: skip
@@ -174,7 +175,7 @@ def _segments(book: Book, sheet: Any, choice: Choice) -> Any:
             "categories": ["Explorer", _SEGMENT_ROW, _BINS, _SEGMENT_ROW, _BINS],
             "values": ["Explorer", _SEGMENT_ROW, _BINS + offset, _SEGMENT_ROW, _BINS + offset],
             "fill": {"color": PALETTE[colour]},
-            "border": {"color": "#FFFFFF", "width": 0.5},
+            "border": OUTLINE,
             "gap": 60,
         })  # fmt: skip
     chart.set_x_axis({"num_format": "0.0", "major_gridlines": GRID, "num_font": {"size": 8}})

@@ -9,7 +9,7 @@ from xlsxwriter.worksheet import Worksheet
 
 from flexlash.schema.number_words import places
 
-__all__ = ["GRID", "PALETTE", "Book", "decimals_of", "number_code", "percent_of"]
+__all__ = ["GRID", "LINES", "OUTLINE", "PALETTE", "Book", "decimals_of", "number_code", "percent_of"]
 
 PALETTE = {
     "ink": "#1F3A5F",
@@ -18,9 +18,18 @@ PALETTE = {
     "orange": "#E69F00",
     "red": "#D55E00",
     "green": "#009E73",
-    "grey": "#7F7F7F",
+    "grey": "#6B6B6B",
+    "rose": "#CC79A7",
+    "dark red": "#A63603",
+    "dark orange": "#8A5A00",
     "pale": "#D9E2EC",
 }
+
+LINES = ("blue", "red", "green", "ink", "rose", "grey")
+"""Colours of lines and marks beside each other: those that are seen well on white."""
+
+OUTLINE = {"color": PALETTE["ink"], "width": 0.5}
+"""Around areas, since some fills are too light to be told from white."""
 
 GRID = {"visible": True, "line": {"color": PALETTE["pale"]}}
 
@@ -90,7 +99,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
     "key": {
         "font_size": 8,
         "text_wrap": True,
-        "font_color": "#7F7F7F",
+        "font_color": "#595959",
         "italic": True,
         "bottom": 1,
         "border_color": "#8EA9C1",

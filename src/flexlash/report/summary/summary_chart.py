@@ -9,7 +9,7 @@ from typing import Any
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
-from flexlash.report.layout.styles import GRID, PALETTE, Book
+from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.verdict import firm, verdict_word
 from flexlash.schema.limit_verdict import VerdictBounds
@@ -76,7 +76,7 @@ def _bars(shown: Sequence[Drawn], bounds: VerdictBounds) -> dict[str, Any]:
     """Return the look of the bars, coloured by verdict."""
 
     def look(colour: str) -> dict[str, Any]:
-        return {"fill": {"color": PALETTE[colour]}, "border": {"color": PALETTE[colour]}}
+        return {"fill": {"color": PALETTE[colour]}, "border": OUTLINE}
 
     colours = [_COLOURS.get(firm(verdict_word(variant.row, bounds)), "sky") for variant in shown]
     return {**look("sky"), "points": [look(colour) for colour in colours]}

@@ -18,9 +18,9 @@ __all__ = ["backlash_chart", "share_chart"]
 
 _SMALL = {"name_font": {"size": 9, "bold": False}, "num_font": {"size": 9}}
 _MARKS = ("circle", "triangle", "diamond", "square")
-_MARK_COLOURS = ("grey", "orange", "red", "ink")
+_MARK_COLOURS = ("grey", "rose", "red", "ink")
+_EDGE = {"color": PALETTE["grey"], "width": 0.75}
 _NAME = 30
-_WIDER = "#C9E1F1"
 """Between the sky of 95 % of the units and white."""
 
 
@@ -35,8 +35,8 @@ def backlash_chart(book: Book, study: Study, number: int, stored: Stored) -> Any
 
     bands = book.chart("area", f"Backlash of {shown(study.variant, longest=_NAME)}", subtype="stacked")
     bands.add_series({**series("P2.5"), "name": "P2.5", "fill": {"none": True}, "border": {"none": True}})
-    for what, colour in (("P2.5 to P97.5", PALETTE["sky"]), ("P97.5 to P99.865", _WIDER)):
-        bands.add_series({**series(what), "name": what, "fill": {"color": colour}, "border": {"none": True}})
+    for what, colour in (("P2.5 to P97.5", PALETTE["sky"]), ("P97.5 to P99.865", PALETTE["pale"])):
+        bands.add_series({**series(what), "name": what, "fill": {"color": colour}, "border": _EDGE})
     lines = book.workbook.add_chart({"type": "line"})
     lines.add_series({**series("P50"), "name": "P50", "line": {"color": PALETTE["ink"], "width": 2}})
     look = {"color": PALETTE["blue"], "width": 1.5, "dash_type": "dash"}
@@ -72,7 +72,7 @@ def share_chart(book: Book, study: Study, rows: tuple[int, int], columns: tuple[
     known = study.results.filter(study.results["disk_share"].is_not_null())
     for column, name, colour, right in (
         (columns[0], "Disk share", "blue", False),
-        (columns[1], "Von Mises stress (right), torsion only", "orange", True),
+        (columns[1], "Von Mises stress (right), torsion only", "grey", True),
     ):
         chart.add_series({
             "name": name,

@@ -9,7 +9,7 @@ from typing import Any
 
 from flexlash.decisions.sweep import Study, percentile_key, sweep_levels
 from flexlash.report.layout.axes import axis_over
-from flexlash.report.layout.styles import GRID, PALETTE, Book
+from flexlash.report.layout.styles import GRID, LINES, PALETTE, Book
 from flexlash.report.wording.sweep_words import allowed_words, level_title, shown_level, swept_title
 from flexlash.report.wording.verdict import COLOURS, verdict_word
 from flexlash.schema.column import Column
@@ -22,7 +22,9 @@ _CONTOUR = 5
 """Excel's thick border."""
 
 _SIDES = {"top": (-1, 0), "bottom": (1, 0), "left": (0, -1), "right": (0, 1)}
-_COLOURS = ("ink", "blue", "sky", "green", "orange", "red", "grey")
+_COLOURS = tuple(colour for colour in LINES if colour != "red")
+"""Red is the limit's."""
+
 """Colours of the lines in the chart; so many values of the second dimension have one."""
 
 _WIDTH, _HEIGHT, _CHART_ROWS = 900, 370, 19

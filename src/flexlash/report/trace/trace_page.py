@@ -10,7 +10,7 @@ from xlsxwriter.utility import xl_rowcol_to_cell
 from flexlash.report.formula.functions import AND, IF, PI, on_sheet
 from flexlash.report.formula.live import Live, Value, put
 from flexlash.report.formula.stored import Stored
-from flexlash.report.layout.styles import Book
+from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.trace.inputs import PROGRAM
 
 __all__ = ["CHANGE", "HEADER", "LEFT_OUT", "SHEET", "SUBMITTED", "VALUE", "Lines", "Page", "Words"]
@@ -90,7 +90,7 @@ class Page(Lines):
         self.entries: dict[str, tuple[Live, Live]] = {}
         self._is_part: Live | None = None
         self.differences: list[Value] = []
-        self._none = book.workbook.add_format({"font_color": "#8C8C8C"})
+        self._none = book.workbook.add_format({"font_color": PALETTE["grey"]})
         for column, (heading, width) in enumerate(_COLUMNS):
             sheet.set_column(column, column, width)
             sheet.write_string(HEADER, column, heading, book.format("header"))

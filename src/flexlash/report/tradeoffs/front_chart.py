@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from flexlash.report.layout.axes import axis_over
-from flexlash.report.layout.styles import GRID, PALETTE, Book
+from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
 from flexlash.report.tradeoffs.front_table import Figure, FrontTable
 from flexlash.report.wording.verdict import NO_VERDICT
 from flexlash.schema.units import ARCMIN
@@ -43,7 +43,7 @@ def front_chart(book: Book, table: FrontTable, figure: Figure) -> Any:
         name = "No limit" if verdict == NO_VERDICT else verdict.capitalize()
         chart.add_series({
             **places, "name": name, "line": {"none": True},
-            "marker": {"type": "circle", "size": 7, "fill": ink, "border": {"color": "white"}},
+            "marker": {"type": "circle", "size": 7, "fill": ink, "border": OUTLINE},
         })  # fmt: skip
     _set_axes(chart, table, figure)
     chart.set_legend({"position": "bottom", "font": {"size": 9}, "delete_series": list(range(1, len(fronts)))})

@@ -9,7 +9,7 @@ from typing import Any
 from flexlash.decisions.spider import SPIDER_CHANGES, SpiderLine, spider_of
 from flexlash.decisions.trade_offs import TradeOff
 from flexlash.report.layout.axes import axis_over
-from flexlash.report.layout.styles import GRID, PALETTE, Book
+from flexlash.report.layout.styles import GRID, LINES, PALETTE, Book
 from flexlash.report.report_data import Drawn
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.limit_verdict import VerdictBounds
@@ -31,7 +31,7 @@ _DRAWN = 8
 _FAR = 1.2
 """Times the greatest change of the backlash up to which a limit is drawn."""
 
-_COLOURS = ("blue", "orange", "red", "green", "ink", "sky", "grey")
+_COLOURS = LINES
 _LIMIT = "#000000"
 _SMALL = {"name_font": {"size": 9, "bold": False}, "num_font": {"size": 9}}
 _PERCENT, _SIGNED, _FINE = "+0%;-0%;0%", "+0.00%;-0.00%;0.00%", "+0.000%;-0.000%;0.000%"
