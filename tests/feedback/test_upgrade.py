@@ -196,7 +196,7 @@ def test_the_rule_of_a_cell_follows_the_unit_of_its_header(tmp_path):
     letter = book["Variants"].cell(4, place).column_letter
     (rule,) = [one for one in _cells(new).data_validations.dataValidation if str(one.sqref).startswith(f"{letter}5:")]
     assert (float(rule.formula1), float(rule.formula2)) == pytest.approx((0.5235987756, 1.5707963268))
-    assert rule.error == "A number in rad of at least 0.523598775598299 and at most 1.5707963267949 is required here."
+    assert rule.error == "Please enter an angle in rad from 0.523598775598299 to 1.5707963267949."
 
 
 def test_columns_of_the_user_stand_behind_the_status(tmp_path):

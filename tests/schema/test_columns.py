@@ -236,26 +236,28 @@ CROSS_CHECK_KEYS = [
     "cross_check",
 ]
 FINDING_KEYS = ["level", "code", "sheet", "cell", "variant", "column", "value", "message", "fix", "suggestion"]
-POSITIVE_LENGTH = "a number in mm greater than 0"
+POSITIVE_LENGTH = "a length in mm above 0"
 REQUIREMENTS = {
     ("Variants", "variant"): "a text",
-    ("Variants", "flexspline_type"): "one of cup, hat, cylinder",
-    ("Variants", "torque_Nm"): "a number in N·m greater than 0",
+    ("Variants", "flexspline_type"): "cup, hat or cylinder",
+    ("Variants", "torque_Nm"): "a torque in N·m above 0",
     ("Variants", "cylinder_length_mm"): POSITIVE_LENGTH,
     ("Variants", "mean_radius_mm"): POSITIVE_LENGTH,
     ("Variants", "wall_thickness_mm"): POSITIVE_LENGTH,
     ("Variants", "disk_hub_thickness_mm"): POSITIVE_LENGTH,
-    ("Variants", "disk_thickness_exponent"): "a number of at least 0 and at most 10",
-    ("Variants", "disk_cone_angle_deg"): "a number in ° of at least 30 and at most 90",
-    ("Variants", "load_inertia_kg_m2"): "a number in kg·m² greater than 0",
-    ("Variants", "hub_fillet_radius_mm"): "a number in mm of at least 0",
-    ("Variants", "junction_fillet_radius_mm"): "a number in mm of at least 0",
-    ("Variants", "backlash_limit_arcmin"): "a number in arcmin greater than 0",
-    ("Materials", "youngs_modulus_GPa"): "a number in GPa greater than 0",
-    ("Materials", "poisson_ratio"): "a number of at least 0 and at most 0.5",
+    ("Variants", "disk_thickness_exponent"): "a number from 0 to 10",
+    ("Variants", "disk_cone_angle_deg"): "an angle in ° from 30 to 90",
+    ("Variants", "load_inertia_kg_m2"): "a number in kg·m² above 0",
+    ("Variants", "hub_fillet_radius_mm"): "a length in mm of 0 or more",
+    ("Variants", "junction_fillet_radius_mm"): "a length in mm of 0 or more",
+    ("Variants", "backlash_limit_arcmin"): "an angle in arcmin above 0",
+    ("Materials", "youngs_modulus_GPa"): "a number in GPa above 0",
+    ("Materials", "poisson_ratio"): "a number from 0 to 0.5",
     ("Tolerances", "lower_deviation"): "a number",
-    ("Tolerances", "distribution"): "one of normal, truncated normal, uniform, triangular, measured",
-    ("Tolerances", "limits_sigma"): "a number of at least 0.5 and at most 100",
+    ("Tolerances", "dimension"): "a name from the list",
+    ("Tolerances", "cp"): "a number above 0 and at most 100",
+    ("Tolerances", "distribution"): "normal, truncated normal, uniform, triangular or measured",
+    ("Tolerances", "limits_sigma"): "a number from 0.5 to 100",
 }
 EVERY = [column for columns in (*ENTRY_SHEETS.values(), SETTINGS, RESULTS, CROSS_CHECK, FINDINGS) for column in columns]
 
@@ -266,7 +268,7 @@ def _key(column):
 
 def test_entry_sheets():
     """The sheets are Variants, Materials, Tolerances and Settings, in this order, then the optional ones."""
-    assert OPTIONAL_SHEETS == ("Measurements", "Correlations", "Other sources", "Levers", "Sweep")
+    assert tuple(OPTIONAL_SHEETS) == ("Measurements", "Correlations", "Other sources", "Levers", "Sweep")
     assert list(ENTRY_SHEETS) == ["Variants", "Materials", "Tolerances", "Settings", *OPTIONAL_SHEETS]
 
 
@@ -427,11 +429,11 @@ def test_requirement(place):
 @pytest.mark.parametrize(
     ("key", "words"),
     [
-        ("seed", "a whole number of at least 0 and at most 4294967295"),
-        ("coverage_percent", "a number in % of at least 50 and at most 99.99"),
-        ("method", "one of line, sobol, random"),
-        ("samples", "a whole number of at least 1 and at most 4194304"),
-        ("cylinder_calibration", "a number of at least 0.1 and at most 10"),
+        ("seed", "a whole number from 0 to 4294967295"),
+        ("coverage_percent", "a number in % from 50 to 99.99"),
+        ("method", "line, sobol or random"),
+        ("samples", "a whole number from 1 to 4194304"),
+        ("cylinder_calibration", "a number from 0.1 to 10"),
     ],
 )
 def test_requirement_of_a_setting(key, words):

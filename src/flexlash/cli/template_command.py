@@ -32,7 +32,11 @@ def _optional(context: click.Context, option: click.Parameter, value: tuple[str,
     return tuple(sheet for name, sheet in _SHEETS.items() if asked & {name, _ALL})
 
 
-@click.command()
+@click.command(
+    help="Write the Excel template that submissions are made from.\n\n"
+    "\b\nOptional sheets, added by --with NAME; --upgrade OLD adds them to a filled template:\n"
+    + "\n".join(f"  {name:15}{OPTIONAL_SHEETS[sheet]}" for name, sheet in _SHEETS.items())
+)
 @click.option(
     "-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE.xlsx",
     help="Where to write it. Default: flexlash-template.xlsx; with --upgrade beside OLD, as OLD-vVERSION.xlsx.",

@@ -46,6 +46,9 @@ PERCENT = {"quantity": "ratio", "unit": "%", **POSITIVE}
 _FEW = 8
 """Most choices that a sentence lists."""
 
+_QUANTITIES = {"length": "a length", "angle": "an angle", "torque": "a torque"}
+"""What numbers of a quantity are called, where that says more than their unit."""
+
 _FIRST = ("sheet", "key", "label", "unit", "type", "required", "minimum", "maximum", "choices", "default", "help")
 
 
@@ -153,14 +156,14 @@ class Column:
         """The lower bound in words, an empty text where there is none."""
         if self.minimum is None:
             return ""
-        return f"{'greater than' if self.exclusive_minimum else 'of at least'} {self.minimum:.15g}"
+        return f"above {self.minimum:.15g}" if self.exclusive_minimum else f"of {self.minimum:.15g} or more"
 
     @property
     def _list(self) -> str:
         """The choices in words, an empty text where there are none."""
         if len(self.choices) > _FEW:
-            return "an entry of its list"
-        return f"one of {', '.join(self.choices)}" if self.choices else ""
+            return "a name from the list"
+        return " or ".join(filter(None, (", ".join(self.choices[:-1]), *self.choices[-1:])))
 
     @property
     def unit_behind(self) -> str:
@@ -174,16 +177,21 @@ class Column:
 
     @property
     def requirement(self) -> str:
-        """What a cell must hold, in words: `a number in mm greater than 0`."""
+        """What a cell must hold, in words: `a length in mm above 0`."""
         if self.choices:
             return self._list
         if not self.is_number:
             return "a text"
-        words = "a whole number" if self.type == "integer" else "a number"
-        if self.unit_behind:
-            words += f" in{self.unit_behind}"
+        words = "a whole number" if self.type == "integer" else _QUANTITIES.get(self.quantity, "a number")
+        return " ".join(filter(None, [f"{words} in{self.unit_behind}" if self.unit_behind else words, self._bounds]))
+
+    @property
+    def _bounds(self) -> str:
+        """Both bounds in words: `from 30 to 90`."""
         bounds = [self.rules[name].words for name in ("minimum", "maximum") if name in self.rules]
-        return " ".join(filter(None, [words, " and ".join(bounds)]))
+        if len(bounds) > 1 and not self.exclusive_minimum:
+            return f"from {self.minimum:.15g} to {self.maximum:.15g}"
+        return " and ".join(bounds)
 
     def as_dictionary(self) -> dict[str, Any]:
         """Return the entry of `flexlash schema --json`: the fields that scripts rely on first."""

@@ -64,8 +64,14 @@ ENTRY_SHEETS = {
     "Sweep": SWEEP,
 }
 
-OPTIONAL_SHEETS = ("Measurements", "Correlations", "Other sources", "Levers", "Sweep")
-"""Entry sheets that a template has only where they are asked for."""
+OPTIONAL_SHEETS = {
+    "Measurements": "parts that you have measured; their mean and spread take the place of assumed ones",
+    "Correlations": "dimensions that vary together, such as two that are cut in one set-up",
+    "Other sources": "play of teeth, bearing and coupling, for the backlash of the whole drive",
+    "Levers": "what the drawing may change, how far and at what cost",
+    "Sweep": "a dimension, or two, in steps from one value to another",
+}
+"""Entry sheets that a template has only where they are asked for, and what each is for."""
 
 
 @cache

@@ -137,6 +137,7 @@ class PartRule:
     counts as 0 stands beside `given`. `after` are codes of rules that say it already when they are broken: they stand
     before this one, and it is silent. `facts` are what the finding names beside the entry; `compares_lengths` tells
     that a mistaken unit breaks it; `reached` is what the dimension reaches where limits of tolerance break it.
+    `demands` tells a rule that an entry of the dimension mends, or none of it; one in `instead` mends it as well.
     """
 
     code: str
@@ -147,6 +148,8 @@ class PartRule:
     after: tuple[str, ...] = ()
     compares_lengths: bool = False
     reached: Reached | None = None
+    demands: Literal["entry", "none"] | None = None
+    instead: str = ""
 
     @property
     def key(self) -> str:

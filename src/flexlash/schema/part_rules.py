@@ -30,6 +30,7 @@ def _foreign(dimension: str, *types: str) -> PartRule:
         words=f"{'only a cup has a' if 'hat' in types else 'a cylinder has no'} {dimension_words(dimension)}",
         broken=lambda row: (row.is_type(*types), row.given(dimension)),
         facts=lambda row: {"other": row.type},
+        demands="none",
     )
 
 
@@ -41,6 +42,7 @@ def _foreign_fillet(dimension: str) -> PartRule:
         words=f"only a cup has a {dimension_words(dimension)}",
         broken=lambda row: (row.is_type("cylinder", "hat"), row[dimension] > 0),
         facts=lambda row: {"other": row.type},
+        demands="none",
     )
 
 
@@ -52,6 +54,7 @@ def _missing(dimension: str, flexspline_type: str) -> PartRule:
         words=f"a {flexspline_type} without a {dimension_words(dimension)}",
         broken=lambda row: (row.is_type(flexspline_type), row.blank(dimension)),
         facts=lambda _: {"other": flexspline_type},
+        demands="entry",
     )
 
 
@@ -62,6 +65,7 @@ def _half_rim(dimension: str, given: str, words: str) -> PartRule:
         dimension=dimension,
         words=words,
         broken=lambda row: (row.given(given), row.blank(dimension)),
+        demands="entry",
     )
 
 
@@ -73,6 +77,7 @@ def _fillet_on_a_cone(dimension: str) -> PartRule:
         words=f"a conical disk with a {dimension_words(dimension)}",
         broken=lambda row: (row.is_type("cup"), row["disk_cone_angle"] < row.flat, row[dimension] > 0),
         facts=lambda row: {"other": f"{row['disk_cone_angle']:g}"},
+        demands="none",
     )
 
 
@@ -103,6 +108,8 @@ PART_RULES = (
         dimension="mean_radius",
         words="neither mean radius nor bore diameter is given",
         broken=lambda row: (row.blank("mean_radius"), row.blank("bore_diameter")),
+        demands="entry",
+        instead="bore_diameter",
     ),
     PartRule(
         code="E302",
@@ -110,6 +117,8 @@ PART_RULES = (
         words="mean radius and bore diameter are both given",
         broken=lambda row: (row.given("mean_radius"), row.given("bore_diameter")),
         facts=lambda row: {"other": f"{row['bore_diameter']:g}"},
+        demands="none",
+        instead="bore_diameter",
     ),
     _foreign("disk_thickness", "cylinder"),
     _foreign("disk_inner_radius", "cylinder"),
@@ -151,6 +160,7 @@ PART_RULES = (
             row.given("disk_thickness_exponent"),
             row.blank("disk_hub_thickness"),
         ),
+        demands="entry",
     ),
     PartRule(
         code="E326",
@@ -163,6 +173,7 @@ PART_RULES = (
             row.given("disk_thickness"),
         ),
         facts=lambda row: {"other": f"{row['disk_thickness_exponent']:g}"},
+        demands="none",
     ),
     _fillet_on_a_cone("hub_fillet_radius"),
     _fillet_on_a_cone("junction_fillet_radius"),

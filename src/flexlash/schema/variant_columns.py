@@ -75,7 +75,8 @@ VARIANTS = (
     _dimension(
         "bore_diameter_mm",
         "Bore diameter [mm]",
-        "Inside diameter of the wall. The mean radius is then bore/2 + wall/2 and follows both tolerances.",
+        "Inside diameter of the wall; give this or the mean radius. The mean radius is then bore/2 + wall/2 and follows "
+        "both tolerances.",
         **LENGTH,
         group="Cylinder",
         also_called="innendurchmesser bohrungsdurchmesser bohrung innerdiameter insidediameter bore borediam boredia "
@@ -226,8 +227,8 @@ VARIANTS = (
     _requirement(
         "rated_torque_Nm",
         "Rated torque [N·m]",
-        "Gives the lost motion of the flexspline alone, and of a catalogue drive, at a few per cent of it (Settings: "
-        "lost_motion_percent).",
+        "Gives the lost motion of the flexspline alone, and of a catalogue drive, at a few per cent of it: see "
+        "lost_motion_percent on the sheet Settings.",
         **TORQUE,
         group="Requirements",
         also_called="nenndrehmoment nominaltorque ratedload",
@@ -273,5 +274,5 @@ VARIANTS = (
         group="Requirements",
         also_called="toleranzklasse classedetolérance tolclass",
     ),
-    _remark("notes", "Notes", "Free text; carried to the report.", type="text", group="Requirements"),
+    _remark("notes", "Notes", "Free text. Shown in the report.", type="text", group="Requirements"),
 )

@@ -10,7 +10,7 @@ from flexlash.schema.columns import ENTRY_SHEETS, OPTIONAL_SHEETS
 __all__ = ["write_dictionary"]
 
 
-_ABSENT = "An optional sheet. To add it to this workbook: flexlash template --upgrade THIS.xlsx --with {}"
+_ABSENT = "Optional sheet: {use}. To add it: flexlash template --upgrade THIS.xlsx --with {option}"
 
 
 def write_dictionary(sheet: Any, formats: Mapping[str, Any], sheets: Collection[str]) -> None:
@@ -45,11 +45,13 @@ def write_dictionary(sheet: Any, formats: Mapping[str, Any], sheets: Collection[
     absent = (name for name in OPTIONAL_SHEETS if name not in sheets)
     for row, name in enumerate(absent, start=len(entries) + 1):
         sheet.write_string(row, 0, name, formats["wrap"])
-        sheet.write_string(row, len(headings) - 1, _ABSENT.format(name.lower().replace(" ", "-")), formats["wrap"])
+        words = _ABSENT.format(use=OPTIONAL_SHEETS[name], option=name.lower().replace(" ", "-"))
+        sheet.write_string(row, len(headings) - 1, words, formats["wrap"])
     sheet.freeze_panes(1, 0)
     sheet.set_landscape()
     sheet.set_paper(9)
     sheet.fit_to_pages(1, 0)
+    sheet.set_margins(0.4, 0.4, 0.5, 0.6)
     sheet.repeat_rows(0)
     sheet.set_footer("&L&A&C&P / &N&Rflexlash template")
     sheet.protect("", {"format_columns": True})

@@ -79,13 +79,20 @@ _ROWS = {"Tolerances": "fl_tolerance_rows", "Measurements": "fl_sample_rows"}
 _NAMES = {"Tolerances": "fl_tolerance_classes", "Measurements": "fl_samples"}
 """The names in a sheet's first column, each once."""
 
-_PICK = "Pick an entry of the list. Add variants, materials, tolerance classes and samples on their sheets."
+_PICK = "Please pick a name from the list."
+_OWN_NAMES = {
+    "fl_materials": "For a material of your own add a row to the sheet Materials.",
+    "fl_tolerance_classes": "For a class of your own add its rows to the sheet Tolerances.",
+    "fl_samples": "Samples come from the sheet Measurements.",
+    "fl_variant_names": "Variants come from the sheet Variants.",
+}
+"""Where the names of a list come from."""
 
 
 def header_note(column: Column) -> str:
     """Return the note on a header."""
     default = "" if column.default is None else f"\nBlank: {column.default}."
-    return f"{column.help}\nHolds {column.requirement}.{default}"
+    return f"{column.help}\nEnter: {column.requirement}.{default}"
 
 
 def prepared_rows(sheet: str, filled: int) -> int:
@@ -106,13 +113,14 @@ def cell_rule(column: Column, index: int, sheets: Collection[str] = tuple(ENTRY_
         "input_title": column.name[:32],
         "input_message": column.help if len(column.help) <= 255 else column.help[:254] + "…",  # noqa: PLR2004
         "error_title": column.name[:32],
-        "error_message": f"{column.requirement[:1].upper()}{column.requirement[1:]} is required here."[:255],
+        "error_message": f"Please enter {column.requirement}."[:255],
     }
     name = _LISTS.get((column.sheet, column.key))
     if name == _NAMES["Measurements"] and "Measurements" not in sheets:
-        rule["input_message"] += " Needs the sheet Measurements: flexlash template --with measurements."
+        rule["input_message"] += " For this add the sheet Measurements: flexlash template --with measurements."
     elif name:
-        rule |= {"validate": "list", "value": f"={name}", "error_message": _PICK}
+        words = f"{_PICK} {_OWN_NAMES.get(name, '')}".strip()
+        rule |= {"validate": "list", "value": f"={name}", "error_message": words}
     elif column.is_number:
         rule |= {"validate": "integer" if column.type == "integer" else "decimal"}
         if column.minimum is None:

@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
+from xlsxwriter.utility import xl_col_to_name
 
 from flexlash.feedback.template.entry_rules import FIRST_ROW, HEADER_ROW, prepared_rows
 from flexlash.feedback.template.filling import Entries
 from flexlash.feedback.template.status_rules import COMPLETE, Known, Stage, row_formula, stage_names
 from flexlash.feedback.template.stored_status import stored_statuses
-from flexlash.schema.columns import Column
 from flexlash.validation.headers import STATUS_HEADER
 
-__all__ = ["shade_entries", "write_progress", "write_status"]
+__all__ = ["write_progress", "write_status"]
 
 _WIDTH = 48
 
@@ -50,17 +49,6 @@ def write_status(
         rule = {"type": "formula", "criteria": criteria, "format": formats[style]}
         sheet.conditional_format(FIRST_ROW, status, FIRST_ROW + prepared - 1, status, rule)
     return texts
-
-
-def shade_entries(sheet: Any, columns: Sequence[Column], rows: int, formats: Mapping[str, Any]) -> None:
-    """Colour the required cells that are missing in a row that has been begun."""
-    end, row = xl_col_to_name(len(columns) - 1), FIRST_ROW + 1
-    for index, column in enumerate(columns):
-        if column.required:
-            cell = xl_rowcol_to_cell(FIRST_ROW, index)
-            criteria = f'=AND(COUNTA($A{row}:${end}{row})>0,{cell}="")'
-            rule = {"type": "formula", "criteria": criteria, "format": formats["open"]}
-            sheet.conditional_format(FIRST_ROW, index, FIRST_ROW + rows - 1, index, rule)
 
 
 def write_progress(workbook: Any, sheet: Any, status: int, texts: Sequence[str], style: Any) -> None:

@@ -122,7 +122,7 @@ def unlisted(column: Column) -> Rule:
     key, listed = column.key, ("", *column.choices)
     differs = ",".join(f'TRIM({{{key}}})<>"{word}"' for word in listed)
     return Rule(
-        text=f"{inner_name(column)} is not one of its list",
+        text=f"{inner_name(column)} is not in its list",
         excel=f"AND({differs})",
         holds=lambda row, _: entry_text(row, key).strip() not in listed,
     )
@@ -132,7 +132,7 @@ def not_in_list(column: Column, names: str) -> Rule:
     """Return the rule that an entry is one of a list that is too long for a formula: the range of that name."""
     key, listed = column.key, column.choices
     return Rule(
-        text=f"{inner_name(column)} is not one of its list",
+        text=f"{inner_name(column)} is not in its list",
         excel=f'AND({{{key}}}<>"",COUNTIF({names},TRIM({{{key}}}))=0)',
         holds=lambda row, _: not is_blank(row.get(key)) and entry_text(row, key).strip() not in listed,
     )

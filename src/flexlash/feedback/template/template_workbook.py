@@ -11,7 +11,9 @@ import xlsxwriter
 
 from flexlash.feedback.template.cell_writer import CellWriter
 from flexlash.feedback.template.decision_status import LEVER_STATUS, SOURCE_STATUS, SWEEP_STATUS
+from flexlash.feedback.template.demanded_cells import asking_types
 from flexlash.feedback.template.dictionary_sheet import write_dictionary
+from flexlash.feedback.template.entry_colours import shade_entries
 from flexlash.feedback.template.entry_rules import (
     FIRST_ROW,
     HEADER_ROW,
@@ -21,7 +23,8 @@ from flexlash.feedback.template.entry_rules import (
     write_lists,
 )
 from flexlash.feedback.template.filling import Entries, Filling, study
-from flexlash.feedback.template.status_column import shade_entries, write_progress, write_status
+from flexlash.feedback.template.sketch_sheet import SKETCH, write_sketch
+from flexlash.feedback.template.status_column import write_progress, write_status
 from flexlash.feedback.template.stored_status import counted, counted_pairs, listed_names
 from flexlash.feedback.template.template_formats import cell_formats
 from flexlash.feedback.template.tolerance_status import CORRELATION_STATUS, tolerance_status
@@ -29,20 +32,21 @@ from flexlash.feedback.template.variant_status import VARIANT_STATUS
 from flexlash.schema.columns import SETTINGS, Column
 from flexlash.validation.template_versions import TEMPLATE_VERSION
 
-__all__ = ["TITLES", "Filling", "study", "template_bytes"]
+__all__ = ["LEGEND", "LINKS", "TITLES", "Filling", "study", "template_bytes"]
 
 TITLES = {
     "Variants": (
         "flexlash: one row per flexspline variant",
-        "Yellow columns are required. Each header has a note; each cell says what it takes.",
+        "Fill the yellow cells of a row: its type decides which. White cells may stay blank. Help: the note on a "
+        "header, the sheet Sketch.",
     ),
     "Materials": ("Materials", "One row per material. Add rows for your own."),
     "Tolerances": (
         "Tolerances",
-        "One row per class and dimension: a grade, or lower and upper deviation. No row: exact, or that of the class "
-        "which it is based on.",
+        "One row per class and dimension: a grade, or lower and upper deviation. A dimension without a row is exact, or "
+        "as in the class that this one is based on.",
     ),
-    "Settings": ("Settings", "Blank values take the default."),
+    "Settings": ("Settings", "A blank value takes its default. Nothing here must be changed."),
     "Other sources": (
         "Other sources",
         "One row per source of backlash beside the wind-up of the flexspline: its play, its deviations, or both. One "
@@ -55,7 +59,7 @@ TITLES = {
     ),
     "Sweep": (
         "Sweep",
-        "One row per study: a dimension, or two, from the first value to the last; down where that is the lesser one.",
+        "One row per study: a dimension, or two, in steps from the first value to the last.",
     ),
     "Measurements": (
         "Measurements",
@@ -82,6 +86,13 @@ _PRINTED_ROWS = {
 }
 """Rows that are printed at least of a sheet whose formulas reach further down than its entries."""
 
+LEGEND = {"needed": "fill in", "missing": "missing", "unused": "leave blank", "wrong": "clear it"}
+"""What the colours of a cell of Variants say."""
+
+LINKS = {SKETCH: "? Symbols: sheet Sketch", "Dictionary": "? Every column in words: sheet Dictionary"}
+"""Where Variants leads to for help, and in which words."""
+
+_LEGEND_COLUMN, _LINK_COLUMN = 5, 12
 _OWN_WIDTH = 16
 
 _DATE = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=None)
@@ -89,7 +100,7 @@ _DATE = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=None)
 _WIDTHS = {
     "variant": 24,
     "material": 24,
-    "notes": 56,
+    "notes": 40,
     "source": 86,
     "dimension": 24,
     "setting": 24,
@@ -127,7 +138,9 @@ class _Template:
         self.workbook = workbook
         self.formats = cell_formats(workbook)
         self.entries = {name: filling.entries(name) for name in filling.sheet_names}
-        self.sheets = {name: workbook.add_worksheet(name) for name in (*self.entries, "Dictionary", "Lists")}
+        first, *others = self.entries
+        names = (first, SKETCH, *others, "Dictionary", "Lists")
+        self.sheets = {name: workbook.add_worksheet(name) for name in names}
         self.names = {name: listed_names(entries) for name, entries in self.entries.items() if name != "Settings"}
 
     def write(self) -> None:
@@ -159,6 +172,7 @@ class _Template:
                     self._variants(sheet, entries, texts)
                 width = len(entries.columns) + len(entries.own)
                 sheet.print_area(0, 0, HEADER_ROW + max(_PRINTED_ROWS[name], len(texts)), width)
+        write_sketch(self.workbook, self.sheets[SKETCH], self.sheets["Lists"], self.formats)
         write_dictionary(self.sheets["Dictionary"], self.formats, self.entries)
 
     def _format(self, column: Column) -> Any:
@@ -177,7 +191,8 @@ class _Template:
         sheet.set_row(0, 26)
         sheet.set_row(HEADER_ROW, 62)
         for index, column in enumerate(columns):
-            style = "required" if column.required else "header"
+            some = "required by some" if asking_types(column) else "header"
+            style = "required" if column.required else some
             width = _WIDTHS_OF_SHEETS.get((name, column.key)) or _WIDTHS.get(column.key, 13)
             sheet.set_column(index, index, width, self._format(column), self._outline(column))
             sheet.write_string(HEADER_ROW, index, column.label, self.formats[style])
@@ -198,6 +213,7 @@ class _Template:
         sheet.set_landscape()
         sheet.set_paper(9)
         sheet.fit_to_pages(1, 0)
+        sheet.set_margins(0.4, 0.4, 0.5, 0.6)
         sheet.repeat_rows(HEADER_ROW)
         sheet.set_footer("&L&A&C&P / &N&Rflexlash template")
         return sheet
@@ -234,7 +250,12 @@ class _Template:
         write_progress(self.workbook, sheet, len(entries.columns), texts, self.formats["live"])
         last = FIRST_ROW + prepared_rows("Variants", len(texts)) - 1
         sheet.conditional_format(FIRST_ROW, 0, last, 0, {"type": "duplicate", "format": self.formats["open"]})
+        for index, (style, words) in enumerate(LEGEND.items(), start=_LEGEND_COLUMN):
+            sheet.write_string(0, index, words, self.formats[f"legend {style}"])
+        for row, (name, words) in enumerate(LINKS.items()):
+            sheet.write_url(row, _LINK_COLUMN, f"internal:'{name}'!A1", self.formats["link"], words)
         sheet.activate()
+        sheet.set_selection(FIRST_ROW, 0, FIRST_ROW, 0)
 
     def _fill(self, sheet: Any, entries: Entries, own: int, styles: Mapping[str, Any] | None = None) -> None:
         """Write the given rows, and the user's own columns from the column `own` on; `styles` are formats by key."""

@@ -99,7 +99,7 @@ _BASE = (
 )
 _DRAWING = (
     Rule(
-        text="grade is not one of its list",
+        text="grade is not in its list",
         excel='AND({grade}<>"",SUMPRODUCT(--EXACT(fl_grades,SUBSTITUTE(TRIM({grade}),"JS","js")))=0)',
         holds=lambda row, _: given(row, "grade") == 1 and not is_grade(str(row["grade"]).strip()),
     ),

@@ -12,7 +12,7 @@ from flexlash.feedback.template.cell_writer import Formula, writable
 from flexlash.feedback.template.entry_rules import FIRST_ROW
 from flexlash.feedback.template.filling import Entries, Filling
 from flexlash.feedback.template.leftovers import Leftovers, leftovers_of
-from flexlash.feedback.template.template_workbook import TITLES, template_bytes
+from flexlash.feedback.template.template_workbook import LEGEND, LINKS, TITLES, template_bytes
 from flexlash.reading.limited_process import ask
 from flexlash.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored
 from flexlash.reading.read import Source, submission_of
@@ -31,9 +31,10 @@ from flexlash.validation.validated import Heading
 
 __all__ = ["Upgrade", "refilled", "upgraded"]
 
-_MADE_ANEW = ("Dictionary", "Lists")
+_MADE_ANEW = (SKETCH, "Dictionary", "Lists")
 _ABOVE = re.compile(
     r"Template version \d+|\d+ of \d+ rows complete|No row entered yet"
+    r"|Yellow columns are required\. Each header has a note; each cell says what it takes\."
     r"|One row per class and dimension: a grade, or lower and upper deviation\. No row: exact\.",
     re.IGNORECASE,
 )
@@ -282,7 +283,7 @@ def _is_ours(value: RawValue, schema: str) -> bool:
     if not isinstance(value, str):
         return isinstance(value, Unstored)
     groups = {column.group for column in ENTRY_SHEETS[schema]}
-    return not value.strip() or value in {*TITLES[schema], *groups} or bool(_ABOVE.fullmatch(value))
+    return not value.strip() or value in {*TITLES[schema], *groups, *LEGEND.values(), *LINKS.values()} or bool(_ABOVE.fullmatch(value))
 
 
 def _addresses(sheet: str, addresses: Sequence[CellAddress]) -> str:
