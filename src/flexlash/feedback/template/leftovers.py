@@ -5,7 +5,7 @@ from __future__ import annotations
 import posixpath
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from flexlash.reading.archive import unpacked
@@ -40,11 +40,17 @@ class Leftovers:
     objects: Mapping[str, int] = field(default_factory=dict)
 
 
-def leftovers_of(data: bytes, limits: ReadingLimits) -> Leftovers:
-    """Return what a workbook holds beside values; raise Refusal when it exceeds a limit."""
+def leftovers_of(data: bytes, limits: ReadingLimits, apart: Collection[str] = ()) -> Leftovers:
+    """Return what a workbook holds beside values; raise Refusal when it exceeds a limit.
+
+    Objects on the sheets named in `apart` are not counted.
+    """
     package = open_package(unpacked(data, limits), limits)
     objects: Counter[str] = Counter()
+    ours = {part for sheet in package.sheets if sheet.title in apart for part in _objects_on(package, sheet, limits)}
     for part, content in package.parts.items():
+        if part in ours:
+            continue
         objects.update(name for name, pattern in _OBJECTS if re.fullmatch(rf"(?:.*/)?{pattern}", part))
         if _DRAWING.fullmatch(part):
             objects["text box or shape"] += sum(len(Listing(content, limits, shape).attributes) for shape in _SHAPES)
@@ -84,19 +90,31 @@ class _Formulas(Elements):
             self.formulas[CellAddress(self.row, self.column)] += text
 
 
-def _notes(package: Package, sheet: SheetPart, limits: ReadingLimits) -> list[CellAddress]:
-    """Return the cells of a sheet that have a note."""
-    folder, name = posixpath.split(sheet.part)
+def _objects_on(package: Package, sheet: SheetPart, limits: ReadingLimits) -> Iterator[str]:
+    """Yield the drawings of a sheet and what these hold."""
+    for drawing in _related(package, sheet.part, "/drawing", limits):
+        yield drawing
+        yield from _related(package, drawing, "", limits)
+
+
+def _related(package: Package, part: str, kind: str, limits: ReadingLimits) -> Iterator[str]:
+    """Yield the parts that a part refers to by relations whose type ends so."""
+    folder, name = posixpath.split(part)
     relations = package.parts.get(f"{folder}/_rels/{name}.rels", b"")
-    addresses: list[CellAddress] = []
     for relation in Listing(relations, limits, "Relationship").attributes if relations else ():
         target = relation.get("Target", "")
-        part = target.lstrip("/") if target.startswith("/") else posixpath.normpath(posixpath.join(folder, target))
-        if relation.get("Type", "").endswith("/comments") and part in package.parts:
-            addresses += [
-                _address(note.get("ref", "")) for note in Listing(package.parts[part], limits, "comment").attributes
-            ]
-    return sorted(addresses)
+        found = target.lstrip("/") if target.startswith("/") else posixpath.normpath(posixpath.join(folder, target))
+        if relation.get("Type", "").endswith(kind) and found in package.parts:
+            yield found
+
+
+def _notes(package: Package, sheet: SheetPart, limits: ReadingLimits) -> list[CellAddress]:
+    """Return the cells of a sheet that have a note."""
+    return sorted(
+        _address(note.get("ref", ""))
+        for part in _related(package, sheet.part, "/comments", limits)
+        for note in Listing(package.parts[part], limits, "comment").attributes
+    )
 
 
 def _address(reference: str) -> CellAddress:

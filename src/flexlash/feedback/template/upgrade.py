@@ -12,6 +12,7 @@ from flexlash.feedback.template.cell_writer import Formula, writable
 from flexlash.feedback.template.entry_rules import FIRST_ROW
 from flexlash.feedback.template.filling import Entries, Filling
 from flexlash.feedback.template.leftovers import Leftovers, leftovers_of
+from flexlash.feedback.template.sketch_sheet import SKETCH
 from flexlash.feedback.template.template_workbook import LEGEND, LINKS, TITLES, template_bytes
 from flexlash.reading.limited_process import ask
 from flexlash.reading.raw import ErrorCell, RawSheet, RawValue, Submission, Unstored
@@ -78,7 +79,7 @@ def _upgraded(source: Source, limits: ReadingLimits, optional: Collection[str]) 
         raise Refusal("E101", found="it is a report or a marked copy made by flexlash")
     if submission.kind != "workbook":
         return refilled(submission, limits, optional=optional)
-    upgrade = refilled(submission, limits, leftovers_of(source.data, limits), optional)
+    upgrade = refilled(submission, limits, leftovers_of(source.data, limits, _MADE_ANEW), optional)
     return replace(upgrade, remarks=(*upgrade.remarks, _WITHOUT_FORMAT))
 
 
