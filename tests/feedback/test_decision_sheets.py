@@ -105,6 +105,7 @@ def test_an_old_template_with_a_budget_of_its_own_keeps_it(tmp_path, version):
     names = openpyxl.load_workbook(io.BytesIO(upgrade.data)).sheetnames
     assert names == [
         "Variants",
+        "Sketch",
         "Materials",
         "Tolerances",
         "Settings",

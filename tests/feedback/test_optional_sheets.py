@@ -23,6 +23,12 @@ _PLAIN = [name for name in ENTRY_SHEETS if name not in OPTIONAL_SHEETS]
 _MEASURED = [*_PLAIN, "Measurements", "Correlations"]
 
 
+def _with_ours(entry_sheets):
+    """Return the sheets of a template with these entry sheets."""
+    first, *others = entry_sheets
+    return [first, "Sketch", *others, "Dictionary", "Lists"]
+
+
 @pytest.fixture(autouse=True)
 def _here(monkeypatch):
     """Few prepared rows, for speed."""
@@ -78,11 +84,11 @@ def test_an_upgrade_adds_what_is_asked_for(tmp_path):
     """An older template gains the sheets named beside the upgrade, one with such a sheet keeps it as well."""
     old = tmp_path / "old.xlsx"
     old_workbook(rows_of("Variants", [{"variant": "A"}])).save(old)
-    assert _sheets(upgraded(old).data) == [*_PLAIN, "Dictionary", "Lists"]
+    assert _sheets(upgraded(old).data) == _with_ours(_PLAIN)
     both = upgraded(old, optional=OPTIONAL_SHEETS).data
-    assert _sheets(both) == [*ENTRY_SHEETS, "Dictionary", "Lists"]
+    assert _sheets(both) == _with_ours(ENTRY_SHEETS)
     some = _written(tmp_path, Filling(optional=["Correlations"]), "some.xlsx")
-    assert _sheets(upgraded(some, optional=["Measurements"]).data) == [*_MEASURED, "Dictionary", "Lists"]
+    assert _sheets(upgraded(some, optional=["Measurements"]).data) == _with_ours(_MEASURED)
 
 
 @pytest.mark.parametrize("version", [1, 2, 3])
@@ -101,7 +107,7 @@ def test_an_old_template_with_sheets_of_measurements_keeps_them(tmp_path, versio
     book.save(path)
     upgrade = upgraded(path)
     assert upgrade.version == version
-    assert _sheets(upgrade.data) == [*_MEASURED, "Dictionary", "Lists"]
+    assert _sheets(upgrade.data) == _with_ours(_MEASURED)
     assert _column(upgrade.data, "Measurements", "Sample")[:3] == ["lot 7", None, "lot 7"]
     assert _column(upgrade.data, "Measurements", "Wall thickness [in]")[:3] == [0.0631, None, "0,0632"]
     assert _column(upgrade.data, "Measurements", "Gauge")[:3] == ["G2", None, None]
@@ -123,7 +129,7 @@ def test_the_marked_copy_marks_the_new_sheets(tmp_path):
     for sheet, cell in FAULTS:
         assert marked[sheet][cell].fill.fgColor.rgb == COLOURS["error"], (sheet, cell)
         assert FAULTS[sheet, cell] in marked[sheet][cell].comment.text
-    assert marked.sheetnames == ["Findings", *_MEASURED, "Dictionary", "Lists", "flexlash marks"]
+    assert marked.sheetnames == ["Findings", *_with_ours(_MEASURED), "flexlash marks"]
 
 
 def test_certain_fixes_mend_the_new_sheets(tmp_path):

@@ -29,9 +29,9 @@ def _text(path, title="Findings"):
 
 def _coloured(path, title="Variants"):
     """Return the addresses of cells whose fill is not the template's."""
-    plain = {"00000000", "FFFFF5D6", "FFD9E2EC", "FFFFD966", "FF1F3A5F"}
+    plain = {"00000000", "FFFFF5D6", "FFD9E2EC", "FFFFD966", "FFFFEDB3", "FF1F3A5F"}
     sheet = openpyxl.load_workbook(path)[title]
-    return {cell.coordinate for row in sheet.iter_rows() for cell in row if cell.fill.fgColor.rgb not in plain}
+    return {cell.coordinate for row in sheet.iter_rows(min_row=2) for cell in row if cell.fill.fgColor.rgb not in plain}
 
 
 @pytest.mark.slow

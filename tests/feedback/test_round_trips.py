@@ -222,7 +222,7 @@ def test_colours_by_rule_are_kept(books):
     _, before, after = books
     for sheet in before:
         assert _colours(after[sheet.title]) == _colours(sheet)
-    assert len(_colours(before["Variants"])) == 8
+    assert len(_colours(before["Variants"])) == 42
 
 
 def test_no_colour_depends_on_another_being_skipped(books):
@@ -239,7 +239,7 @@ def test_locks_are_kept(books):
         assert _protection(after[sheet.title]) == _protection(sheet)
         area = f"A1:{get_column_letter(sheet.max_column)}{min(sheet.max_row, _EVERY)}"
         assert _locks(after[sheet.title], area) == _locks(sheet, area)
-    assert {sheet.title for sheet in before if _protection(sheet)} == {"Settings", "Dictionary", "Lists"}
+    assert {sheet.title for sheet in before if _protection(sheet)} == {"Sketch", "Settings", "Dictionary", "Lists"}
 
 
 def test_columns_are_kept(books):

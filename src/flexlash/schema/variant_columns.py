@@ -75,8 +75,8 @@ VARIANTS = (
     _dimension(
         "bore_diameter_mm",
         "Bore diameter [mm]",
-        "Inside diameter of the wall; give this or the mean radius. The mean radius is then bore/2 + wall/2 and follows "
-        "both tolerances.",
+        "Inside diameter of the wall; give this or the mean radius. The mean radius is then bore/2 + wall/2 and "
+        "follows both tolerances.",
         **LENGTH,
         group="Cylinder",
         also_called="innendurchmesser bohrungsdurchmesser bohrung innerdiameter insidediameter bore borediam boredia "

@@ -30,7 +30,7 @@ def _conditions(column: Column, begun: str) -> dict[str, str]:
     lacking = f'AND({begun},{{{column.key}}}="")'
     if column.required:
         return {"missing": lacking}
-    found = {}
+    found: dict[str, str] = {}
     if needed := asks_for_entry(column):
         found |= {"missing": f"AND({lacking},{needed})", "needed": f"AND(NOT({lacking}),{needed})"}
     if unused := asks_for_blank(column):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Any, TypeAlias
 
@@ -60,7 +60,7 @@ class _Points:
         self.height = height
         self.name = name
 
-    def written(self, lines: list[list[Point] | tuple[Point, ...]]) -> Mapping[str, Any]:
+    def written(self, lines: Sequence[Sequence[Point]]) -> Mapping[str, Any]:
         """Write lines into the next two columns; return where they stand."""
         column = max(_FIRST_COLUMN, self.sheet.dim_colmax + 1)
         self.sheet.write_string(0, column, f"sketch of a {self.name}")

@@ -43,8 +43,8 @@ TITLES = {
     "Materials": ("Materials", "One row per material. Add rows for your own."),
     "Tolerances": (
         "Tolerances",
-        "One row per class and dimension: a grade, or lower and upper deviation. A dimension without a row is exact, or "
-        "as in the class that this one is based on.",
+        "One row per class and dimension: a grade, or lower and upper deviation. A dimension without a row is exact, "
+        "or as in the class that this one is based on.",
     ),
     "Settings": ("Settings", "A blank value takes its default. Nothing here must be changed."),
     "Other sources": (

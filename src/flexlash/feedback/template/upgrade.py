@@ -36,7 +36,8 @@ _MADE_ANEW = (SKETCH, "Dictionary", "Lists")
 _ABOVE = re.compile(
     r"Template version \d+|\d+ of \d+ rows complete|No row entered yet"
     r"|Yellow columns are required\. Each header has a note; each cell says what it takes\."
-    r"|One row per class and dimension: a grade, or lower and upper deviation\. No row: exact\.",
+    r"|One row per class and dimension: a grade, or lower and upper deviation\. No row: exact(\.|, or that of the "
+    r"class which it is based on\.)|Blank values take the default\.",
     re.IGNORECASE,
 )
 """What this and former versions of the template write above a header row beside title and hint."""
@@ -284,7 +285,11 @@ def _is_ours(value: RawValue, schema: str) -> bool:
     if not isinstance(value, str):
         return isinstance(value, Unstored)
     groups = {column.group for column in ENTRY_SHEETS[schema]}
-    return not value.strip() or value in {*TITLES[schema], *groups, *LEGEND.values(), *LINKS.values()} or bool(_ABOVE.fullmatch(value))
+    return (
+        not value.strip()
+        or value in {*TITLES[schema], *groups, *LEGEND.values(), *LINKS.values()}
+        or bool(_ABOVE.fullmatch(value))
+    )
 
 
 def _addresses(sheet: str, addresses: Sequence[CellAddress]) -> str:
