@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import zipfile
 
 import openpyxl
@@ -16,7 +17,6 @@ from flexlash.mechanics.sketch.drawing_marks import Label
 from flexlash.pipeline import check
 from flexlash.schema.columns import DIMENSIONS
 
-A = "{http://schemas.openxmlformats.org/drawingml/2006/main}"
 C = "{http://schemas.openxmlformats.org/drawingml/2006/chart}"
 CUP = {"variant": "A", "material": "20Cr2Ni4", "torque_Nm": 800.0, "cylinder_length_mm": 160.0,
        "mean_radius_mm": 80.0, "wall_thickness_mm": 1.6, "disk_inner_radius_mm": 40.0}  # fmt: skip
@@ -57,13 +57,28 @@ def test_what_each_type_asks_of_a_symbol():
 def test_each_chart_shows_its_drawing(parts):
     """Each chart has the words of its drawing and as many points as axes of equal scale need, stored for viewers."""
     for chart, drawing in zip(_charts(parts), sketches().values(), strict=True):
-        words = [text.text for text in chart.iter(f"{A}t")]
+        series = [*chart.iter(f"{C}ser")]
+        words = [one.find(f"{C}tx/{C}v").text for one in series if one.find(f"{C}tx") is not None]
         assert sorted(words) == sorted(mark.words for mark in drawing.marks if isinstance(mark, Label))
         ends = [float(one.get("val")) for scaling in chart.iter(f"{C}scaling") for one in scaling.iter(f"{C}max")]
         assert ends == [round(drawing.width), round(drawing.height)]
-        stored = [float(one.text) for one in chart.iter(f"{C}v") if one.text]
+        stored = [float(one.text) for cache in chart.iter(f"{C}numCache") for one in cache.iter(f"{C}v")]
         assert len(stored) > 100
         assert 0 <= min(stored) <= max(stored) <= max(ends)
+
+
+def test_no_series_joins_what_a_corner_parts(parts):
+    """Within a series no line begins where the one before it ends, and none turns sharply: smoothed it looks alike."""
+    for chart in _charts(parts):
+        for series in chart.iter(f"{C}ser"):
+            x, y = ({int(one.get("idx")): float(one.find(f"{C}v").text) for one in series.find(f"{C}{axis}").iter(f"{C}pt")}
+                    for axis in ("xVal", "yVal"))  # fmt: skip
+            for place in x:
+                if place + 1 not in x and place + 2 in x:
+                    assert (x[place], y[place]) != (x[place + 2], y[place + 2])
+                if place + 2 in x and place + 1 in x:
+                    (a, b), (c, d) = ((x[at + 1] - x[at], y[at + 1] - y[at]) for at in (place, place + 1))
+                    assert abs(math.atan2(a * d - b * c, a * c + b * d)) < math.radians(25)
 
 
 def test_each_sketch_has_words_for_who_cannot_see_it(parts):

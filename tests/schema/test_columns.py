@@ -238,7 +238,8 @@ CROSS_CHECK_KEYS = [
 FINDING_KEYS = ["level", "code", "sheet", "cell", "variant", "column", "value", "message", "fix", "suggestion"]
 POSITIVE_LENGTH = "a length in mm above 0"
 REQUIREMENTS = {
-    ("Variants", "variant"): "a text",
+    ("Variants", "notes"): "text",
+    ("Variants", "variant"): "a name",
     ("Variants", "flexspline_type"): "cup, hat or cylinder",
     ("Variants", "torque_Nm"): "a torque in N·m above 0",
     ("Variants", "cylinder_length_mm"): POSITIVE_LENGTH,

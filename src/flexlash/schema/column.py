@@ -181,7 +181,7 @@ class Column:
         if self.choices:
             return self._list
         if not self.is_number:
-            return "a text"
+            return "a name" if self.role == "identity" else "text"
         words = "a whole number" if self.type == "integer" else _QUANTITIES.get(self.quantity, "a number")
         return " ".join(filter(None, [f"{words} in{self.unit_behind}" if self.unit_behind else words, self._bounds]))
 

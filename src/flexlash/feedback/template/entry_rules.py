@@ -92,7 +92,8 @@ _OWN_NAMES = {
 def header_note(column: Column) -> str:
     """Return the note on a header."""
     default = "" if column.default is None else f"\nBlank: {column.default}."
-    return f"{column.help}\nEnter: {column.requirement}.{default}"
+    entry = f"\nEnter: {column.requirement}." if column.is_number or column.choices else ""
+    return f"{column.help}{entry}{default}"
 
 
 def prepared_rows(sheet: str, filled: int) -> int:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import groupby
 from typing import Any, TypeAlias
 
 from flexlash.mechanics.sketch.drawing_marks import LETTER, Area, Drawing, Label, Point, Stroke, hatching
@@ -14,6 +14,9 @@ _FIRST_COLUMN = 40
 """Column of the sheet Lists behind all lists, from which on the points of charts stand."""
 
 _POINTS_PER_PIXEL = 0.75
+_CORNER = math.radians(20)
+"""By how much a line turns at a corner at least."""
+
 _SIDES = {"start": "right", "end": "left", "middle": "center"}
 """Where words stand beside their point, by the end of theirs that lies there."""
 
@@ -21,25 +24,48 @@ _Look: TypeAlias = tuple[str, float, bool]
 
 
 def drawn_chart(workbook: Any, lists: Any, name: str, drawing: Drawing) -> Any:
-    """Return a chart that shows a drawing in its size; its points are written into columns of the sheet `lists`."""
+    """Return a chart that shows a drawing in its size; its points are written into columns of the sheet `lists`.
+
+    Lines end at their corners, and the next begins in another series, since openpyxl forgets that lines are not smooth
+    and LibreOffice joins what meets. Words are names of series, since openpyxl forgets labels of other words.
+    """
     chart = workbook.add_chart({"type": "scatter", "subtype": "straight"})
     points = _Points(lists, name, drawing.height)
     for (colour, width, dashed), strokes in _strokes(drawing).items():
         line = {"color": colour, "width": width} | ({"dash_type": "long_dash_dot"} if dashed else {})
-        chart.add_series({**points.written([stroke.points for stroke in strokes]), "line": line, "marker": _NONE})
-    for (anchor, colour), labels in _labels(drawing).items():
-        places = [[(label.x, label.y - LETTER / 3)] for label in labels]
-        font = {"name": "Calibri", "size": LETTER * _POINTS_PER_PIXEL, "color": colour}
-        custom = [entry for label in labels for entry in ({"value": label.words, "font": font}, {"delete": True})]
-        chart.add_series({
-            **points.written(places), "line": {"none": True}, "marker": _NONE,
-            "data_labels": {"value": True, "position": _SIDES[anchor], "custom": custom[:-1], "font": font},
-        })  # fmt: skip
+        runs = [_runs(stroke.points) for stroke in strokes]
+        for turn in (0, 1):
+            some = [run for of_one in runs for run in of_one[turn::2]]
+            if some:
+                chart.add_series({**points.written(some), "line": line, "marker": _NONE})
+    for label in (mark for mark in drawing.marks if isinstance(mark, Label)):
+        font = {"name": "Calibri", "size": LETTER * _POINTS_PER_PIXEL, "color": label.colour}
+        words = {"series_name": True, "position": _SIDES[label.anchor], "font": font}
+        place = points.written([[(label.x, label.y - LETTER / 3)]])
+        series = {"name": label.words, "line": {"none": True}, "marker": _NONE, "data_labels": words}
+        chart.add_series({**place, **series})
     _plain(chart, drawing)
     return chart
 
 
 _NONE = {"type": "none"}
+
+
+def _runs(line: Sequence[Point]) -> list[list[Point]]:
+    """Return a line in runs that end at its corners."""
+    runs = [[line[0]]]
+    for before, at, after in zip(line, line[1:], line[2:], strict=False):
+        runs[-1].append(at)
+        if _turn(before, at, after) > _CORNER:
+            runs.append([at])
+    runs[-1].append(line[-1])
+    return runs
+
+
+def _turn(before: Point, at: Point, after: Point) -> float:
+    """Return by how much a line turns at a point [rad]."""
+    (x1, y1), (x2, y2) = ((end[0] - start[0], end[1] - start[1]) for start, end in ((before, at), (at, after)))
+    return abs(math.atan2(x1 * y2 - y1 * x2, x1 * x2 + y1 * y2))
 
 
 def _plain(chart: Any, drawing: Drawing) -> None:
@@ -93,12 +119,3 @@ def _all_strokes(drawing: Drawing) -> Iterator[Stroke]:
             yield from hatching(mark)
             if not mark.hatch:
                 yield Stroke(points=(*mark.points, mark.points[0]), colour=mark.fill)
-
-
-def _labels(drawing: Drawing) -> dict[tuple[str, str], list[Label]]:
-    labels = sorted((mark for mark in drawing.marks if isinstance(mark, Label)), key=_side)
-    return {side: [*some] for side, some in groupby(labels, key=_side)}
-
-
-def _side(label: Label) -> tuple[str, str]:
-    return label.anchor, label.colour

@@ -95,11 +95,11 @@ def _write_symbols(sheet: Any, formats: Mapping[str, Any]) -> None:
         column = DIMENSIONS[name]
         sheet.set_row(row, 32 if len(column.help) > _COLUMNS["Meaning"] else 18)
         sheet.write_string(row, 0, symbol, formats["legend"])
-        sheet.write_string(row, 1, column.label, formats["wrap"])
+        sheet.write_string(row, 1, column.label, formats["legend words"])
         for index, kind in enumerate(_SHAPES, start=2):
             style, words = _asked(column, kind)
             sheet.write_string(row, index, words, formats[style])
-        sheet.write_string(row, len(_COLUMNS) - 1, column.help, formats["wrap"])
+        sheet.write_string(row, len(_COLUMNS) - 1, column.help, formats["legend words"])
 
 
 def _asked(column: Column, kind: str) -> tuple[str, str]:

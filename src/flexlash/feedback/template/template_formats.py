@@ -41,6 +41,7 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "legend unused": {**_LEGEND, "font_color": "#595959", "bg_color": "#D9D9D9"},
     "legend wrong": {**_LEGEND, "font_color": "#8F3A00", "bg_color": "#FBE3D3"},
     "legend": _LEGEND,
+    "legend words": {**_LEGEND, "align": "left", "text_wrap": True, "indent": 1},
     "link": {**_BASE, "font_color": "#1F5FA8", "underline": 1},
     "wrap": {**_BASE, "text_wrap": True, "valign": "top"},
 }

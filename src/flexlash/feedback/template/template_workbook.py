@@ -92,7 +92,7 @@ LEGEND = {"needed": "fill in", "missing": "missing", "unused": "leave blank", "w
 LINKS = {SKETCH: "? Symbols: sheet Sketch", "Dictionary": "? Every column in words: sheet Dictionary"}
 """Where Variants leads to for help, and in which words."""
 
-_LEGEND_COLUMN, _LINK_COLUMN = 5, 12
+_LEGEND_COLUMN, _LINK_COLUMN = 5, 11
 _OWN_WIDTH = 16
 
 _DATE = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=None)
