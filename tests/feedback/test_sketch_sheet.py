@@ -29,6 +29,12 @@ def parts():
         return {name: archive.read(name) for name in archive.namelist()}
 
 
+def _numbers(series, axis):
+    """Return the stored numbers of a series by their place."""
+    points = series.find(f"{C}{axis}").iter(f"{C}pt")
+    return {int(point.get("idx")): float(point.find(f"{C}v").text) for point in points}
+
+
 def _charts(parts):
     return [ElementTree.fromstring(parts[f"xl/charts/chart{number}.xml"]) for number in (1, 2, 3)]
 
@@ -71,8 +77,7 @@ def test_no_series_joins_what_a_corner_parts(parts):
     """Within a series no line begins where the one before it ends, and none turns sharply: smoothed it looks alike."""
     for chart in _charts(parts):
         for series in chart.iter(f"{C}ser"):
-            x, y = ({int(one.get("idx")): float(one.find(f"{C}v").text) for one in series.find(f"{C}{axis}").iter(f"{C}pt")}
-                    for axis in ("xVal", "yVal"))  # fmt: skip
+            x, y = _numbers(series, "xVal"), _numbers(series, "yVal")
             for place in x:
                 if place + 1 not in x and place + 2 in x:
                     assert (x[place], y[place]) != (x[place + 2], y[place + 2])

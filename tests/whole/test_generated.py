@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 import regenerate
+from openpyxl.utils import get_column_letter
 
 from flexlash.pipeline import check, run
 
@@ -20,7 +21,7 @@ def test_needs_fixing_gives_exactly_its_findings():
     outcome = check(regenerate.ROOT / "data" / "needs-fixing.xlsx")
     columns = {column.key: place for place, column in enumerate(regenerate.VARIANTS)}
     expected = [
-        (code, f"{chr(65 + columns[key])}{row}", f"fault {code}")
+        (code, f"{get_column_letter(1 + columns[key])}{row}", f"fault {code}")
         for row, (code, key, _) in enumerate(regenerate.FAULTS, start=8)
     ]
     assert [(one.code, one.cell, one.variant) for one in outcome.findings] == expected
