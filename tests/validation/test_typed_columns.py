@@ -151,7 +151,7 @@ def test_a_bad_cell_has_one_finding(value, code, suggestion):
     (found,) = ledger.findings
     assert (found.code, found.place, found.column) == (code, "Variants!E2", "wall_thickness_mm")
     assert found.suggestion == suggestion
-    assert code in {"E206", "E220"} or "a number in mm greater than 0 is required" in found.message
+    assert code in {"E206", "E220"} or "a length in mm above 0 is required" in found.message
     assert ledger.rows == {2}
     assert not ledger.everything
 
