@@ -43,6 +43,9 @@ _NEAR, _NEARER = (1e-5, 3e-4), (1e-6, 3e-4)
 """Least and greatest distance from the target, in levels of Φ, from which such a step may be the last; between these
 it is what misses the target by no more than its standard error."""
 
+_OUTWARDS = tuple((step / 12) ** 2 for step in range(1, 13))
+"""Parts of the way to the ends at which the engine looks where a prediction went astray."""
+
 _APART = 0.05
 """How far apart two points must be, in levels of Φ, to tell a slope."""
 
@@ -129,8 +132,8 @@ class LimitSearch:
         return Solution(**found)
 
     def _crossed(self, rows: Indices, over: Array) -> Bools:
-        """Return where shares over the limit are on the other side of the target than they are now."""
-        return np.asarray((over <= self._terms.target) == self._wanted[rows])
+        """Return where shares over the limit are on the other side of the target than they are now; NaN is on none."""
+        return np.where(self._wanted[rows], over <= self._terms.target, over > self._terms.target)
 
     def _shares(self, rows: Indices, values: Array, *, by_lines: bool = True) -> Array:
         """Return the shares over the limit of some variants with values [SI]; NaN where these make no part."""
@@ -208,6 +211,9 @@ class LimitSearch:
         near, far = self._alike.present[rows].copy(), beyond[rows]
         over = self._shares(rows, far)
         reached = self._crossed(rows, over)
+        astray = np.flatnonzero(~reached)
+        far[astray], over[astray] = self._looked_for(rows[astray], far[astray], over[astray])
+        reached = self._crossed(rows, over)
         for _ in range(_HALVINGS):
             middle = (near + far) / 2
             crossed = self._crossed(rows, self._shares(rows, middle))
@@ -218,7 +224,30 @@ class LimitSearch:
         for name, numbers in (("value", value), ("drawing", drawing), ("over", shares)):
             found[name][rows[reached]] = numbers[reached]
         missed = rows[~reached]
-        found["extreme"][missed], found["over"][missed] = beyond[missed], over[~reached]
+        found["extreme"][missed], found["over"][missed] = far[~reached], over[~reached]
+
+    def _looked_for(self, rows: Indices, values: Array, over: Array) -> tuple[Array, Array]:
+        """Return values [SI] beyond the target and their shares, as the engine finds them going outwards on both sides.
+
+        A prediction that points the wrong way says nothing of the other one. Where no value is beyond the target, the
+        best of those looked at, or the worst, is returned; it may be the given one.
+        """
+        best, share = values.copy(), over.copy()
+        if not len(rows):
+            return best, share
+        present, ends = self._alike.present[rows], [end[rows] for end in self._alike.ends]
+        open_ = np.arange(len(rows))
+        for part in _OUTWARDS:
+            for end in ends:
+                tried = (present + part * (end - present))[open_]
+                there = self._shares(rows[open_], tried)
+                wanted, known = self._wanted[rows[open_]], share[open_]
+                better = np.where(wanted, there < known, there > known) | (np.isnan(known) & ~np.isnan(there))
+                best[open_[better]], share[open_[better]] = tried[better], there[better]
+                open_ = open_[~self._crossed(rows[open_], share[open_])]
+                if not len(open_):
+                    return best, share
+        return best, share
 
     def _drawn(self, rows: Indices, values: Array, rounded: Rounded, more: int = 0) -> Array:
         """Return the drawing values of values [SI] on their safe side, so many steps further; NaN of NaN.

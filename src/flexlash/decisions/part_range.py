@@ -76,8 +76,8 @@ def broken_rules(kind: str, sizes: Mapping[str, Array], *, errors: bool) -> Iter
 
 
 def makes_a_part(kind: str, sizes: Mapping[str, Array], limits: Mapping[str, LimitArrays]) -> Bools:
-    """Return where dimensions of one shape [SI], and all between their limits, make a part."""
-    sound = np.ones(np.broadcast_shapes(*(np.shape(size) for size in sizes.values())), dtype=bool)
+    """Return where dimensions of one shape [SI], and all between their limits, make a part; NaN makes none."""
+    sound = np.asarray(np.logical_and.reduce(np.broadcast_arrays(*(np.isfinite(size) for size in sizes.values()))))
     with np.errstate(all="ignore"):
         for _, broken in broken_rules(kind, sizes, errors=True):
             sound = sound & ~broken
