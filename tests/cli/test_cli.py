@@ -84,7 +84,7 @@ def test_check_prints_findings_and_the_next_command(table, sound, capsys, main_i
     lines = capsys.readouterr().out.splitlines()
     assert lines == [
         "error E202 text instead of a number, 1 cell: Variants!G3",
-        '    Variants!G3 Wall thickness Δ = "1,6": a number in mm greater than 0 is required; did you mean 1.6?',
+        '    Variants!G3 Wall thickness Δ = "1,6": a length in mm above 0 is required; did you mean 1.6?',
         "    Mend: Type the number alone, without unit, with the decimal sign that your program uses.",
         f"{path}: 1 of 2 rows ready; 1 cell to fix.",
         f"Next: mend that and check again, or compute the 1 row: flexlash run {path}",

@@ -149,7 +149,7 @@ def test_what_was_not_computed(told):
     said = told({"backlash_limit_arcmin": 5}, *faulty)
     assert said["Computed"] == (
         "1 of 6 variants was computed. Not computed: “bad 0”, “bad 1”, “bad 2” and 2 more. "
-        "The first fault: Variants!D3 Torque T is empty: a number in N·m greater than 0 is required."
+        "The first fault: Variants!D3 Torque T is empty: a torque in N·m above 0 is required."
     )
     assert said["Which fail"].startswith("None: the 1 variant")
     assert said["Findings"] == "5 errors: required cell empty (5)."

@@ -16,7 +16,7 @@ PARTLY = Answer(
     told={"counts": {"rows": 4, "computed": 3}, "sha256": "ab" * 32},
     finding_lines=(
         ("error", "error E201 required cell empty, 1 cell: Variants!D8"),
-        ("", "    Variants!D8 Torque T is empty: a number in N·m greater than 0 is required."),
+        ("", "    Variants!D8 Torque T is empty: a torque in N·m above 0 is required."),
         ("", "    Mend: Fill the cell."),
         ("info", "info I501 a column of your own"),
         ("", "    It passes through."),
@@ -39,7 +39,7 @@ def test_a_partly_computed_submission_is_told_what_where_required_mend_copy_and_
     """Who handed in a file with a fault reads all that is needed to mend it, without the program or its page."""
     text = said(reasons_text(PARTLY, "study A.xlsx", submission=ID))
     for needed in (
-        "study A.xlsx: 3 of 4 rows computed", "study A-report.xlsx", "Variants!D8", "greater than 0 is required",
+        "study A.xlsx: 3 of 4 rows computed", "study A-report.xlsx", "Variants!D8", "above 0 is required",
         "Fill the cell", "study A-checked.xlsx", "hand the file in again", ID, "ab" * 32,
     ):  # fmt: skip
         assert needed in text
