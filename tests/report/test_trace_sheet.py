@@ -130,7 +130,7 @@ def test_every_input_can_be_changed_within_the_bounds_of_a_submission(traces):
     ratio, cell = rules["G" + rows["poisson_ratio"]], "G" + rows["poisson_ratio"]
     assert ratio.formula1 == f'IF(ISNUMBER({cell}),AND({cell}>=0,{cell}<=0.5),{cell}="none")'
     assert ratio.error == "A number from 0 to 0.5 is required here, or none to leave it out."
-    assert rules["G" + rows["torque"]].error.startswith("A number in N·m ")
+    assert rules["G" + rows["torque"]].error.startswith("A torque in N·m ")
     assert rules["G" + rows["flexspline_type"]].formula1 == '"cup,hat,cylinder"'
     assert len([one for one in rules if one.startswith("G")]) == 26
 
