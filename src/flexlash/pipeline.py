@@ -64,8 +64,8 @@ def run(
     """Return the outcome of a submission and write it to `output`, unless that is None.
 
     Options are those of the command line: seed, method, samples, cross_check, elasticity, strict, jobs,
-    tolerances, materials, measurements, correlations, other_sources, from_report. The output's ending decides its form:
-    .xlsx, .csv, .parquet or .json.
+    tolerances, materials, measurements, correlations, other_sources, samples_out, pictures, from_report. The output's
+    ending decides its form: .xlsx, .csv, .parquet or .json.
 
     All rows are held at once, within `limits`; the command line computes a table of any size in chunks.
 

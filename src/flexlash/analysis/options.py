@@ -89,6 +89,22 @@ class Options:
     other_sources: str | Path | None = field(
         default=None, metadata=_declared(file_path, "The Other sources table: what else plays in the drive.")
     )
+    samples_out: str | Path | None = field(
+        default=None,
+        metadata=_declared(
+            file_path,
+            "Write random units of each variant, with their dimensions, into this folder: "
+            "<name>-samples.parquet, at most a million units.",
+        ),
+    )
+    pictures: str | Path | None = field(
+        default=None,
+        metadata=_declared(
+            file_path,
+            "Write charts into this folder as SVG, and PNG where matplotlib is installed: all variants beside the "
+            "limit; of the ten worst the part, the spread, its causes and the segments.",
+        ),
+    )
     limits: ReadingLimits = field(
         default_factory=ReadingLimits,
         metadata=_declared(
@@ -118,6 +134,8 @@ class Options:
         """
         known(what, options, [one.name for one in fields(cls)])
         chosen = cls(**{name: _checked(name, value) for name, value in options.items()})
+        if what != "run()" and (chosen.samples_out or chosen.pictures):
+            raise ValueError(f"{what} writes no samples and no pictures; run() does")
         if chosen.from_report and chosen.marked_copy is not None:
             raise ValueError("a report does not hold the file itself, so that nothing can be marked in it")
         return chosen
@@ -129,8 +147,8 @@ class Options:
         return {sheet: Path(path) for sheet, path in given.items() if path is not None}
 
     def without_tables(self, **changes: Any) -> Options:
-        """Return these options as a worker gets them, who is handed the bytes of tables and not where they lie."""
-        left: dict[str, Any] = dict.fromkeys(TABLES)
+        """Return these options as a worker gets them, who is handed bytes of tables and told of no folder."""
+        left: dict[str, Any] = dict.fromkeys((*TABLES, "samples_out", "pictures"))
         return replace(self, **left, **changes)
 
     def completed(self, run_with: Mapping[str, Any] | None) -> Options:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from flexlash.analysis.drive_notes import DriveNotes
 from flexlash.analysis.outcome import Outcome, Written
 from flexlash.analysis.whole_batch import worst_rows
+from flexlash.analysis.written_files import is_picture, picture_words
 from flexlash.schema.cell_addresses import CellAddress, cell_ranges
 from flexlash.schema.finding_catalogue import Level
 from flexlash.schema.findings import CATALOGUE, Finding, shown
@@ -175,8 +176,8 @@ def closing_lines(
     yield from details
     if ran and not counts["computed"]:
         yield "No report was written: there is no computed row."
-    for path in written.paths:
-        yield _written_line(written, path)
+    yield from (_written_line(written, path) for path in written.paths if not is_picture(path))
+    yield from (f"Written: {words}" for words in picture_words(written.paths))
     quoted_name = f'"{name}"' if " " in name else name
     if not ran:
         yield f"Next: {_next_step(counts, quoted_name)}"

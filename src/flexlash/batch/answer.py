@@ -12,6 +12,7 @@ from flexlash.analysis.options import Options
 from flexlash.feedback.fixing.fix import Fix
 from flexlash.reading.inside_limits import Fault
 from flexlash.reading.read import Source
+from flexlash.report.exported_file import ExportedFile
 from flexlash.schema.exit_codes import ExitCode
 from flexlash.schema.findings import Finding
 from flexlash.schema.number_words import share_words
@@ -43,8 +44,8 @@ class Task(Travelling):
     """A submission and what is to be done with it.
 
     `tables` stand beside it, by the sheet that each replaces. `report` is how the report's name ends, `copy` how the
-    marked copy's does, each empty where none is wanted. With `pages` it is told how far it is, and the answer has what
-    a page shows and offers.
+    marked copy's does, each empty where none is wanted; `samples` and `pictures` say whether these are. With `pages` it
+    is told how far it is, and the answer has what a page shows and offers.
     """
 
     command: Command
@@ -53,6 +54,8 @@ class Task(Travelling):
     tables: Mapping[str, Source] = field(default_factory=dict)
     report: str = ""
     copy: str = ""
+    samples: bool = False
+    pictures: bool = False
     pages: bool = False
 
 
@@ -141,8 +144,9 @@ class Answer(Travelling):
 
     `told` is what `--json` prints of it but its outputs, `finding_lines` and `details` are lines for the screen,
     `words` how much was computed, `by_rule` the number of findings of each code. `file` is the report or the mended
-    submission. `refused` says that it is no readable submission, `skipped` that flexlash wrote it, `fault` that the
-    program failed. `exit_code` is that of a command for this submission alone whose files could all be written.
+    submission, `exports` are the samples and pictures that were wanted. `refused` says that it is no readable
+    submission, `skipped` that flexlash wrote it, `fault` that the program failed. `exit_code` is that of a command for
+    this submission alone whose files could all be written.
 
     Where a page is wanted, `results` is Results as CSV, `mended` the submission with the certain fixes, None where
     there are none, `page` what a page shows, as JSON (`report.page.shape.PageFacts`), and `rules` are the findings by
@@ -158,6 +162,7 @@ class Answer(Travelling):
     worst: tuple[WorstVariant, ...] = ()
     file: FileBytes | None = None
     copy: FileBytes | None = None
+    exports: tuple[ExportedFile, ...] = ()
     fixes: tuple[Fix, ...] | None = None
     refused: bool = False
     skipped: bool = False

@@ -13,6 +13,7 @@ from flexlash.analysis.run_summary import FindingGroup, SpreadNotes, by_rule
 from flexlash.analysis.whole_batch import WholeBatch
 from flexlash.batch.answer import Travelling
 from flexlash.reading.read import Source
+from flexlash.report.exported_file import ExportedFile
 from flexlash.schema.cell_addresses import CellAddress
 from flexlash.schema.findings import Finding, finding
 from flexlash.schema.limit_verdict import Verdict
@@ -25,12 +26,15 @@ __all__ = [
     "ChunkAnswer",
     "ChunkSummary",
     "ChunkTask",
+    "ExportAnswer",
+    "ExportTask",
     "FindingsTask",
     "PageTask",
     "ReportTask",
     "WorstRow",
     "blank_row",
     "compute_chunk",
+    "export_worst",
     "list_findings",
     "page_of_large",
     "report_worst",
@@ -163,6 +167,22 @@ class ReportTask(Travelling):
 
 
 @dataclass(frozen=True, kw_only=True)
+class ExportTask(ReportTask):
+    """The same for samples or pictures, or both, of those rows."""
+
+    samples: bool
+    pictures: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExportAnswer(Travelling):
+    """Samples and pictures of the worst rows, and what they hold in words."""
+
+    files: tuple[ExportedFile, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
 class FindingsTask(Travelling):
     """The first findings of a large table of this name, for a workbook that lists them.
 
@@ -207,6 +227,13 @@ def report_worst(task: bytes) -> bytes:
     from flexlash.batch.chunk_computing import report_of_worst
 
     return report_of_worst(ReportTask.of(task))
+
+
+def export_worst(task: bytes) -> bytes:
+    """Return samples and pictures of the worst rows of a large table."""
+    from flexlash.batch.chunk_computing import exports_of_worst
+
+    return exports_of_worst(ExportTask.of(task)).as_bytes()
 
 
 def page_of_large(task: bytes) -> bytes:

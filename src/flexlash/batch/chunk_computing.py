@@ -22,6 +22,8 @@ from flexlash.batch.chunk import (
     ChunkAnswer,
     ChunkSummary,
     ChunkTask,
+    ExportAnswer,
+    ExportTask,
     FindingsTask,
     PageTask,
     ReportTask,
@@ -29,6 +31,7 @@ from flexlash.batch.chunk import (
 )
 from flexlash.feedback.annotation.marked_copy import findings_workbook
 from flexlash.pipeline import computed
+from flexlash.report.exports import export_notes, exported_files
 from flexlash.report.findings_table import findings_rows
 from flexlash.report.page.grids import Sheets
 from flexlash.report.page.page_facts import Found, page_bytes
@@ -41,7 +44,7 @@ from flexlash.schema.result_columns import result_columns
 from flexlash.validation.blocking_errors import waiting_rows, without_waiting
 from flexlash.validation.validated import Table
 
-__all__ = ["answered", "findings_listed", "page_made", "report_of_worst"]
+__all__ = ["answered", "exports_of_worst", "findings_listed", "page_made", "report_of_worst"]
 
 _NAMED = 3
 """Worst variants that are told by name."""
@@ -166,6 +169,16 @@ def _worst(results: pl.DataFrame, table: Table) -> tuple[WorstRow, ...]:
 def report_of_worst(task: ReportTask) -> bytes:
     """Return the report of the worst rows, which says that it stands for the whole table."""
     return report_bytes(replace(computed(task.source, task.options, task.tables), whole=task.whole))
+
+
+def exports_of_worst(task: ExportTask) -> ExportAnswer:
+    """Return samples and pictures of the worst rows, which say of how many they are."""
+    outcome = replace(computed(task.source, task.options, task.tables), whole=task.whole)
+    samples, pictures = task.samples, task.pictures
+    return ExportAnswer(
+        files=exported_files(outcome, samples=samples, pictures=pictures),
+        notes=tuple(export_notes(outcome, samples=samples, pictures=pictures)),
+    )
 
 
 def page_made(task: PageTask) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from flexlash.analysis.examination import examined
@@ -56,7 +57,14 @@ def _answered(task: Task) -> Answer:
         return answer_of(outcome, ran=False, copy=copy_of(outcome, task))
     outcome = computed(task.source, task.options, task.tables)
     data = data_of(outcome, task)
-    return answer_of(outcome, ran=True, file=report_of(outcome, task, data), copy=copy_of(outcome, task), data=data)
+    answer = answer_of(outcome, ran=True, file=report_of(outcome, task, data), copy=copy_of(outcome, task), data=data)
+    if not (task.samples or task.pictures):
+        return answer
+    from flexlash.report.exports import export_notes, exported_files
+
+    files = exported_files(outcome, samples=task.samples, pictures=task.pictures, data=data)
+    notes = export_notes(outcome, samples=task.samples, pictures=task.pictures)
+    return replace(answer, details=(*answer.details, *notes), exports=files)
 
 
 def answer_of(

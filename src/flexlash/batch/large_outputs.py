@@ -7,15 +7,26 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import BinaryIO
 
 from flexlash.analysis.options import Options
 from flexlash.analysis.outcome import Written
 from flexlash.analysis.run_summary import counted
-from flexlash.batch.chunk import FindingsTask, PageTask, ReportTask, list_findings, page_of_large, report_worst
+from flexlash.batch.chunk import (
+    ExportAnswer,
+    ExportTask,
+    FindingsTask,
+    PageTask,
+    ReportTask,
+    export_worst,
+    list_findings,
+    page_of_large,
+    report_worst,
+)
 from flexlash.batch.chunk_totals import Totals
 from flexlash.batch.executor import Executor
+from flexlash.outputs.exports import ExportPlaces
 from flexlash.outputs.plan import Output, WrittenFile
 from flexlash.outputs.working_folder import Parts, WorkingFolder
 from flexlash.outputs.writing import Filling
@@ -30,23 +41,28 @@ _RESULTS, _FINDINGS = "-results", "-findings"
 
 @dataclass(frozen=True, kw_only=True)
 class Files:
-    """What was written: the report, the file of all Results where that is another, all findings, their workbook."""
+    """What was written: the report, the file of all Results where that is another, all findings, their workbook.
+
+    `exported` are samples and pictures, of which `notes` say what they hold.
+    """
 
     report: WrittenFile | None = None
     results: WrittenFile | None = None
     findings: WrittenFile | None = None
     copy: WrittenFile | None = None
+    exported: Written = field(default_factory=Written)
+    notes: tuple[str, ...] = ()
     fault: OSError | None = None
 
     def told(self) -> Written:
         """Return the files in order, and sentences about what stood in their way."""
         files = [file for file in (self.report, self.results, self.findings, self.copy) if file is not None]
         return Written(
-            paths=tuple(file.path for file in files),
-            remarks=tuple(file.remark for file in files if file.remark),
+            paths=(*(file.path for file in files), *self.exported.paths),
+            remarks=(*(file.remark for file in files if file.remark), *self.exported.remarks),
             marked_copy=self.copy.path if self.copy else None,
             not_carried=None if self.copy else (),
-            fault=self.fault,
+            fault=self.fault or self.exported.fault,
         )
 
 
@@ -55,7 +71,8 @@ class LargeOutputs:
     """What came of a large table of this name, and what is wanted of it.
 
     `parts` are what came of its chunks, in order, in the working `folder`, and `totals` all of them together. `report`
-    and `copy` are where the report and the workbook of findings go, `ending` is how the file of all Results ends.
+    and `copy` are where the report and the workbook of findings go, `exports` where samples and pictures; `ending` is
+    how the file of all Results ends.
     `source` gives the excerpt of some rows, which workers turn into the report, with these `options` and `tables`.
     """
 
@@ -65,6 +82,7 @@ class LargeOutputs:
     tables: Mapping[str, Source]
     report: Output | None
     copy: Output | None
+    exports: ExportPlaces | None
     ending: str
     totals: Totals
     parts: Sequence[Parts]
@@ -80,7 +98,8 @@ class LargeOutputs:
         report, copy, totals = self.report, self.copy, self.totals
         is_computed = self.folder is not None and report is not None and self.ran and bool(totals.computed)
         is_apart = is_computed and report is not None and report.ending != self.ending
-        worst = self.source(sorted(one.row for one in totals.worst)) if is_apart else None
+        needs_worst = is_apart or (is_computed and self.exports is not None)
+        worst = self.source(sorted(one.row for one in totals.worst)) if needs_worst else None
         files = Files()
         if self.folder is not None and report is not None and is_computed:
             results = report if report.ending == self.ending else self._beside(_RESULTS, self.ending)
@@ -88,8 +107,11 @@ class LargeOutputs:
                 files = replace(files, results=results.write(self._all_results(self.folder), "results"))
         if self.folder is not None and totals.rules and (beside := self._beside(_FINDINGS, ".csv")) is not None:
             files = replace(files, findings=beside.write(self._all_findings()))
-        if report is not None and worst is not None:
+        if report is not None and worst is not None and is_apart:
             files = replace(files, report=report.write(self._report(worst, files), "report"))
+        if self.exports is not None and worst is not None:
+            exported = self._exported(worst, self.exports)
+            files = replace(files, exported=self.exports.written(Written(), exported.files), notes=exported.notes)
         levels = totals.whole().levels
         if copy is None or not levels["error"] + levels["warning"]:
             return files
@@ -166,6 +188,18 @@ class LargeOutputs:
             whole=self.totals.whole(*names),
         )
         return self.executor.submit(report_worst, task.as_bytes()).result()
+
+    def _exported(self, worst: Source, places: ExportPlaces) -> ExportAnswer:
+        """Return samples and pictures of the worst rows."""
+        task = ExportTask(
+            source=worst,
+            options=self.options,
+            tables=self.tables,
+            whole=self.totals.whole(),
+            samples=places.samples,
+            pictures=places.pictures,
+        )
+        return ExportAnswer.of(self.executor.submit(export_worst, task.as_bytes()).result())
 
     def _listed(self, files: Files, copy: Output) -> bytes:
         """Return the first findings as a workbook that says where the rest is."""

@@ -32,6 +32,7 @@ from flexlash.batch.chunk import (
 from flexlash.batch.chunk_totals import Totals
 from flexlash.batch.executor import Executor, Work, WorkerLostError
 from flexlash.batch.large_outputs import LargeOutputs
+from flexlash.outputs.exports import ExportPlaces
 from flexlash.outputs.plan import Output
 from flexlash.outputs.working_folder import Parts, WorkingFolder, working_folder
 from flexlash.reading.excerpt import excerpt
@@ -66,8 +67,9 @@ class LargeTable:
 
     `ran` says that its spread is computed, not merely that it is checked. `tables` stand beside it, by the sheet that
     each replaces, `companions` are the files given with it. `report` is where its Results go, `copy` where its findings
-    go as a workbook, None for each that is not wanted. With `resume` what a stopped run has done is taken up. `name` is
-    that of the table as it may be printed, where its path has another; with `pages` the answer has what a page shows.
+    go as a workbook, `exports` where samples and pictures of its worst rows go, None for each that is not wanted. With
+    `resume` what a stopped run has done is taken up. `name` is that of the table as it may be printed, where its path
+    has another; with `pages` the answer has what a page shows.
     """
 
     path: Path
@@ -78,6 +80,7 @@ class LargeTable:
     companions: Companions | None = None
     report: Output | None = None
     copy: Output | None = None
+    exports: ExportPlaces | None = None
     resume: bool = False
     pages: bool = False
 
@@ -215,7 +218,8 @@ class _Run:
                 totals = self._computed(folder)
                 outputs = LargeOutputs(
                     name=self.survey.name, ran=self.table.ran, options=self._options, tables=self.table.tables,
-                    report=self.table.report, copy=self.table.copy, ending=self._ending, totals=totals,
+                    report=self.table.report, copy=self.table.copy, exports=self.table.exports,
+                    ending=self._ending, totals=totals,
                     parts=self.kept, folder=folder, source=self._source, executor=self.executor,
                 )  # fmt: skip
                 files = outputs.written()
@@ -228,7 +232,7 @@ class _Run:
             fail_over_limit=self.table.options.fail_over_limit,
             findings_file=files.findings.path.name if files.findings else "",
         )
-        return replace(answer, page=page), files.told()
+        return replace(answer, page=page, details=(*answer.details, *files.notes)), files.told()
 
     def _what(self) -> dict[str, object]:
         """Return what the parts in a working folder are parts of."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -129,8 +130,10 @@ class Manifest:
         return [None if output is None else self._place(output.path) for output in outputs]
 
     def _place(self, path: Path) -> str:
-        """Return where a file lies in the folder."""
-        return path.relative_to(self._folder).as_posix()
+        """Return where a file lies: in the folder, or wherever samples and pictures were to go."""
+        if path.is_relative_to(self._folder):
+            return path.relative_to(self._folder).as_posix()
+        return os.path.abspath(path)  # noqa: PTH100  # a link among its folders stays one
 
 
 def _name(path: Path, below: Path) -> str:

@@ -24,6 +24,7 @@ from flexlash.batch.executor import ClusterError, Executor, WorkerLostError
 from flexlash.batch.given_files import Given
 from flexlash.batch.manifest import Manifest
 from flexlash.outputs.delivery import with_file
+from flexlash.outputs.exports import ExportPlaces
 from flexlash.outputs.plan import Output
 from flexlash.reading.gate import PARQUET, opened_file
 from flexlash.reading.products import Companions, digests_of
@@ -48,11 +49,15 @@ Advance = Callable[[Ended], None]
 
 @dataclass(frozen=True, kw_only=True)
 class Wanted:
-    """A submission and where its report, or the mended one, and its marked copy go; None for what is not wanted."""
+    """A submission and where its report, or the mended one, its marked copy, and its samples and pictures go.
+
+    None for what is not wanted.
+    """
 
     given: Given
     file: Output | None = None
     copy: Output | None = None
+    exports: ExportPlaces | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -225,6 +230,8 @@ class _SideBySide:
             tables=batch.tables,
             report=wanted.file.ending if wanted.file else "",
             copy=wanted.copy.ending if wanted.copy else "",
+            samples=wanted.exports is not None and wanted.exports.samples,
+            pictures=wanted.exports is not None and wanted.exports.pictures,
         )
         future = self._executor.submit(computed_apart, task.as_bytes())
         return _HandedOver(index=one.index, start=one.start, sha256=sha256, future=future)
@@ -260,6 +267,7 @@ class _SideBySide:
             companions=self._companions(path),
             report=wanted.file,
             copy=wanted.copy,
+            exports=wanted.exports,
             resume=batch.resume,
         )
         answer, written = large_table(table, self._executor, self._batch.progress)
@@ -297,6 +305,8 @@ def _written(wanted: Wanted, answer: Answer) -> Written:
     written = Written()
     if wanted.file is not None and answer.file is not None:
         written = with_file(written, wanted.file, answer.file.data, answer.file.role)
+    if wanted.exports is not None:
+        written = wanted.exports.written(written, answer.exports)
     if wanted.copy is None or answer.copy is None:
         return written
     try:

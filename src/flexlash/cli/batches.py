@@ -17,6 +17,7 @@ from flexlash.batch.given_files import GivenFiles
 from flexlash.batch.manifest import MANIFEST_NAME, Manifest, options_digest
 from flexlash.cli.submissions import Submissions
 from flexlash.cli.terminal import Bar, complain, named
+from flexlash.outputs.exports import ExportPlaces
 from flexlash.outputs.plan import Output
 from flexlash.reading.read import Source
 from flexlash.reading.refusal import Refusal
@@ -28,10 +29,11 @@ __all__ = ["Planned", "carried_out", "to_be_told", "workers"]
 
 @dataclass(frozen=True, kw_only=True)
 class Planned:
-    """Where outputs go: the report or mended file and the marked copy of each submission, the summary of all."""
+    """Where outputs go: report or mended file, marked copy, samples and pictures of each submission, summary of all."""
 
     files: Mapping[Path, Output] = field(default_factory=dict)
     copies: Mapping[Path, Output] = field(default_factory=dict)
+    exports: Mapping[Path, ExportPlaces] = field(default_factory=dict)
     summary: tuple[Output, Output] | None = None
 
 
@@ -98,7 +100,12 @@ def carried_out(
                 command=command,
                 options=options,
                 wanted=[
-                    Wanted(given=one, file=planned.files.get(one.path), copy=planned.copies.get(one.path))
+                    Wanted(
+                        given=one,
+                        file=planned.files.get(one.path),
+                        copy=planned.copies.get(one.path),
+                        exports=planned.exports.get(one.path),
+                    )
                     for one in given.files
                 ],
                 tables=tables,

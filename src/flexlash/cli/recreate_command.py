@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from flexlash.analysis.options import TABLES
+from flexlash.analysis.outcome import Outcome
 from flexlash.cli.recreation import recreate
 from flexlash.cli.submissions import Submissions
 from flexlash.cli.terminal import progress
@@ -32,5 +33,17 @@ def recreate_all(
             attempt.further = {"compared": {"numbers": found.numbers, "different": found.different}}
             if found.numbers:
                 attempt.remarks = [f"  {shown(remark, longest=400)}" for remark in found.remarks]
-                attempt.closing = [comparison_line(found.different, found.numbers, shown(report.name))]
+                attempt.closing = [
+                    *_exported(found.outcome, options),
+                    comparison_line(found.different, found.numbers, shown(report.name)),
+                ]
     return all_of_them.end()
+
+
+def _exported(outcome: Outcome, options: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what samples and pictures of an outcome hold, where they are wanted."""
+    samples, pictures = bool(options.get("samples_out")), bool(options.get("pictures"))
+    if samples or pictures:
+        from flexlash.report.exports import export_notes
+
+        yield from export_notes(outcome, samples=samples, pictures=pictures)

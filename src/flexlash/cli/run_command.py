@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from flexlash.analysis.options import TABLES, Options
 from flexlash.batch.given_files import GivenFiles, given_files
 from flexlash.cli.batches import Planned, carried_out, to_be_told
 from flexlash.cli.click_types import JSON, LIMITS, QUIET, RECURSIVE, SUBMISSIONS, VERBOSE, option, planned
+from flexlash.outputs.exports import export_folders, export_places
 from flexlash.outputs.naming import marked_outputs, report_outputs, summary_outputs
 from flexlash.outputs.plan import Plan
 
@@ -32,6 +34,8 @@ __all__ = ["run"]
 @option("cross_check")
 @option("elasticity")
 @option("jobs", default=os.cpu_count() or 1, show_default="all cores")
+@option("samples_out", metavar="FOLDER")
+@option("pictures", metavar="FOLDER")
 @option("strict")
 @option("fail_over_limit")
 @LIMITS
@@ -76,14 +80,18 @@ def run(
     Of a folder that is done with each workbook and table in it.
     """
     from flexlash.mechanics.elasticity import MISSING, is_available
+    from flexlash.report.pictures import raster
 
     if options["elasticity"] and not is_available():
         raise click.UsageError(MISSING)
+    if options["pictures"] and not raster.is_available() and not quiet:
+        click.echo(raster.MISSING, err=True)
     beside = [options[name] for name in TABLES if options[name]]
     if from_report:
         from flexlash.cli.recreate_command import recreate_all
 
         planned(report_outputs, Plan(inputs=[*submissions, *beside]), submissions, output)
+        planned(export_folders, options["samples_out"], options["pictures"])
         sys.exit(recreate_all(submissions, output, as_json=as_json, quiet=quiet, **options))
     given = given_files(
         submissions,
@@ -92,7 +100,7 @@ def run(
         beside=beside,
         marked_copies=options["marked_copies"],
     )
-    outputs = _outputs(given, beside, output, annotate=annotate, marked_copies=options["marked_copies"])
+    outputs = _outputs(given, beside, output, options, annotate=annotate)
     if resume and outputs.summary is None and (given.folders or len(given.files) > 1):
         raise click.UsageError("--resume needs a folder as OUT, in which an earlier run was stopped.")
     told = to_be_told(given, recursive=recursive, as_json=as_json, quiet=quiet, verbose=verbose, ran=True)
@@ -101,14 +109,19 @@ def run(
 
 
 def _outputs(
-    given: GivenFiles, beside: list[Path], output: Path | None, *, annotate: bool, marked_copies: bool
+    given: GivenFiles, beside: list[Path], output: Path | None, options: Mapping[str, Any], *, annotate: bool
 ) -> Planned:
-    """Return where reports, marked copies and the summary go."""
+    """Return where reports, marked copies, samples, pictures and the summary go."""
     paths, below = given.submissions, given.sub_folders
-    plan = Plan(inputs=[*paths, *beside], submissions=paths, marked_copies=marked_copies)
+    plan = Plan(inputs=[*paths, *beside], submissions=paths, marked_copies=options["marked_copies"])
     summary = planned(summary_outputs, plan, output)
     reports = planned(report_outputs, plan, paths, output, below=below)
     copies = planned(marked_outputs, plan, paths, output, below=below) if annotate else []
+    folders = planned(export_folders, options["samples_out"], options["pictures"])
+    exports = export_places(plan, paths, folders, below) if folders else []
     return Planned(
-        files=dict(zip(paths, reports, strict=False)), copies=dict(zip(paths, copies, strict=False)), summary=summary
+        files=dict(zip(paths, reports, strict=False)),
+        copies=dict(zip(paths, copies, strict=False)),
+        exports=dict(zip(paths, exports, strict=False)),
+        summary=summary,
     )

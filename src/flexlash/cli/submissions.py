@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from flexlash.analysis.run_summary import closing_lines, counted, listed
+from flexlash.analysis.written_files import file_words
 from flexlash.batch.ended import Ended, how_many
 from flexlash.cli.terminal import complain, internal_error, named, print_json
 from flexlash.mechanics.elasticity import MissingLibrariesError
@@ -171,7 +172,7 @@ class Submissions:
             over = sum(ended.counts[verdict] for verdict in ("marginal", "fails"))
             judged = counted(over + ended.counts["meets"], "variant")
             limit = f" Limit not met by {over} of {judged}." if over else ""
-            files = ", ".join(named(path) for path in ended.written.paths)
+            files = ", ".join(file_words(ended.written.paths))
             yield _Line(f"{ended.name}: {ended.words}.{limit}{f' Written: {files}' if files else ''}")
 
     def _lines(self, ended: Ended, attempt: Attempt) -> Iterator[_Line]:

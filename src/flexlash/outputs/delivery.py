@@ -8,6 +8,7 @@ from pathlib import Path
 
 from flexlash.analysis.options import Options
 from flexlash.analysis.outcome import Outcome, Written
+from flexlash.outputs.exports import ExportPlaces, export_folders, export_places
 from flexlash.outputs.naming import WORKBOOK, named_output
 from flexlash.outputs.plan import Output, Plan
 from flexlash.reading.read import ReadReport, Source
@@ -18,10 +19,14 @@ __all__ = ["Delivery", "delivery", "with_file"]
 
 @dataclass(frozen=True, kw_only=True)
 class Delivery:
-    """Where the report, or the fixed submission, goes and where the marked copy, None for each that is not wanted."""
+    """Where the report, or the fixed submission, goes, where the marked copy, where samples and pictures.
+
+    None for each that is not wanted.
+    """
 
     output: Output | None
     copy: Output | None
+    exports: ExportPlaces | None = None
 
     def require(self) -> None:
         """Raise OSError where it is known already that the report cannot be written; a copy may fail alone."""
@@ -36,12 +41,26 @@ class Delivery:
         return replace(outcome, written=self._marked(outcome, written))
 
     def reported(self, outcome: Outcome) -> Outcome:
-        """Return the outcome with what was written for it: the report, if a row was computed, and the marked copy."""
-        if self.output is None or not outcome.computed:
+        """Return the outcome with what was written for it, if a row was computed: all but a marked copy needs one."""
+        if not outcome.computed:
             return self.written(outcome, None, "")
-        from flexlash.report.output import outcome_bytes
+        data = None
+        if self.output is not None and self.output.ending == ".xlsx":
+            from flexlash.report.report_data import report_data
 
-        return self.written(outcome, *outcome_bytes(outcome, self.output.ending))
+            data = report_data(outcome)
+        file: tuple[bytes | None, str] = (None, "")
+        if self.output is not None:
+            from flexlash.report.output import outcome_bytes
+
+            file = outcome_bytes(outcome, self.output.ending, data)
+        done = self.written(outcome, *file)
+        if self.exports is None:
+            return done
+        from flexlash.report.exports import exported_files
+
+        files = exported_files(outcome, samples=self.exports.samples, pictures=self.exports.pictures, data=data)
+        return replace(done, written=self.exports.written(done.written, files))
 
     def _marked(self, outcome: Outcome, written: Written) -> Written:
         """Write the marked copy, when there is something to mark; a failure loses nothing else."""
@@ -75,7 +94,19 @@ def delivery(
     return Delivery(
         output=None if output is None else named_output(plan, output, endings),
         copy=None if options.marked_copy is None else named_output(plan, options.marked_copy, WORKBOOK),
+        exports=_exports(given, options, output.plan if isinstance(output, Output) else plan),
     )
+
+
+def _exports(given: str | Path | Source | ReadReport, options: Options, plan: Plan) -> ExportPlaces | None:
+    """Return where samples and pictures go; those of a report are called like the submission that it carries."""
+    if options.samples_out is None and options.pictures is None:
+        return None
+    named = given.submission if isinstance(given, ReadReport) else given
+    name = named if isinstance(named, str | Path) else named.name
+    samples, pictures = (None if folder is None else Path(folder) for folder in (options.samples_out, options.pictures))
+    (places,) = export_places(plan, [Path(Path(name).name)], export_folders(samples, pictures))
+    return places
 
 
 def with_file(written: Written, output: Output, data: bytes, role: str) -> Written:

@@ -95,14 +95,14 @@ def ranked(outcome: Outcome) -> pl.DataFrame:
     return worst_rows(outcome.results.with_columns(rows.alias(ROW)))
 
 
-def drawn_variants(outcome: Outcome) -> list[Drawn]:
+def drawn_variants(outcome: Outcome, most: int = DRAWN) -> list[Drawn]:
     """Return the variants that the report shows, worst first, with their whole distributions."""
-    return _drawn(outcome, ranked(outcome))
+    return _drawn(outcome, ranked(outcome), most)
 
 
-def _drawn(outcome: Outcome, worst: pl.DataFrame) -> list[Drawn]:
+def _drawn(outcome: Outcome, worst: pl.DataFrame, most: int = DRAWN) -> list[Drawn]:
     """Return the first of the ranked variants with their whole distributions."""
-    rows = worst.head(DRAWN).to_dicts()
+    rows = worst.head(most).to_dicts()
     computed = [outcome.computed[row[ROW]] for row in rows]
     curves = drawn_curves(computed, outcome.settings, outcome.options)
     return [

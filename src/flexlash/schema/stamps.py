@@ -5,7 +5,8 @@ with that word's digits as 0. It stands where other programs do not look, and ar
 
 - .xlsx, .xlsm: the comment at the end of the archive, which every program drops that saves the workbook;
 - .parquet: the metadata of the footer, under the key `flexlash`;
-- .json: the key `stamp`, the last of the file; .jsonl: the same key, of the last line.
+- .json: the key `stamp`, the last of the file; .jsonl: the same key, of the last line;
+- .svg: the element `metadata`; .png: behind the last chunk.
 
 A .csv has no such place.
 """
@@ -39,8 +40,8 @@ def placeholder(role: str) -> str:
 def stamped(data: bytes, role: str) -> bytes:
     """Return a file's bytes with its stamp, where they have room for one; the same bytes for the same bytes.
 
-    `role` says what the file is: `report`, `results`, `levers`, `distribution`, `checked`, `recreated`, `summary`, or
-    `mended` and the SHA-256 of the submission that was mended.
+    `role` says what the file is: `report`, `results`, `levers`, `distribution`, `checked`, `recreated`, `summary`,
+    `picture`, or `mended` and the SHA-256 of the submission that was mended.
     """
     file = io.BytesIO(data)
     stamp(file, role)

@@ -42,7 +42,7 @@ from flexlash.schema.variant import Limits
 from flexlash.tolerance.dimension_limits import distribution_of
 from flexlash.tolerance.distribution_curves import HISTOGRAM_BINS
 
-__all__ = ["variant_pages"]
+__all__ = ["density_of", "segments_of", "shares_of", "variant_pages"]
 
 _FINDINGS = 5
 """Most findings of a variant that are told."""
@@ -92,9 +92,9 @@ def variant_pages(
             settled=not straddled(row, facts.bounds),
             light="" if row["backlash_limit_arcmin"] is None else verdict_word(row, facts.bounds),
             sentences=list(_sentences(facts, variant)),
-            density=_density(variant),
-            shares=list(_shares(variant)),
-            segments=list(_segments(variant)),
+            density=density_of(variant),
+            shares=list(shares_of(variant)),
+            segments=list(segments_of(variant)),
             limits=list(_limits(variant)),
             sketch=sketch_facts(variant.computed.variant, name),
             levers=lever_table(facts.levers, row["variant"]),
@@ -124,7 +124,7 @@ def _sentences(facts: SummaryFacts, variant: Drawn) -> Iterator[Sentence]:
             yield Sentence(topic=topic, text=text, kind="note")
 
 
-def _density(variant: Drawn) -> Density:
+def density_of(variant: Drawn) -> Density:
     """Return the histogram that Explorer draws."""
     curve, row = variant.curve, variant.row
     return Density(
@@ -132,11 +132,12 @@ def _density(variant: Drawn) -> Density:
         width=float(curve.edges[-1] - curve.edges[0]) / HISTOGRAM_BINS / ARCMIN,
         heights=[float(f"{height:.5e}") for height in curve.heights.tolist()],
         nominal=row["backlash_arcmin"],
+        mean=row["mean_arcmin"],
         limit=row["backlash_limit_arcmin"],
     )
 
 
-def _shares(variant: Drawn) -> Iterator[Share]:
+def shares_of(variant: Drawn) -> Iterator[Share]:
     """Yield the dimensions that move the backlash most, by their share of the variance."""
     spread = variant.computed.spread
     about = "≈" if rough(variant.row) else ""
@@ -152,7 +153,7 @@ def _shares(variant: Drawn) -> Iterator[Share]:
         )
 
 
-def _segments(variant: Drawn) -> Iterator[Segment]:
+def segments_of(variant: Drawn) -> Iterator[Segment]:
     """Yield the stretches of the part in which the nominal backlash arises, from the open end to the hub."""
     nominal = variant.computed.nominal
     for segment, name in SEGMENTS.items():

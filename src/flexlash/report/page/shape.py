@@ -188,12 +188,16 @@ class Lost(TypedDict):
 
 
 class Density(TypedDict):
-    """A histogram of the backlash [arcmin]: equal bins from `start` on, each with its share of all units."""
+    """A histogram of the backlash [arcmin]: equal bins from `start` on, each with its share of all units.
+
+    Facts of earlier versions have no `mean`.
+    """
 
     start: float
     width: float
     heights: list[float]
     nominal: float
+    mean: NotRequired[float]
     limit: float | None
 
 

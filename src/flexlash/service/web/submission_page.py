@@ -9,9 +9,9 @@ from typing import Any, Literal
 from markupsafe import Markup
 
 from flexlash.report.page.shape import Card, PageFacts, Tile
+from flexlash.report.pictures.chart import UNIT, Spread, spread_chart
 from flexlash.schema.number_words import grouped
 from flexlash.service.records import StoredFile, StoredSubmission
-from flexlash.service.web.chart import UNIT, Spread, spread_chart
 from flexlash.service.web.offers import Download, offered
 from flexlash.service.web.words import DOORS, Moment, StateLine, counted, remaining, size_words, state_line
 
@@ -224,7 +224,8 @@ def _charts(facts: PageFacts | None) -> Sequence[Markup]:
     ]  # fmt: skip
     first, others = spreads[:_DRAWN], spreads[_DRAWN:]
     charts = [spread_chart("spread", first, UNIT, of=chart["of"], beside=others)]
-    return [*charts, spread_chart("spread-others", others, UNIT, beside=first)] if others else charts
+    charts += [spread_chart("spread-others", others, UNIT, beside=first)] if others else []
+    return [Markup(picture.inline()) for picture in charts]  # noqa: S704
 
 
 _EVENTS = {

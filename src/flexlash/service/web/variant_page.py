@@ -9,8 +9,8 @@ from markupsafe import Markup
 from flexlash.mechanics.sketch.drawing_marks import Area, Drawing, Label, Mark, Stroke
 from flexlash.mechanics.sketch.sketch_svg import svg
 from flexlash.report.page.shape import PageFacts, Sketch, SketchMark, VariantPage
+from flexlash.report.pictures.variant_charts import variant_charts
 from flexlash.service.records import StoredSubmission
-from flexlash.service.web.chart import UNIT, Cause, causes_chart, density_chart, shares_chart
 
 __all__ = ["VariantView", "sketch_picture", "variant_view"]
 
@@ -38,9 +38,8 @@ def variant_view(submission: StoredSubmission, facts: PageFacts, place: int) -> 
     if not 0 <= place < len(pages):
         return None
     page = pages[place]
-    causes = [Cause(name=one["name"], words=one["words"], share=one["share"], low=one["low"], high=one["high"])
-              for one in page["shares"]]  # fmt: skip
-    segments = [(one["name"], one["share"]) for one in page["segments"]]
+    charts = variant_charts(page["density"], page["shares"], page["segments"])
+    markup = {name: Markup(picture.inline()) for name, picture in charts.items()}  # noqa: S704
     return VariantView(
         id=submission.id,
         name=submission.name,
@@ -50,10 +49,10 @@ def variant_view(submission: StoredSubmission, facts: PageFacts, place: int) -> 
         before=pages[place - 1]["variant"] if place else "",
         after=pages[place + 1]["variant"] if place + 1 < len(pages) else "",
         sketch=sketch_picture(page["sketch"]) if "sketch" in page else None,
-        density=density_chart("density", page["density"], UNIT),
-        causes=causes_chart("causes", causes, page["density"]["nominal"], UNIT) if causes else None,
-        segments=shares_chart("segments", "Where the wind-up sits", segments) if segments else None,
-    )  # fmt: skip
+        density=markup["density"],
+        causes=markup.get("causes"),
+        segments=markup.get("segments"),
+    )
 
 
 def sketch_picture(sketch: Sketch) -> Markup:

@@ -1,15 +1,12 @@
-"""The charts of the page: all variants beside their limits, and of one variant its density, causes and segments."""
+"""Charts of page and files: all variants beside their limits, and of one variant its density, causes and segments."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from markupsafe import Markup
-
 from flexlash.report.page.shape import Density
-from flexlash.schema.number_words import grouped
-from flexlash.service.web.drawing import (
+from flexlash.report.pictures.drawing import (
     AMBER,
     BLUE,
     DARK_AMBER,
@@ -25,6 +22,7 @@ from flexlash.service.web.drawing import (
     finite,
     number,
 )
+from flexlash.schema.number_words import grouped
 
 __all__ = ["UNIT", "Cause", "Spread", "causes_chart", "density_chart", "shares_chart", "spread_chart"]
 
@@ -56,7 +54,7 @@ class Spread:
 
 def spread_chart(
     name: str, spreads: Sequence[Spread], unit: str, *, of: int = 0, beside: Sequence[Spread] = ()
-) -> Markup:
+) -> Picture:
     """Return the chart of all variants, one below the other: a bar from P2.5 to P97.5, the median, the limit.
 
     `of` is how many variants there are, where not all of them are drawn. The scale has room for those `beside`, which
@@ -77,7 +75,7 @@ def spread_chart(
         picture.limit(scale, limits[0], top, bottom, f"limit {number(limits[0])}{unit}")
     elif limits:
         picture.text(0, top - 8, "dashed: each variant's limit", colour=DARK_VERMILION)
-    return picture.markup()
+    return picture
 
 
 def _finite(spreads: Sequence[Spread]) -> list[Spread]:
@@ -120,17 +118,17 @@ def _spread_words(drawn: Sequence[Spread], limits: Sequence[float], unit: str) -
     )
 
 
-def density_chart(name: str, density: Density, unit: str) -> Markup:
+def density_chart(name: str, density: Density, unit: str) -> Picture:
     """Return how the backlash of a variant is spread, vermilion over the limit; a far limit is told at the edge."""
     start, width, heights = density["start"], density["width"], density["heights"]
-    limit, nominal = density["limit"], density["nominal"]
+    limit, nominal, mean = density["limit"], density["nominal"], density.get("mean")
     most = max(heights, default=0.0) or 1.0
     edges = [start + index * width for index in range(len(heights) + 1)]
     points = [(x, height / most) for index, height in enumerate(heights) for x in edges[index : index + 2]]
     reach = _FAR * (edges[-1] - edges[0])
     is_far = finite(limit) and not edges[0] - reach <= limit <= edges[-1] + reach
-    scale = Scale([*edges[:1], *edges[-1:], *filter(finite, (nominal, None if is_far else limit))])
-    top, bottom = 44.0, 214.0
+    scale = Scale([*edges[:1], *edges[-1:], *filter(finite, (nominal, mean, None if is_far else limit))])
+    top, bottom = 60.0, 230.0
     picture = Picture(name, "How the backlash is spread", _density_words(edges, limit, unit), bottom + _BELOW)
     picture.grid(scale, top, bottom, unit)
     for part, colour in zip(_parted(points, limit), (BLUE, VERMILION), strict=True):
@@ -139,13 +137,16 @@ def density_chart(name: str, density: Density, unit: str) -> Markup:
     if finite(nominal):
         picture.line(scale.per_cent(nominal), top - 6, bottom, INK, width=1.5)
         picture.beside(scale.per_cent(nominal), top - 10, f"nominal {number(nominal)}{unit}", INK)
+    if finite(mean):
+        picture.line(scale.per_cent(mean), top - 22, bottom, GREY, width=1.5, dashed=True)
+        picture.beside(scale.per_cent(mean), top - 26, f"mean {number(mean)}{unit}", GREY)
     if is_far and finite(limit):
         left = limit < edges[0]
         words = f"← limit {number(limit)}{unit}, far below" if left else f"limit {number(limit)}{unit}, far above →"
-        picture.text(0 if left else 100, top - 27, words, anchor="start" if left else "end", colour=DARK_VERMILION)
+        picture.text(0 if left else 100, top - 43, words, anchor="start" if left else "end", colour=DARK_VERMILION)
     elif finite(limit):
-        picture.limit(scale, limit, top - 22, bottom, f"limit {number(limit)}{unit}")
-    return picture.markup()
+        picture.limit(scale, limit, top - 38, bottom, f"limit {number(limit)}{unit}")
+    return picture
 
 
 def _density_words(edges: Sequence[float], limit: float | None, unit: str) -> str:
@@ -184,7 +185,7 @@ class Cause:
     high: float | None = None
 
 
-def causes_chart(name: str, causes: Sequence[Cause], nominal: float, unit: str) -> Markup:
+def causes_chart(name: str, causes: Sequence[Cause], nominal: float, unit: str) -> Picture:
     """Return what causes the spread, greatest first: the backlash with each dimension at its limits, and its share."""
     ends = [value for cause in causes for value in (cause.low, cause.high) if finite(value)]
     scale = Scale([*ends, *filter(finite, (nominal,))])
@@ -203,10 +204,10 @@ def causes_chart(name: str, causes: Sequence[Cause], nominal: float, unit: str) 
                 picture.bar(first, last, top + 21, _BAR, colour)
         picture.text(0, top + 15, cause.name, longest=26)
         picture.text(100, top + 15, cause.words, anchor="end", bold=True)
-    return picture.markup()
+    return picture
 
 
-def shares_chart(name: str, title: str, shares: Sequence[tuple[str, float]]) -> Markup:
+def shares_chart(name: str, title: str, shares: Sequence[tuple[str, float]]) -> Picture:
     """Return the parts of a whole, each from 0 to 1, one below the other: a bar for each on a track from 0 to 100 %."""
     shares = [(what, share) for what, share in shares if finite(share)]
     told = "; ".join(f"{what} {_per_cent(share)}" for what, share in shares)
@@ -217,7 +218,7 @@ def shares_chart(name: str, title: str, shares: Sequence[tuple[str, float]]) -> 
         picture.text(100, top + 15, _per_cent(share), anchor="end", bold=True)
         picture.bar(0, 100, top + 21, _BAR, TRACK)
         picture.bar(0, 100 * min(1.0, max(0.0, share)), top + 21, _BAR, BLUE)
-    return picture.markup()
+    return picture
 
 
 def _per_cent(share: float) -> str:

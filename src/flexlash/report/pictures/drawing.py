@@ -1,7 +1,7 @@
 """Pictures as inline SVG: elements with attributes alone, so that a policy without inline style shows them.
 
 A picture is as wide as its place. Everything across is in per cent of that and letters keep their size, so that they
-can be read on a telephone as well as on paper.
+can be read on a telephone as well as on paper. `standing_alone.py` gives one a width, as a file needs.
 """
 
 from __future__ import annotations
@@ -10,8 +10,6 @@ import math
 from collections.abc import Sequence
 from typing import TypeGuard
 from xml.etree.ElementTree import Element, SubElement, tostring
-
-from markupsafe import Markup
 
 from flexlash.report.layout.axes import Axis, axis_over
 from flexlash.schema.findings import readable, shown
@@ -43,6 +41,9 @@ _ACROSS, _BETWEEN = 36, 2
 """Letters for which there is room across a telephone, and between two numbers."""
 
 _FINEST = 1e-6
+_GAP = 0.8
+"""Per cent of the width between a line and its words."""
+
 _EDGE = 2.0
 """Per cent of the width that stay free at both ends of a scale."""
 
@@ -94,7 +95,7 @@ class Picture:
 
     def __init__(self, name: str, title: str, description: str, height: float) -> None:
         """Begin a picture: `name` makes its IDs, `title` and `description` stand for it where it cannot be seen."""
-        self.height = height
+        self.title = title
         self._root = Element(
             "svg", {"xmlns": "http://www.w3.org/2000/svg", "role": "img", "class": "picture", "width": "100%",
                     "height": _short(height), "aria-labelledby": f"{name}-title {name}-words"},
@@ -175,11 +176,12 @@ class Picture:
 
     def beside(self, x: float, y: float, words: str, colour: str) -> None:
         """Write words at a place [%], toward the side with more room."""
-        self.text(x, y, words, anchor="start" if x < 50 else "end", colour=colour)  # noqa: PLR2004
+        is_left = x < 50  # noqa: PLR2004
+        self.text(x + (_GAP if is_left else -_GAP), y, words, anchor="start" if is_left else "end", colour=colour)
 
-    def markup(self) -> Markup:
-        """Return the picture as HTML takes it."""
-        return Markup(tostring(self._root, encoding="unicode"))  # noqa: S704  # what was escaped as XML
+    def inline(self) -> str:
+        """Return the picture as HTML takes it, everything in it escaped as XML."""
+        return tostring(self._root, encoding="unicode")
 
 
 def _short(value: float) -> str:
