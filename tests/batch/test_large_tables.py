@@ -33,15 +33,17 @@ from flexlash.cli.recreation import recreate
 from flexlash.comparison.difference import difference
 from flexlash.comparison.difference_lines import difference_lines
 from flexlash.comparison.sides import side_of
+from flexlash.outputs.exports import ExportPlaces
 from flexlash.outputs.plan import Plan
 from flexlash.pipeline import check, run
 from flexlash.reading.limited_process import ProcessFaultError
 from flexlash.reading.products import Companions
 from flexlash.reading.reading_limits import ReadingLimits
+from flexlash.report.exports import exported_files
 from flexlash.report.page.page_facts import Found, page_facts
 from flexlash.report.report_data import report_data
 from flexlash.schema.exit_codes import ExitCode
-from flexlash.schema.stamps import stamp_at
+from flexlash.schema.stamps import stamp_at, stamped
 
 FEW = {"samples": 16, "method": "random"}
 """Options with which a row costs next to nothing."""
@@ -259,6 +261,30 @@ def test_a_report_of_the_worst_with_everything_beside(tmp_path, monkeypatch):
         assert f">{row['variant']}<" in text
     assert f">{worst_first(whole)[12]['variant']}<" not in text
     assert answer.told["counts"] == whole.counts
+
+
+def test_samples_and_pictures_are_those_of_the_worst(tmp_path, monkeypatch):
+    """They are those that the worst rows have when all are computed at once, whatever the chunks; words say so."""
+    path = _written(tmp_path / "gears.csv", _rows())
+    whole = run(path, **FEW)
+    for module in ("batch.chunk_computing", "batch.chunk_totals", "report.exports"):
+        monkeypatch.setattr(f"flexlash.{module}.DRAWN", 10)
+    known = {file.name: file.data for file in exported_files(whole, samples=True, pictures=True)}
+    for rows in (7, 40):
+        plain = _table(path, tmp_path / f"report-{rows}.parquet")
+        folders = {kind: tmp_path / f"{kind}-{rows}" for kind in ("samples", "pictures")}
+        for folder in folders.values():
+            folder.mkdir()
+        places = ExportPlaces(plan=plain.report.plan, folders=folders, stem="gears")
+        answer, written = large_table(replace(plain, exports=places), HereExecutor(), chunk_rows=rows)
+        found = {
+            one.name.removeprefix("gears"): one.read_bytes() for one in written.paths[1:] if one.parent != tmp_path
+        }
+        assert found == {name: stamped(data, ROLES[name[-3:]]) for name, data in known.items()}
+        assert any("the 10 worst of" in line for line in answer.details)
+
+
+ROLES = {"uet": "distribution", "svg": "picture", "png": "picture"}
 
 
 def test_a_report_of_the_worst_says_so_wherever_it_is_read(tmp_path, monkeypatch):

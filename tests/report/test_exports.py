@@ -26,9 +26,8 @@ def outcome(tmp_path_factory):
     """Return the outcome of three variants, two of which have names that no file can have, alike without them."""
     path = tmp_path_factory.mktemp("exports") / "gear.csv"
     keys = "variant,material,torque_Nm,cylinder_length_mm,mean_radius_mm,wall_thickness_mm,disk_inner_radius_mm"
-    rows = [
-        f'"{name}",34CrNiMo6,1000,160,80,{wall},40,4' for name, wall in (('C/12 "a"', 1.6), ("c:12 A", 1.7), ("$B$", 2))
-    ]
+    walls = {'C/12 ""a""': 1.6, "c:12 A": 1.7, "$B$": 2}
+    rows = [f'"{name}",34CrNiMo6,1000,160,80,{wall},40,4' for name, wall in walls.items()]
     path.write_text("\n".join([f"{keys},backlash_limit_arcmin", *rows]) + "\n", encoding="utf-8")
     found = run(path)
     assert len(found.computed) == 3, found.findings
