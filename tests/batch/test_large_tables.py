@@ -33,7 +33,7 @@ from flexlash.cli.recreation import recreate
 from flexlash.comparison.difference import difference
 from flexlash.comparison.difference_lines import difference_lines
 from flexlash.comparison.sides import side_of
-from flexlash.outputs.exports import ExportPlaces
+from flexlash.outputs.export_places import ExportPlaces
 from flexlash.outputs.plan import Plan
 from flexlash.pipeline import check, run
 from flexlash.reading.limited_process import ProcessFaultError
@@ -269,6 +269,7 @@ def test_samples_and_pictures_are_those_of_the_worst(tmp_path, monkeypatch):
     whole = run(path, **FEW)
     for module in ("batch.chunk_computing", "batch.chunk_totals", "report.exports"):
         monkeypatch.setattr(f"flexlash.{module}.DRAWN", 10)
+    monkeypatch.setattr("flexlash.report.exports._COMPARED", 10)
     known = {file.name: file.data for file in exported_files(whole, samples=True, pictures=True)}
     for rows in (7, 40):
         plain = _table(path, tmp_path / f"report-{rows}.parquet")
@@ -277,9 +278,8 @@ def test_samples_and_pictures_are_those_of_the_worst(tmp_path, monkeypatch):
             folder.mkdir()
         places = ExportPlaces(plan=plain.report.plan, folders=folders, stem="gears")
         answer, written = large_table(replace(plain, exports=places), HereExecutor(), chunk_rows=rows)
-        found = {
-            one.name.removeprefix("gears"): one.read_bytes() for one in written.paths[1:] if one.parent != tmp_path
-        }
+        exported = [one for one in written.paths if one.parent != tmp_path]
+        found = {one.name.removeprefix("gears"): one.read_bytes() for one in exported}
         assert found == {name: stamped(data, ROLES[name[-3:]]) for name, data in known.items()}
         assert any("the 10 worst of" in line for line in answer.details)
 

@@ -26,7 +26,7 @@ from flexlash.batch.chunk import (
 )
 from flexlash.batch.chunk_totals import Totals
 from flexlash.batch.executor import Executor
-from flexlash.outputs.exports import ExportPlaces
+from flexlash.outputs.export_places import ExportPlaces
 from flexlash.outputs.plan import Output, WrittenFile
 from flexlash.outputs.working_folder import Parts, WorkingFolder
 from flexlash.outputs.writing import Filling

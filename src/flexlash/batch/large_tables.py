@@ -32,7 +32,7 @@ from flexlash.batch.chunk import (
 from flexlash.batch.chunk_totals import Totals
 from flexlash.batch.executor import Executor, Work, WorkerLostError
 from flexlash.batch.large_outputs import LargeOutputs
-from flexlash.outputs.exports import ExportPlaces
+from flexlash.outputs.export_places import ExportPlaces
 from flexlash.outputs.plan import Output
 from flexlash.outputs.working_folder import Parts, WorkingFolder, working_folder
 from flexlash.reading.excerpt import excerpt

@@ -24,7 +24,7 @@ from flexlash.batch.executor import ClusterError, Executor, WorkerLostError
 from flexlash.batch.given_files import Given
 from flexlash.batch.manifest import Manifest
 from flexlash.outputs.delivery import with_file
-from flexlash.outputs.exports import ExportPlaces
+from flexlash.outputs.export_places import ExportPlaces
 from flexlash.outputs.plan import Output
 from flexlash.reading.gate import PARQUET, opened_file
 from flexlash.reading.products import Companions, digests_of

@@ -17,7 +17,7 @@ from flexlash.batch.given_files import GivenFiles
 from flexlash.batch.manifest import MANIFEST_NAME, Manifest, options_digest
 from flexlash.cli.submissions import Submissions
 from flexlash.cli.terminal import Bar, complain, named
-from flexlash.outputs.exports import ExportPlaces
+from flexlash.outputs.export_places import ExportPlaces
 from flexlash.outputs.plan import Output
 from flexlash.reading.read import Source
 from flexlash.reading.refusal import Refusal

@@ -14,7 +14,7 @@ from flexlash.analysis.options import TABLES, Options
 from flexlash.batch.given_files import GivenFiles, given_files
 from flexlash.cli.batches import Planned, carried_out, to_be_told
 from flexlash.cli.click_types import JSON, LIMITS, QUIET, RECURSIVE, SUBMISSIONS, VERBOSE, option, planned
-from flexlash.outputs.exports import export_folders, export_places
+from flexlash.outputs.export_places import export_folders, export_places
 from flexlash.outputs.naming import marked_outputs, report_outputs, summary_outputs
 from flexlash.outputs.plan import Plan
 

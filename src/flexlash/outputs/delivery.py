@@ -8,7 +8,7 @@ from pathlib import Path
 
 from flexlash.analysis.options import Options
 from flexlash.analysis.outcome import Outcome, Written
-from flexlash.outputs.exports import ExportPlaces, export_folders, export_places
+from flexlash.outputs.export_places import ExportPlaces, export_folders, export_places
 from flexlash.outputs.naming import WORKBOOK, named_output
 from flexlash.outputs.plan import Output, Plan
 from flexlash.reading.read import ReadReport, Source

@@ -37,14 +37,15 @@ _TOLD = {"mean": "mean", "P2.5": "p2_5", "P50": "p50", "P97.5": "p97_5", "P99.86
 """Statistics beside a metalog, by the names that the standard has for them."""
 
 
-def distribution_bytes(outcome: Outcome, ending: str, count: int) -> bytes:
+def distribution_bytes(outcome: Outcome, ending: str, count: int, first: int | None = None) -> bytes:
     """Return the distributions of all variants in the form that an ending names, numbers with every digit.
 
-    .parquet has so many random units of each variant, .csv percentiles from 3e-7 to 1 − 3e-7, .json a SIPmath library.
+    .parquet has so many random units of each variant, or the `first` of these, .csv percentiles from 3e-7 to 1 − 3e-7,
+    .json a SIPmath library.
     """
     if ending == ".parquet":
         buffer = io.BytesIO()
-        unit_table(outcome, count).write_parquet(buffer, metadata={"flexlash": placeholder(ROLE)})
+        unit_table(outcome, count, first).write_parquet(buffer, metadata={"flexlash": placeholder(ROLE)})
         return buffer.getvalue()
     if ending == ".csv":
         return csv_text(percentile_table(outcome)).encode()
@@ -52,12 +53,14 @@ def distribution_bytes(outcome: Outcome, ending: str, count: int) -> bytes:
     return (json.dumps(content, ensure_ascii=False, indent=1) + "\n").encode()
 
 
-def unit_table(outcome: Outcome, count: int) -> pl.DataFrame:
+def unit_table(outcome: Outcome, count: int, first: int | None = None) -> pl.DataFrame:
     """Return random units of each variant, in submitted order: its name, the unit's number, sizes, backlash.
+
+    Which units these are depends on their `count`, not on how many of the `first` are kept.
 
     Columns are those of the template by key and `backlash_arcmin`, in their units; blank what does not scatter.
     """
-    pieces = [_units(variant, outcome, count) for variant in _computed(outcome)]
+    pieces = [_units(variant, outcome, count).head(first or count) for variant in _computed(outcome)]
     columns = {column.dimension: column.key for column in DIMENSIONS.values()} | {BACKLASH: "backlash_arcmin"}
     used = [key for key in columns.values() if any(key in piece.columns for piece in pieces)]
     return pl.concat(pieces, how="diagonal").select(*UNITS_TABLE, *used)

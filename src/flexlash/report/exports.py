@@ -75,7 +75,7 @@ def _samples(outcome: Outcome, worst: pl.DataFrame) -> ExportedFile:
 
     rows = set(worst.head(DRAWN)[ROW])
     kept = {row: variant for row, variant in outcome.computed.items() if row in rows}
-    data = distribution_bytes(replace(outcome, computed=kept), ".parquet", _units_each(len(kept)))
+    data = distribution_bytes(replace(outcome, computed=kept), ".parquet", UNITS, _units_each(len(kept)))
     return ExportedFile(kind="samples", name="-samples.parquet", data=data, role=ROLE)
 
 
