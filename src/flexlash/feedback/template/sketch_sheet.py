@@ -81,7 +81,7 @@ def write_sketch(workbook: Any, sheet: Any, lists: Any, formats: Mapping[str, An
     sheet.freeze_panes(1, 0)
     sheet.set_landscape()
     sheet.set_paper(9)
-    sheet.fit_to_pages(1, 1)
+    sheet.fit_to_pages(1, 0)
     sheet.set_margins(0.4, 0.4, 0.5, 0.6)
     sheet.set_footer("&L&A&C&P / &N&Rflexlash template")
     sheet.protect("", {"format_columns": True, "objects": True})
