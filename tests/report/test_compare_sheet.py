@@ -107,14 +107,14 @@ def test_a_single_variant_has_its_box(table, sound, tmp_path):
 
 
 def test_charts_are_described(study):
-    """Both charts have an alternative text that names the worst variant or the order."""
+    """Both charts have an alternative text that tells the worst variants in numbers."""
     with zipfile.ZipFile(study[1]) as archive:
         drawings = "".join(archive.read(one).decode() for one in archive.namelist() if "drawings/drawing" in one)
     described = re.findall(r'descr="(Boxes [^"]+)"', drawings)
-    assert described == [
-        "Boxes of the backlash of 11 variants, worst first, with their limits; the worst is B3-160 case 5",
-        "Boxes of the backlash of 11 variants less the median of each, in the same order",
-    ]
+    assert len(described) == 2
+    assert "11 variants, worst first, with their limits: B3-160 case 5 from " in described[0]
+    assert "less the median of each, in the same order: B3-160 case 5 " in described[1]
+    assert all("; and 8 more" in text for text in described)
 
 
 def _alone(outcome, path):

@@ -62,14 +62,22 @@ def _drawn(sheet: str, xml: bytes) -> Iterator[Drawing]:
 
 
 def charts_of(path: Path) -> Iterator[tuple[str, list[Series]]]:
-    """Yield title and seen series of each chart of a workbook."""
+    """Yield title and seen series of each chart of a workbook; one without axes is a sketch, and left out."""
     with zipfile.ZipFile(path) as archive:
         for name in archive.namelist():
             if name.startswith("xl/charts/chart"):
                 root = ElementTree.fromstring(archive.read(name))  # noqa: S314
+                axes = [one for kind in ("valAx", "catAx", "dateAx") for one in root.iter(f"{_C}{kind}")]
+                if all(_is_deleted(axis) for axis in axes):
+                    continue
                 title = root.find(f"{_C}chart/{_C}title")
                 words = "" if title is None else "".join(one.text or "" for one in title.iter(f"{_A}t"))
                 yield words, [one for series in root.iter(f"{_C}ser") if (one := _series(series)).colours]
+
+
+def _is_deleted(axis: ElementTree.Element) -> bool:
+    deleted = axis.find(f"{_C}delete")
+    return deleted is not None and deleted.attrib.get("val", "1") == "1"
 
 
 def _series(element: ElementTree.Element) -> Series:

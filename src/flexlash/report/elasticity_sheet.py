@@ -112,7 +112,7 @@ def write_stress(book: Book, data: ReportData) -> None:
         title = shown(name, longest=_NAME)
         sheet.write_string(row - 1, column, title, book.format("label"))
         image = io.BytesIO(section_png(check, greatest))
-        described = f"Half-section of {title}, coloured by shear stress"
+        described = f"Half-section of {title}, coloured by shear stress up to {greatest / 1e6:.3g} MPa"
         options = {"image_data": image, "description": described, "object_position": 2}
         sheet.insert_image(row, column, f"half-section-{number + 1}.png", options)
     pages = -(-len(data.pictured) // _PER_ROW)

@@ -8,6 +8,7 @@ from typing import Any
 from flexlash.report.extent import Extent
 from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
 from flexlash.report.report_data import Drawn
+from flexlash.report.wording.chart_words import largest_of
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.schema.units import ARCMIN
 
@@ -73,7 +74,7 @@ def write_sections(book: Book, drawn: Sequence[Drawn], extent: Extent) -> None:
         for column, (key, _, number) in enumerate(_BESIDE, start=1 + len(_SEGMENTS)):
             sheet.write_number(row, column, variant.row[key], book.format("text", number))
     if drawn:
-        _draw(book, sheet, header, min(len(drawn), _CHARTED))
+        _draw(book, sheet, header, drawn[:_CHARTED], labels)
     sheet.freeze_panes(0, 1)
     sheet.repeat_rows(header)
     sheet.set_print_scale(_SIZES[few])
@@ -81,9 +82,10 @@ def write_sections(book: Book, drawn: Sequence[Drawn], extent: Extent) -> None:
         sheet.set_h_pagebreaks([header])
 
 
-def _draw(book: Book, sheet: Any, header: int, count: int) -> None:
+def _draw(book: Book, sheet: Any, header: int, drawn: Sequence[Drawn], labels: Sequence[str]) -> None:
     """Draw the segments of the worst variants as stacked bars."""
     chart = book.chart("bar", "Backlash by segment, worst variants first [arcmin]", subtype="stacked")
+    count = len(drawn)
     last = header + count
     for column, (_, name, colour) in enumerate(_SEGMENTS, start=1):
         chart.add_series({
@@ -96,5 +98,8 @@ def _draw(book: Book, sheet: Any, header: int, count: int) -> None:
         })  # fmt: skip
     chart.set_y_axis({"reverse": True, "interval_unit": 1, "num_font": {"size": 9}})
     chart.set_x_axis({"num_format": "0.0", "major_gridlines": GRID})
+    angles = ((name, getattr(drawn[0].computed.nominal, f"{key}_windup")) for key, name, _ in _SEGMENTS)
+    own = {name: 2 * angle / ARCMIN for name, angle in angles if isinstance(angle, float)}
+    text = f"Nominal backlash of {count} variants by segment, worst first; {labels[0]}: {largest_of(own)}"
     size = (_CHART_WIDTH, _ROW_HEIGHT * _CHART_ROWS[count <= _FEW] - _ROW_HEIGHT // 2)
-    book.insert(sheet, _CHART_TOP, 0, chart, size=size, text="Backlash of each segment of the worst variants")
+    book.insert(sheet, _CHART_TOP, 0, chart, size=size, text=text)

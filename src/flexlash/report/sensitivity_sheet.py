@@ -12,6 +12,7 @@ from flexlash.report.layout.result_formats import SHARE_OF_VARIANCE_ERROR
 from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book, percent_of
 from flexlash.report.report_data import Drawn
 from flexlash.report.results_sheet import SHARE_DECIMALS
+from flexlash.report.wording.chart_words import largest_of
 from flexlash.report.wording.correlation_words import shared_out
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.entry_words import dimension_words
@@ -77,8 +78,15 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn, width: int) -> None:
         sheet.write_number(row, 3, spread.shares[dimension], share)
         sheet.write_number(row, 4, spread.total_shares[dimension], share)
     chart = _tornado(book, name, 3 + len(swings), sum(swings[0][1]) / 2 / ARCMIN)
-    size, text = (width, _CHART_HEIGHT), f"Tornado chart of the worst variant, {name}"
+    size, text = (width, _CHART_HEIGHT), _tornado_words(name, spread)
     book.insert(sheet, 3, _CHART_PLACE, chart, size=size, text=text)
+
+
+def _tornado_words(name: str, spread: SpreadStatistics) -> str:
+    """Return the alternative text of the tornado."""
+    widths = {dimension_words(key): abs(high - low) / ARCMIN for key, (low, high) in spread.swings.items()}
+    moved = f"between its limits a dimension moves the backlash by {largest_of(widths)}"
+    return f"Tornado of the worst variant, {name}: {moved}"
 
 
 def _tornado(book: Book, name: str, last: int, middle: float) -> Any:

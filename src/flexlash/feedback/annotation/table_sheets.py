@@ -35,7 +35,7 @@ def table_workbook(sheets: Mapping[str, RawSheet]) -> bytes:
     """Return a workbook with the cells of tables at their own addresses."""
     buffer = io.BytesIO()
     workbook = xlsxwriter.Workbook(buffer, {"in_memory": True})
-    workbook.set_properties({"author": "flexlash", "created": _DATE})
+    workbook.set_properties({"title": "flexlash marked copy", "author": "flexlash", "created": _DATE})
     formats = {kind: workbook.add_format({"num_format": shown}) for kind, shown in _SHOWN.items()}
     for title, raw in sheets.items():
         sheet = workbook.add_worksheet(title)

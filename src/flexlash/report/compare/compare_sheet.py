@@ -13,7 +13,7 @@ from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.report_data import Drawn
-from flexlash.schema.findings import shown
+from flexlash.report.wording.chart_words import limits_over, medians_of, spans_of
 
 __all__ = ["BOXES", "write_compare"]
 
@@ -28,7 +28,6 @@ _ROWS = 19
 """Row, from 0, of the first chart; rows that each takes."""
 
 _LAST_COLUMN = 17
-_NAME = 30
 _LABELS = ((12, -45, 9), (BOXES, -90, 9))
 """Up to how many variants the names are turned so far and so large."""
 
@@ -64,10 +63,11 @@ def write_compare(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
         sheet.write_string(row, 0, note, book.format("quiet"))
     for column, target, text in _LINKS:
         sheet.write_url(3, column, f"internal:{target}!A1", book.format("link"), text)
-    worst = shown(drawn[0].row["variant"], longest=_NAME)
-    text = f"Boxes of the backlash of {count} variants, worst first, with their limits; the worst is {worst}"
+    text = f"Boxes of the backlash of {count} variants, worst first, with their limits: "
+    text += f"{spans_of(drawn[:count])}. {limits_over(drawn[:count])}"
     book.insert(sheet, _TOP, 0, _boxes(book, compared, count), size=(_WIDTH, _HEIGHT), text=text)
-    text = f"Boxes of the backlash of {count} variants less the median of each, in the same order"
+    text = f"Boxes of the backlash of {count} variants less the median of each, in the same order: "
+    text += medians_of(drawn[:count])
     book.insert(sheet, _TOP + _ROWS, 0, _widths(book, compared, count), size=(_WIDTH, _HEIGHT), text=text)
 
 

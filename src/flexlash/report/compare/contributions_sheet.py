@@ -21,6 +21,7 @@ from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.report_data import Drawn
+from flexlash.report.wording.chart_words import named_shares
 from flexlash.report.wording.correlation_words import shared_out
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.schema.entry_words import dimension_words
@@ -80,6 +81,7 @@ def write_contributions(book: Book, outcome: Outcome, drawn: Sequence[Drawn], co
         height = width // 3
         chart = _disk_shares(book, compared, width / _PAGE)
         text = "Disk share of the wind-up of each cup and hat against its cylinder length over its mean radius"
+        text += f": {named_shares(drawn, 'disk_share')}"
         book.insert(sheet, row + 1, 0, chart, size=(6 * width // 10, height), text=text)
         row += height // _ROW_HEIGHT + 2
     sheet.print_area(0, 0, row, len(widths) - 1)

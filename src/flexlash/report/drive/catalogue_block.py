@@ -59,7 +59,8 @@ def write_catalogue(page: DrivePage, top: int, ratio: float | None) -> int:
     short = IF(listed.reaches, "", "◄ the catalogue lists no third slope: shown up to T2")
     said = IF(listed.is_found, short, "◄ no drive of such a size is listed")
     put(sheet, begin + len(_POINTS) - 1, _OWN + 1, said, book.format("hint"))
-    text = "How far the catalogue's whole drive and the flexspline alone turn over the torque, to one side"
+    text = "How far the catalogue's whole drive and the flexspline alone turn over the torque, to one side; "
+    text += f"of the variant picked when the report was written up to {listed.torque.value:.4g} N·m"
     book.insert(sheet, top + 1, BESIDE, _chart(book, begin), size=_CHART, text=text)
     return max(begin + len(_POINTS), top + 1 + _CHART_ROWS)
 

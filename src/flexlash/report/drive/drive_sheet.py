@@ -66,7 +66,10 @@ def write_drive(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> Stored 
     chain = write_sources(page, list(zip(sources, budget.plays, strict=True)))
     top = chain.last_row + 3
     below = page.notes(write_combinations(page, top, chain), *DRIVE_NOTES)
-    text = "What wind-up and each source have of the average, the variance and the worst case, as stacked bars"
+    text = "What wind-up and each source have of the average, the variance and the worst case, as stacked bars; "
+    text += (
+        f"wind-up beside {len(sources)} sources: {', '.join(shown(source.name, longest=30) for source in sources[:8])}"
+    )
     shares = _contributions(book, chain, [WINDUP, *(source.name for source in sources)])
     book.insert(sheet, top, BESIDE, shares, size=_CHART, text=text)
     after = write_catalogue(page, max(below, top + _CHART_ROWS) + 1, drive_ratio(sources))

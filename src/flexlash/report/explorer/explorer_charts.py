@@ -10,6 +10,8 @@ from flexlash.report.explorer.explorer_working import COLUMN, CURVE_ROW, Working
 from flexlash.report.formula.functions import AND, CONCATENATE, FIXED, IF, INT, LOG10, MAX, MIN
 from flexlash.report.formula.live import Live, live, put
 from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
+from flexlash.report.wording.chart_words import largest_of
+from flexlash.schema.findings import shown
 from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS
 
 __all__ = ["write_charts"]
@@ -26,16 +28,24 @@ _FIRST_CHART, _CHART_ROWS = 19, 21
 _COLOURS = ("ink", "grey", "blue", "sky", "orange", "red")
 _WIDTHS, _HEIGHT = (560, 440), 410
 _RIGHT = 3
+_NAME = 40
 
 
 def write_charts(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:
     """Write the cells behind the four charts, and draw them."""
     _write_notes(book, sheet, choice, working, limit)
+    name = shown(str(choice.name.value), longest=_NAME)
+    when = f"picked variant (when the report was written, {name}"
+    at = f"the limit{f' {limit.value:.4g}′' if isinstance(limit.value, float) else ', of which there is none'}"
+    segments = {segment: choice.angle(segment).value for segment in SEGMENTS.values()}
+    median = choice.angle("P50").value
+    middle = f", median {median:.4g}′" if isinstance(median, float) else ""
+    arise = largest_of({segment: value for segment, value in segments.items() if isinstance(value, float)})
     charts = (
-        (_density(book, sheet, choice, limit), "Histogram of the picked variant, the part over the limit in red"),
-        (_cumulative(book, sheet, working, limit), "Cumulative curve of the picked variant with the limit"),
-        (_tornado(book, sheet, choice), "Tornado of the picked variant: what each dimension does between its limits"),
-        (_segments(book, sheet, choice), "Backlash of each segment of the picked variant"),
+        (_density(book, sheet, choice, limit), f"Histogram of the {when}): units within and over {at}"),
+        (_cumulative(book, sheet, working, limit), f"Share of units below each backlash of the {when}), with {at}"),
+        (_tornado(book, sheet, choice), f"Tornado of the {when}{middle}): what each dimension does between its limits"),
+        (_segments(book, sheet, choice), f"Nominal backlash by segment of the {when}: {arise})"),
     )
     for number, (chart, text) in enumerate(charts):
         row, right = _FIRST_CHART + number // 2 * _CHART_ROWS, number % 2

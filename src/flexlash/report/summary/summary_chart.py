@@ -11,6 +11,7 @@ from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
 from flexlash.report.report_data import Drawn
+from flexlash.report.wording.chart_words import limits_over, spans_of
 from flexlash.report.wording.verdict import firm, verdict_word
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.number_words import grouped
@@ -65,9 +66,11 @@ def chart_title(shown: int, total: int) -> str:
 
 def chart_words(drawn: Sequence[Drawn]) -> str:
     """Return the alternative text of the chart."""
+    charted = drawn[:CHARTED]
     return (
-        f"For {min(len(drawn), CHARTED)} variants, worst first: a bar from the backlash that 2.5 % of units stay "
-        "below to that which 97.5 % stay below, the median as a diamond, the limit as a dash. Bars of variants that "
+        f"Backlash of {len(charted)} variants, worst first: {spans_of(charted)}. {limits_over(charted)} "
+        "A bar goes from the backlash that 2.5 % of units stay below to that which 97.5 % stay below, the median as "
+        "a diamond, the limit as a dash. Bars of variants that "
         "fail are dark orange, of marginal ones orange, of others blue."
     )
 

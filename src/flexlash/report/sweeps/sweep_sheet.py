@@ -14,6 +14,7 @@ from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of, merged_width
 from flexlash.report.sweeps.point_table import LAST_COLUMN, SHARE, STRESS, VALUE_WIDTH, WIDTH, write_points
 from flexlash.report.sweeps.sweep_charts import backlash_chart, share_chart
 from flexlash.report.sweeps.two_way_table import write_two_way
+from flexlash.report.wording.chart_words import ends_of
 from flexlash.report.wording.sweep_words import study_sentences, study_title
 from flexlash.schema.limit_verdict import VerdictBounds
 
@@ -91,10 +92,12 @@ class _Blocks:
         """Put the charts of a study, whose points stand in these rows, side by side."""
         title = study_title(study)
         chart = backlash_chart(self.book, study, number, self.stored)
-        text = f"{title}: band of 95 % of units, P50, nominal, limit and crossings"
+        text = f"{title}: band of 95 % of units, P50, nominal, limit and crossings; "
+        text += f"the nominal backlash goes {ends_of(study.results['backlash_arcmin'].to_list())}"
         self.book.insert(self.sheet, row, 0, chart, size=(_WIDTHS[0], _HEIGHT), text=text)
         chart = share_chart(self.book, study, rows, (SHARE, STRESS))
-        text = f"{title}: share of the disk in the backlash, and von Mises stress"
+        text = f"{title}: share of the disk in the backlash, and von Mises stress; "
+        text += f"the stress goes {ends_of(study.results['von_mises_MPa'].to_list(), ' MPa')}"
         self.book.insert(self.sheet, row, _SHARE_COLUMN, chart, size=(_WIDTHS[1], _HEIGHT), text=text)
 
     def _write_across(self, row: int, text: str, look: str) -> None:

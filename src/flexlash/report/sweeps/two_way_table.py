@@ -100,7 +100,7 @@ class _Table:
         if len(self.firsts) == 1 or not numbers:
             return row
         title, first, second = level_title(self.level), swept_title(self.study.first.key), swept_title(self.second)
-        text = f"{title} over {first}, a line for each {second}"
+        text = f"{title} over {first}, a line for each {second}: between {min(numbers):.4g} and {max(numbers):.4g}′"
         self.book.insert(self.sheet, row + 1, 0, self._chart(numbers), size=(_WIDTH, _HEIGHT), text=text)
         return row + 1 + _CHART_ROWS
 

@@ -11,6 +11,7 @@ from flexlash.decisions.trade_offs import TradeOff
 from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, LINES, PALETTE, Book
 from flexlash.report.report_data import Drawn
+from flexlash.report.wording.chart_words import largest_of
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.number_words import angle_words
@@ -84,7 +85,10 @@ class SpiderBlock:
         self.sheet.merge_range(self.top, 0, self.top, last_column, title, self.book.format("section"))
         self._write_points()
         self._write_tolerances()
-        text = f"Change of the backlash of {self.label} over the change of each dimension, with its limit"
+        last = ((line_words(line), line.backlash[-1]) for line in self.lines)
+        ends = {words: part for words, part in last if part is not None}
+        text = f"Change of the backlash of {self.label} over the change of each dimension, with its limit: "
+        text += f"at {100 * SPIDER_CHANGES[-1]:g} % more of it {largest_of(ends, per_cent=True)}"
         self.book.insert(self.sheet, self.top + 1, 0, self._chart(), size=_SIZE, text=text)
 
     @property
