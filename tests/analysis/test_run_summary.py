@@ -172,10 +172,10 @@ def test_a_check_says_nothing_of_the_spread(table, sound):
             "x.csv",
             [
                 "2 of 3 rows ready; 2 cells to fix.",
-                "mend that and check again, or compute the 2 rows: flexlash run x.csv",
+                "fix that and check again, or compute the 2 rows: flexlash run x.csv",
             ],
         ),
-        ([{"torque_Nm": ""}], "x.csv", ["0 of 1 rows ready; 1 cell to fix.", "mend that, then: flexlash check x.csv"]),
+        ([{"torque_Nm": ""}], "x.csv", ["0 of 1 rows ready; 1 cell to fix.", "fix that, then: flexlash check x.csv"]),
         ([{"torque_Nm": 12000}], "x.csv", ["1 of 1 rows ready; 1 warning.", "flexlash run x.csv"]),
     ],
 )
@@ -192,7 +192,7 @@ def test_an_unreadable_file_is_one_problem(tmp_path):
     path.write_bytes(b"PK\x03\x04half")
     assert list(summary_lines(check(path), "a.xlsx", ran=False)) == [
         "a.xlsx: nothing to compute; 1 problem of the file to fix.",
-        "Next: mend that, then: flexlash check a.xlsx",
+        "Next: fix that, then: flexlash check a.xlsx",
     ]
 
 
@@ -227,8 +227,8 @@ def test_groups_have_their_count_and_their_mends():
         "    message D1",
         "    message F1",
         "    message E1",
-        "    Mend: Write a.",
-        "    Mend: Write b.",
+        "    Fix: Write a.",
+        "    Fix: Write b.",
     ]
 
 

@@ -264,7 +264,10 @@ def test_a_scheduler_can_be_opened_again():
 
 def test_an_address_without_a_scheduler_is_told():
     """Where no scheduler answers the sentence says so; what is no address is told apart."""
-    with pytest.raises(ValueError, match=r"localhost is no address .* tcp://HOST:PORT"), dask_executor("localhost"):
+    with (
+        pytest.raises(ValueError, match=r"localhost is not the address .* tcp://HOST:PORT"),
+        dask_executor("localhost"),
+    ):
         pass
 
 

@@ -75,7 +75,7 @@ def test_every_submission_has_a_line(ended):
     assert told["a.xlsx"]["Worst variant"].data_type == "s"
     assert told["a.xlsx"]["Report"].hyperlink.target == "a-report.xlsx"
     assert told["sub/b #1 50%.xlsx"]["Report"].hyperlink.target == r"sub\b%20%231%2050%25-report.xlsx"
-    assert "stopped the program" in told["c.xlsx"]["Why not, or not all"].value
+    assert "stopped the program" in told["c.xlsx"]["Reason"].value
     assert told["e.xlsx"]["State"].value == "a file could not be opened or written"
     assert told["e.xlsx"]["Report"].value is None
 

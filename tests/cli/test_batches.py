@@ -229,13 +229,13 @@ def test_resume_computes_what_is_not_done(folder, monkeypatch):
 @pytest.mark.usefixtures("folder")
 def test_resume_skips_a_mended_file_whose_original_came_later():
     """What is skipped beside its original is so on --resume, although it was computed while it stood alone."""
-    Path("in/d.csv").rename("in/b-mended.csv")
+    Path("in/d.csv").rename("in/b-autofixed.csv")
     Path("in/b.csv").rename("b.csv")
-    assert "in/b-mended.csv: 1 of 1 rows computed" in _call(*RUN).stdout
+    assert "in/b-autofixed.csv: 1 of 1 rows computed" in _call(*RUN).stdout
     Path("b.csv").rename("in/b.csv")
     resumed = _call(*RUN, "--resume")
-    assert "1 file, mended file skipped: in/b-mended.csv" in resumed.stderr
-    assert "b-mended-report" not in resumed.stdout
+    assert "1 file, fixed file skipped: in/b-autofixed.csv" in resumed.stderr
+    assert "b-autofixed-report" not in resumed.stdout
     assert resumed.stdout == _call(*RUN).stdout
 
 

@@ -85,9 +85,9 @@ def test_check_prints_findings_and_the_next_command(table, sound, capsys, main_i
     assert lines == [
         "error E202 text instead of a number, 1 cell: Variants!G3",
         '    Variants!G3 Wall thickness Δ = "1,6": a length in mm above 0 is required; did you mean 1.6?',
-        "    Mend: Type the number alone, without unit, with the decimal sign that your program uses.",
+        "    Fix: Type the number alone, without unit, with the decimal sign that your program uses.",
         f"{path}: 1 of 2 rows ready; 1 cell to fix.",
-        f"Next: mend that and check again, or compute the 1 row: flexlash run {path}",
+        f"Next: fix that and check again, or compute the 1 row: flexlash run {path}",
     ]
 
 
@@ -392,7 +392,7 @@ def test_template_upgrade_refuses_in_words(tmp_path, capsys, main_in, content, c
     assert main_in("template", "--upgrade", old, "-o", tmp_path / "new.xlsx") == code
     said = capsys.readouterr().err
     assert words in said
-    assert code == 5 or said.splitlines()[-1].startswith("Mend: ")
+    assert code == 5 or said.splitlines()[-1].startswith("Fix: ")
     assert not (tmp_path / "new.xlsx").exists()
 
 
@@ -471,7 +471,7 @@ def test_explain_prints_meaning_and_mend():
     """Explain takes a code in any case and prints what it means; without a code it lists them."""
     out = CliRunner().invoke(cli, ["explain", "e303"]).stdout
     assert out.startswith("E303 error: hub outside the disk\n")
-    assert "Mend: Check for a diameter" in out
+    assert "Fix: Check for a diameter" in out
     assert CliRunner().invoke(cli, ["explain", " 303"]).stdout == out
     for unknown in ("999", "30", "E", ""):
         assert CliRunner().invoke(cli, ["explain", unknown]).exit_code == 2
@@ -568,6 +568,6 @@ def test_the_next_command_names_the_mended_file(table, sound, tmp_path, main_in,
     path = table([{**sound, "wall_thickness_mm": "1,6 mm"}])
     assert main_in("check", path, "--apply-fixes", "-o", tmp_path / "new.csv") == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == "1 cell mended:"
+    assert lines[0] == "1 cell fixed:"
     assert lines[-1] == f"Next: flexlash run {tmp_path / 'new.csv'}"
     assert f"{tmp_path / 'new.csv'}: 1 of 1 rows ready." in lines

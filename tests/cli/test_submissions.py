@@ -212,13 +212,13 @@ def test_the_other_commands_take_such_names_too(table, sound, tmp_path):
     odd.write_bytes(table([{**sound, "wall_thickness_mm": "1,6 mm"}]).read_bytes())
     done = _flexlash("check", odd, "--annotate", "--apply-fixes")
     assert (done.returncode, done.stderr) == (0, b"")
-    fixed = tmp_path / os.fsdecode(b"caf\xe9-mended.csv")
+    fixed = tmp_path / os.fsdecode(b"caf\xe9-autofixed.csv")
     assert fixed.exists()
     assert _flexlash("check", odd, "--annotate").returncode == 4
     assert (tmp_path / os.fsdecode(b"caf\xe9-checked.xlsx")).exists()
     assert _flexlash("template", "--upgrade", odd).returncode == 0
     assert _flexlash("run", fixed, "--samples", 64).returncode == 0
-    again = _flexlash("run", "--from-report", tmp_path / os.fsdecode(b"caf\xe9-mended-report.xlsx"))
+    again = _flexlash("run", "--from-report", tmp_path / os.fsdecode(b"caf\xe9-autofixed-report.xlsx"))
     assert (again.returncode, again.stderr) == (0, b"")
     assert _flexlash("diff", fixed, odd).returncode == 0
     missing = _flexlash("diff", fixed, tmp_path / os.fsdecode(b"\xff.csv"), "--json")

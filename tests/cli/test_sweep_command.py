@@ -128,19 +128,19 @@ def test_the_sheet_says_what_is_swept(submission, tmp_path):
     assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "b.xlsx").read_bytes()
     complaint = _complaint(submission)
     assert (
-        complaint == "Error: Nothing is swept: its sheet Sweep has no row; say what to sweep: --vary KEY=FROM:TO:STEP."
+        complaint == "Error: Nothing to sweep: its sheet Sweep has no row; say what to sweep: --vary KEY=FROM:TO:STEP."
     )
 
 
 COMPLAINTS = {
     ("cylinder_lenth=1:2:1",): "there is no dimension cylinder_lenth; did you mean cylinder_length_mm?",
-    ("backlash_limit=1:2:1",): "backlash_limit_arcmin is no dimension of the part, so that it cannot be swept.",
+    ("backlash_limit=1:2:1",): "backlash_limit_arcmin is not a dimension of the part, so it cannot be swept.",
     ("torque=1:2",): "write KEY=FROM:TO:STEP, such as cylinder_length_mm=100:200:20, or KEY=V1,V2,…",
     ("torque",): "write KEY=FROM:TO:STEP, such as cylinder_length_mm=100:200:20, or KEY=V1,V2,…",
     ("torque=1:9:0",): "the step must be greater than 0, not 0; to count down write the greater value first.",
-    ("torque=1:2:5",): "the step 5 is greater than the way of 1.",
-    ("torque=1,5:2:1",): '"1,5" is no number; decimals have a point.',
-    ("torque=1,nan",): '"nan" is no number.',
+    ("torque=1:2:5",): "the step 5 is greater than the range of 1.",
+    ("torque=1,5:2:1",): '"1,5" is not a number; decimals have a point.',
+    ("torque=1,nan",): '"nan" is not a number.',
     ("torque=0:1:0.0001",): "that is 10,001 values; at most 2,000 are computed at once. Take a larger step.",
     ("torque=1,2", "torque_Nm=3"): "torque_Nm is swept twice; name two dimensions.",
     ("torque=1", "cylinder_length=1", "wall_thickness=1"): "one or two dimensions can be swept together, not 3.",
@@ -159,13 +159,13 @@ def test_what_cannot_be_meant_is_a_usage_error(tmp_path):
 def test_what_no_variant_can_be_swept_over(submission):
     """An unknown variant is told with the nearest, a dimension that it lacks with the rule; so are too many points."""
     assert _complaint(submission, "--variant", "B3-160 case 33", "--vary", "torque=1,2") == (
-        f"Error: Nothing is swept: there is no variant B3-160 case 33; did you mean {THIRD}?"
+        f"Error: Nothing to sweep: there is no variant B3-160 case 33; did you mean {THIRD}?"
     )
     assert _complaint(submission, "--variant", "B3-160 cylinder", "--vary", "disk_thickness=1,2").startswith(
-        "Error: Nothing is swept: no value makes a part: B3-160 cylinder: "
+        "Error: Nothing to sweep: no value makes a part: B3-160 cylinder: "
     )
     assert _complaint(submission, "--vary", "torque=1:1000:1") == (
-        "Error: Nothing is swept: that is 3,000 points of 3 variants; at most 2,000 are computed at once. Take larger "
+        "Error: Nothing to sweep: that is 3,000 points of 3 variants; at most 2,000 are computed at once. Take larger "
         "steps, or name one with --variant."
     )
     assert _complaint(submission, "--variant", THIRD).startswith("Error: --variant needs --vary")

@@ -117,7 +117,7 @@ def test_notes_say_code_message_and_mend():
     found = notes(_marked())
     text, author = found["Data", "B2"]
     assert text.startswith("JM: measured twice\n\n")
-    assert "Error E202: Data!B2 is too large.\nMend: Make it smaller." in text
+    assert "Error E202: Data!B2 is too large.\nFix: Make it smaller." in text
     assert author == "JM"
     assert "Warning W401" in found["Data", "B3"][0]
     assert found["Data", "B3"][1] == "flexlash"

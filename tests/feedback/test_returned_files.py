@@ -195,8 +195,8 @@ def test_json_lists_the_fixes(workbook, sound, tmp_path, capsys):
     assert answer["fixes"] == [
         {"sheet": "Variants", "cell": "H5", "found": "1,6", "value": 1.6, "code": "E202"},
     ]
-    assert answer["outputs"] == [str(tmp_path / "submission-mended.xlsx")]
-    assert check(tmp_path / "submission-mended.xlsx").exit_code == 0
+    assert answer["outputs"] == [str(tmp_path / "submission-autofixed.xlsx")]
+    assert check(tmp_path / "submission-autofixed.xlsx").exit_code == 0
 
 
 def test_work_saved_in_a_marked_copy_is_never_overwritten(workbook, sound, tmp_path):

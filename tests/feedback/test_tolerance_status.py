@@ -64,7 +64,7 @@ TOLERANCE_ROWS = [
     ({"distribution": "Triangular ", "mean_shift": 0.1}, _NO_PROCESS),
     ({"distribution": "uniform", "sample": "lot 12"}, _NO_PROCESS),
     ({"distribution": "uniform", "limits_sigma": 3.0}, "complete"),
-    ({"lower_deviation": 0.02, "cp": 1.0}, "both deviations are alike: no process scatters between them"),
+    ({"lower_deviation": 0.02, "cp": 1.0}, "both deviations are equal: no process scatters between them"),
     ({"sample": "lot 12", "mean_shift": 0.001}, "a sample has its own mean: no mean shift, no Cpk"),
     ({"sample": "lot 12", "cpk": 1.0}, "Cpk without Cp"),
     ({"distribution": "truncated normal", "mean_shift": 0.001}, "complete"),

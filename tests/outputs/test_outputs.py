@@ -77,34 +77,34 @@ def _worked_in(path):
 # What outputs are called
 
 PLANS = {
-    "beside the submission": (["a.xlsx"], None, ["a-report.xlsx"], ["a-mended.xlsx"], ["a-checked.xlsx"]),
+    "beside the submission": (["a.xlsx"], None, ["a-report.xlsx"], ["a-autofixed.xlsx"], ["a-checked.xlsx"]),
     "into a folder": (
         ["a.xlsx", "b.csv"],
         "out",
         ["out/a-report.xlsx", "out/b-report.xlsx"],
-        ["out/a-mended.xlsx", "out/b-mended.csv"],
+        ["out/a-autofixed.xlsx", "out/b-autofixed.csv"],
         ["out/a-checked.xlsx", "out/b-checked.xlsx"],
     ),
     "equal names": (
         ["a.xlsx", "in/a.xlsx", "in/a.csv"],
         "out",
         ["out/a-report.xlsx", "out/a-report (2).xlsx", "out/a-report (3).xlsx"],
-        ["out/a-mended.xlsx", "out/a-mended (2).xlsx", "out/a-mended.csv"],
+        ["out/a-autofixed.xlsx", "out/a-autofixed (2).xlsx", "out/a-autofixed.csv"],
         ["out/a-checked.xlsx", "out/a-checked (2).xlsx", "out/a-checked (3).xlsx"],
     ),
     "an input at the place of an output": (
         ["a.xlsx", "a.csv", "a-report (2).xlsx", "a-checked.xlsx"],
         None,
         ["a-report.xlsx", "a-report (3).xlsx", "a-report (2)-report.xlsx", "a-checked-report.xlsx"],
-        ["a-mended.xlsx", "a-mended.csv", "a-report (2)-mended.xlsx", "a-checked-mended.xlsx"],
+        ["a-autofixed.xlsx", "a-autofixed.csv", "a-report (2)-autofixed.xlsx", "a-checked-autofixed.xlsx"],
         ["a-checked (2).xlsx", "a-checked (3).xlsx", "a-report (2)-checked.xlsx", "a-checked (4).xlsx"],
     ),
     "what seems to be ours comes last": (
-        ["a-mended.xlsx", "a.xlsx"],
+        ["a-autofixed.xlsx", "a.xlsx"],
         None,
-        ["a-mended-report.xlsx", "a-report.xlsx"],
-        ["a-mended (3).xlsx", "a-mended (2).xlsx"],
-        ["a-mended-checked.xlsx", "a-checked.xlsx"],
+        ["a-autofixed-report.xlsx", "a-report.xlsx"],
+        ["a-autofixed (3).xlsx", "a-autofixed (2).xlsx"],
+        ["a-autofixed-checked.xlsx", "a-checked.xlsx"],
     ),
     "a file": (["a.xlsx"], "x.xlsx", ["x.xlsx"], ["x.xlsx"], ["a-checked.xlsx"]),
 }
@@ -466,7 +466,7 @@ IN_THE_WAY = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("what", [what for what, made in IN_THE_WAY.items() if made])
-@pytest.mark.parametrize("name", ["submission-report.xlsx", "submission-checked.xlsx", "submission-mended.xlsx"])
+@pytest.mark.parametrize("name", ["submission-report.xlsx", "submission-checked.xlsx", "submission-autofixed.xlsx"])
 def test_whatever_stands_there_is_neither_followed_nor_waited_for(what, name, tmp_path, workbook, sound, capsys):  # noqa: PLR0917
     """A pipe, a link, a folder or a foreign file stays as it is; the output gets a number, and nothing hangs."""
     make, words = IN_THE_WAY[what]
@@ -475,7 +475,7 @@ def test_whatever_stands_there_is_neither_followed_nor_waited_for(what, name, tm
     before = (tmp_path / name).lstat()
     clock = threading.Timer(60, lambda: os.kill(os.getpid(), signal.SIGINT))
     clock.start()
-    code = _call("check", path, "--apply-fixes") if "mended" in name else _run(path)
+    code = _call("check", path, "--apply-fixes") if "fixed" in name else _run(path)
     clock.cancel()
     assert code in {0, 3}
     assert (tmp_path / name).lstat().st_ino == before.st_ino
@@ -516,7 +516,7 @@ def test_a_second_mending_of_the_whole_folder(tmp_path, workbook, table, sound, 
     table(rows, "b.csv")
     for _ in range(3):
         assert _call("check", "--apply-fixes", "--annotate", *_all(tmp_path, "*.*")) == 0
-    assert sorted(_contents(tmp_path)) == ["a-mended.xlsx", "a.xlsx", "b-mended.csv", "b.csv"]
+    assert sorted(_contents(tmp_path)) == ["a-autofixed.xlsx", "a.xlsx", "b-autofixed.csv", "b.csv"]
     assert capsys.readouterr().out.count("info I526") == 4
 
 
@@ -525,7 +525,7 @@ def test_what_somebody_worked_in_is_skipped_and_kept(tmp_path, workbook, sound):
     path = workbook([sound, {**sound, "variant": "b", "wall_thickness_mm": "1,6 mm"}], "a.xlsx")
     assert _run(path) == 3
     assert _call("check", path, "--apply-fixes") == 0
-    theirs = {name: _worked_in(tmp_path / f"a-{name}.xlsx") for name in ("report", "checked", "mended")}
+    theirs = {name: _worked_in(tmp_path / f"a-{name}.xlsx") for name in ("report", "checked", "autofixed")}
     for _ in range(2):
         assert _run(*_all(tmp_path)) == 3
         assert _call("check", "--apply-fixes", *_all(tmp_path)) == 0
@@ -538,14 +538,14 @@ def test_a_mended_file_is_a_submission_without_its_original(tmp_path, workbook, 
     """An engineer mends and then runs the mended file: it is computed, alone and beside other files."""
     rows = [{**sound, "wall_thickness_mm": "1,6 mm"}]
     original, other = workbook(rows, "a.xlsx"), table([sound], "other.csv")
-    mend(original, tmp_path / "a-mended.xlsx")
-    mend(table(rows, "t.csv"), tmp_path / "t-mended.csv")
-    for name in ("a-mended.xlsx", "t-mended.csv"):
+    mend(original, tmp_path / "a-autofixed.xlsx")
+    mend(table(rows, "t.csv"), tmp_path / "t-autofixed.csv")
+    for name in ("a-autofixed.xlsx", "t-autofixed.csv"):
         fixed = tmp_path / name
         assert run(fixed, **FEW).exit_code == 0
         assert run(fixed, given=[fixed, other], **FEW).exit_code == 0
-    _worked_in(tmp_path / "a-mended.xlsx")
-    assert check(tmp_path / "a-mended.xlsx").counts["computed"] == 1
+    _worked_in(tmp_path / "a-autofixed.xlsx")
+    assert check(tmp_path / "a-autofixed.xlsx").counts["computed"] == 1
 
 
 def test_a_mended_workbook_knows_its_original_by_content(tmp_path, workbook, sound):

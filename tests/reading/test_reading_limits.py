@@ -154,7 +154,7 @@ def test_limits_are_whole_numbers_above_nothing():
             ReadingLimits.of({"cells": wrong})
     with pytest.raises(ValueError, match="at most 86400 is required"):
         ReadingLimits(seconds=10**20)
-    with pytest.raises(ValueError, match=r"cell is no limit; there are .*cells"):
+    with pytest.raises(ValueError, match=r"cell is not a limit; the limits are .*cells"):
         ReadingLimits.of({"cell": "7"})
     with pytest.raises(dataclasses.FrozenInstanceError):
         ReadingLimits().cells = 1
@@ -175,9 +175,9 @@ def test_limits_on_the_command_line(command, tmp_path):
 
 @pytest.mark.parametrize(
     ("given", "words"),
-    [("cell=3", "cell is no limit"), ("cells=0", WHOLE), ("cells", WHOLE),
+    [("cell=3", "cell is not a limit"), ("cells=0", WHOLE), ("cells", WHOLE),
      ("seconds=99999999999999999999", WHOLE), ("cells=7\x1b[31m", "7·[31m"),
-     ("seconds=86401", "at most 86400"), ("cells=x", WHOLE), ("=3", "is no limit")],
+     ("seconds=86401", "at most 86400"), ("cells=x", WHOLE), ("=3", "is not a limit")],
 )  # fmt: skip
 def test_a_limit_that_is_none_is_a_usage_error(given, words, tmp_path):
     """An unknown limit, or one that is no whole number in its bounds, is a usage error that says where it is set."""

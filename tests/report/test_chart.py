@@ -178,7 +178,7 @@ def _area(points):
 
 
 @for_each("limit, colours, words", [
-    (None, ["#0072b2"], "There is no limit."),
+    (None, ["#0072b2"], "No limit is given."),
     (9.0, ["#0072b2"], "All of it is within the limit of 9′."),
     (1.0, ["#d55e00"], "All of it is over the limit of 1′."),
     (1e9, ["#0072b2"], "All of it is within the limit of 1e+09′."),
@@ -220,7 +220,7 @@ def test_causes_are_drawn_from_the_nominal_backlash():
 
 def test_shares_are_parts_of_the_whole_width():
     """A share of a half is half as wide as the frame."""
-    markup = shares_chart("s", "Where the wind-up sits", [("wall", 0.5), ("disk", 0.00001)])
+    markup = shares_chart("s", "Where the wind-up arises", [("wall", 0.5), ("disk", 0.00001)])
     widths = [per_cent(one, "width") for one in parts(markup, "rect")]
     assert widths[:2] == [100, 50]
     assert "less than 0.1 %" in texts(markup)

@@ -339,9 +339,9 @@ NONSENSE = {
     "a text for the limit": ({LIMIT: "3,8"}, "not a number above 0"),
     "a limit below 0": ({LIMIT: -1.0}, "not a number above 0"),
     "a limit of 0": ({LIMIT: 0.0}, "not a number above 0"),
-    "another letter case": ({VARIANT: "b3-160 HAT"}, "not in the list"),
-    "no variant": ({VARIANT: ""}, "not in the list"),
-    "a space behind": ({VARIANT: "B3-160 hat "}, "not in the list"),
+    "another letter case": ({VARIANT: "b3-160 HAT"}, "not on the list"),
+    "no variant": ({VARIANT: ""}, "not on the list"),
+    "a space behind": ({VARIANT: "B3-160 hat "}, "not on the list"),
     "another unit": ({UNIT: "degrees"}, "nothing else"),
     "no unit": ({UNIT: ""}, "nothing else"),
     "a share of 0": ({WANTED: 0.0}, "a share from"),
@@ -359,7 +359,7 @@ def test_nonsense_is_told_and_gives_no_number(study, tmp_path):
     books = [
         typed(alone, tmp_path / f"{n}.xlsx", "Explorer", entries) for n, (entries, _) in enumerate(NONSENSE.values())
     ]
-    hints = {"not in the list": "C4", "nothing else": "C5", "not a number above 0": "C6", "a share from": "C7"}
+    hints = {"not on the list": "C4", "nothing else": "C5", "not a number above 0": "C6", "a share from": "C7"}
     again = convert_all(books, "xlsx", tmp_path / "again")
     for (name, (entries, words)), book in zip(NONSENSE.items(), again, strict=True):
         values = values_of(book, "Explorer")

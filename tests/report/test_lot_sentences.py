@@ -83,7 +83,7 @@ def test_where_lots_alone_scatter_their_parts_are_alike(computed):
     outcome = computed([MODULUS], {"backlash_limit_arcmin": 3.72})
     share = outcome.results["probability_over_limit"].item()
     assert said_of(outcome)[LOTS].startswith(
-        f"The parts of a lot are all alike; lots differ by ± 0.048′; {100 * share:.3g} % of lots lie over the limit "
+        f"All parts of a lot are identical; lots differ by ± 0.048′; {100 * share:.3g} % of lots lie over the limit "
         "with every part. One value for a whole lot: Young's modulus. "
     )
 
@@ -135,13 +135,14 @@ SHARES = {
     (9.84e-7, 3e-9): "984 lots in a billion",
     (2e-5, 3e-5): "at most 79 lots in a million",
     (0.02, 0.004): "2.0 % of lots",
-    (1 - 2.4e-4, 1e-7): "all but 240 lots in a million",
+    (1 - 2e-5, 3e-5): "at least 99.99212 % of lots",
+    (1 - 2.4e-4, 1e-7): "99.9760 % of lots",
 }
 
 
 @pytest.mark.parametrize("share", SHARES, ids=str)
 def test_shares_of_lots_in_words(share):
-    """Lots are counted in a hundred, a million or a billion, with no more digits than are known."""
+    """Lots are counted in a hundred, a million or a billion, nearly all in per cent, in the digits known."""
     assert lots_words({"lots_failing": share[0], "lots_failing_standard_error": share[1]}) == SHARES[share]
 
 

@@ -88,7 +88,7 @@ def test_a_verdict_that_is_left_open_says_what_it_may_be_and_how_many_parts_woul
     assert "60 measured parts (wall thickness) and 24 measured parts (disk thickness) leave open 2 ppm to 0.4 %" in said
     assert "So the verdict “meets” may as well be “marginal”." in said
     # Scores 3.6777 now, 2.6521 at the end and 3.0000 where “meets” ends: (1.0256/0.6777)² = 2.29.
-    assert said.endswith("About 2.3 times as many parts would settle it, if they come out alike.")
+    assert said.endswith("About 2.3 times as many parts would settle it, if they scatter as these do.")
 
 
 @for_each(

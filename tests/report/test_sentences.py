@@ -122,7 +122,9 @@ def test_without_scatter(told, tmp_path, limit, share):
     tolerances = tmp_path / "tolerances.csv"
     tolerances.write_text(EXACT, encoding="utf-8")
     said = told({"backlash_limit_arcmin": limit}, tolerances=tolerances)
-    assert said["Why"] == "Nothing scatters in “v0”: no tolerance applies to its dimensions, so all units are alike."
+    assert (
+        said["Why"] == "Nothing scatters in “v0”: no tolerance applies to its dimensions, so all units are identical."
+    )
     assert said.get("How sure") == (f"Units over the limit: “v0” {share}." if share else None)
     assert "3.687′" in said["Which fail"]
 
@@ -149,7 +151,7 @@ def test_what_was_not_computed(told):
     said = told({"backlash_limit_arcmin": 5}, *faulty)
     assert said["Computed"] == (
         "1 of 6 variants was computed. Not computed: “bad 0”, “bad 1”, “bad 2” and 2 more. "
-        "The first fault: Variants!D3 Torque T is empty: a torque in N·m above 0 is required."
+        "First fault: Variants!D3 Torque T is empty: a torque in N·m above 0 is required."
     )
     assert said["Which fail"].startswith("None: the 1 variant")
     assert said["Findings"] == "5 errors: required cell empty (5)."
@@ -193,10 +195,10 @@ def test_what_yields_first(outcome):
     torque = {one.variant.name: one.variant.dimensions["torque"] for one in outcome.computed.values()}
     least = min(row["elastic_limit_torque_Nm"] / torque[row["variant"]] for row in rows)
     said = said_of(outcome)["Strength"]
-    alike, name, section = re.match(
-        r"Nearest to yield, one of (\d+) alike, is “(.*)”: its (.*) yields at ", said
-    ).groups()
-    assert int(alike) == sum(row["elastic_limit_torque_Nm"] / torque[row["variant"]] < 1.0005 * least for row in rows)
+    name, others, section = re.match(r"Nearest to yield: “(.*)” and (\d+) others, whose (.*) yields at ", said).groups()
+    assert int(others) + 1 == sum(
+        row["elastic_limit_torque_Nm"] / torque[row["variant"]] < 1.0005 * least for row in rows
+    )
     row = next(row for row in rows if row["variant"] == name)
     assert row["governing_section"] == section
     assert row["elastic_limit_torque_Nm"] / torque[name] == pytest.approx(least, rel=1e-6)
@@ -206,7 +208,7 @@ def test_what_yields_first(outcome):
 def test_one_alone_is_nearest_to_yield(told):
     """Where no other variant has the same reserve nothing is said of others."""
     said = told({"torque_Nm": 700}, {"torque_Nm": 900})["Strength"]
-    assert said.startswith("Nearest to yield is “v1”: its disk yields at 11.1 times the torque")
+    assert said.startswith("Nearest to yield: “v1”, whose disk yields at 11.1 times the torque")
 
 
 def test_without_a_yield_strength_nothing_is_near_to_yield(told, tmp_path):

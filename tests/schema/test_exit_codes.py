@@ -73,4 +73,4 @@ def test_an_error_is_never_code_0(table, sound, monkeypatch):
     for command in ("check", "run"):
         done = _call(command, table([sound]))
         assert done.exit_code == 3
-    assert "Next: mend that and check again" in _call("check", table([sound])).stdout
+    assert "Next: fix that and check again" in _call("check", table([sound])).stdout

@@ -34,7 +34,7 @@ def test_an_explanation_has_its_parts():
         "Sheet!Cell Column = … mm: less than the disk's outer radius … mm is required.",
         "The disk reaches from its inner to its outer radius. A blank outer radius is the mean radius.",
         "",
-        "Mend: Check for a diameter entered as a radius.",
+        "Fix: Check for a diameter entered as a radius.",
         "Example: Variants!J18 …",
     ]
 

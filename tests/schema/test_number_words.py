@@ -31,8 +31,8 @@ SHARES = {
     "none seen of few": ((0.0, 0.0, 0.0143), "at most 1.43 %"),
     "none seen of very many": ((0.0, 0.0, 4.2e-8), "at most 42 ppb"),
     "none told": ((0.0, 0.0, 1e-15), "practically none"),
-    "all seen": ((1.0, 0.9999, 1.0), "all but at most 100 ppm"),
-    "all seen of few": ((1.0, 0.98, 1.0), "all but at most 2 %"),
+    "all seen": ((1.0, 0.9999, 1.0), "at least 99.99 %"),
+    "all seen of few": ((1.0, 0.98, 1.0), "at least 98 %"),
     "all told": ((1.0, 1 - 1e-15, 1.0), "practically all"),
     "per cent": ((0.412, 0.407, 0.417), "41.2 % (40.7 to 41.7 %)"),
     "per cent, better known": ((0.41234, 0.4122, 0.4125), "41.234 % (41.220 to 41.250 %)"),
@@ -49,8 +49,10 @@ SHARES = {
     "none seen of a billion": ((0.0, 0.0, 4.2e-7), "at most 420 ppb"),
     "less than is told": ((9e-10, 8e-10, 9.9e-10), "practically none"),
     "much less than is told": ((1e-14, 1e-15, 1e-13), "practically none"),
-    "all but ppm": ((1 - 2e-5, 1 - 4e-5, 1 - 1e-5), "all but 20 ppm (10 to 40 ppm)"),
-    "all but ppb": ((1 - 3.16e-8, 1 - 3.2e-8, 1 - 3.1e-8), "all but 32 ppb"),
+    "nearly all": ((1 - 2e-5, 1 - 4e-5, 1 - 1e-5), "99.9980 % (99.9960 to 99.9990 %)"),
+    "nearly all, better known": ((1 - 1.1e-6, 1 - 1.12e-6, 1 - 1.08e-6), "99.999890 % (99.999888 to 99.999892 %)"),
+    "nearly all, known exactly": ((0.9995, 0.9995, 0.9995), "99.9500 %"),
+    "all but some ppb": ((1 - 3.16e-8, 1 - 3.2e-8, 1 - 3.1e-8), "99.9999968 %"),
     "all but less than is told": ((1 - 3.2e-11, 1 - 3.3e-11, 1 - 3.1e-11), "practically all"),
 }
 
@@ -99,12 +101,13 @@ def test_the_words_of_a_share_are_right(power, relative, mirrored):
         return
     factor = {"%": 1e-2, "ppm": 1e-6, "ppb": 1e-9}[words.removesuffix(")").split()[-1]]
     told = _first_number(words) * factor
-    if mirrored and not words.startswith("all but"):
+    if mirrored and share >= 0.999e-3:
         assert abs(1 - told - share) <= max(relative * share, 1e-4) + 1e-15  # four digits are told at most
-        assert share >= 0.999e-3
         return
-    assert words.startswith("all but") == mirrored
-    if "at most" in words:
+    if mirrored:
+        assert factor == 1e-2
+        told = 1 - told
+    if words.startswith("at least" if mirrored else "at most"):
         assert share < 1.001e-9
         assert told >= 0.99 * high
         return

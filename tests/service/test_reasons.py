@@ -17,7 +17,7 @@ PARTLY = Answer(
     finding_lines=(
         ("error", "error E201 required cell empty, 1 cell: Variants!D8"),
         ("", "    Variants!D8 Torque T is empty: a torque in N·m above 0 is required."),
-        ("", "    Mend: Fill the cell."),
+        ("", "    Fix: Fill in the cell."),
         ("info", "info I501 a column of your own"),
         ("", "    It passes through."),
     ),
@@ -40,7 +40,7 @@ def test_a_partly_computed_submission_is_told_what_where_required_mend_copy_and_
     text = said(reasons_text(PARTLY, "study A.xlsx", submission=ID))
     for needed in (
         "study A.xlsx: 3 of 4 rows computed", "study A-report.xlsx", "Variants!D8", "above 0 is required",
-        "Fill the cell", "study A-checked.xlsx", "hand the file in again", ID, "ab" * 32,
+        "Fill in the cell", "study A-checked.xlsx", "hand the file in again", ID, "ab" * 32,
     ):  # fmt: skip
         assert needed in text
     assert "I501" not in text
@@ -51,8 +51,8 @@ def test_who_handed_in_a_large_table_is_told_where_all_rows_are():
     """The report of a large table holds its worst rows alone: the text names the file that has all."""
     large = LargeAnswer.with_files(PARTLY, {"results": Path("a-results.parquet"), "report": Path("a-report.xlsx")})
     text = said(reasons_text(large, "a.csv"))
-    assert "are in a-results.parquet, the worst of them also in a-report.xlsx. Of the others" in text
-    assert "are in a-report.xlsx. Of the others" in said(reasons_text(PARTLY, "a.csv"))
+    assert "are in a-results.parquet, the worst of them also in a-report.xlsx. Fix this in the others" in text
+    assert "are in a-report.xlsx. Fix this in the others" in said(reasons_text(PARTLY, "a.csv"))
 
 
 def test_a_rejected_submission_is_told_why():

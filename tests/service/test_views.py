@@ -194,9 +194,7 @@ def test_what_keeps_files_from_the_drop_folder_is_told(tmp_path):
         assert not views.submission(store, store.submission(one.id))["view"].undelivered
         store.postpone(store.deliveries()[0], 60, "the folder cannot be written")
         html = render("submission", **views.submission(store, store.submission(one.id)))
-        told = (
-            "Not put into the folder for results. The folder cannot be written; it is tried again. All files are here"
-        )
+        told = "Not put into the results folder. The folder cannot be written; it is tried again. All files are here"
         assert told in HtmlPage(html).text
         store.delivered(store.undelivered()[0])
         assert not views.submission(store, store.submission(one.id))["view"].undelivered

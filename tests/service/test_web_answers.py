@@ -205,7 +205,7 @@ def test_head_is_get_without_its_body(tmp_path):
     ("name", "kind"),
     [
         ("b3-report.xlsx", "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"),
-        ("b3-fixed.xlsm", "application/vnd.ms-excel.sheet.macroEnabled.12"),
+        ("b3-autofixed.xlsm", "application/vnd.ms-excel.sheet.macroEnabled.12"),
         ("b3.csv", "text/csv; charset=utf-8"),
         ("b3-reasons.txt", "text/plain; charset=utf-8"),
         ("b3.json", "application/json"),
@@ -244,7 +244,7 @@ def test_names_of_downloads():
         assert re.fullmatch(r"[\w().-]{1,130}", safe), name
         assert not safe.startswith(".")
     assert safe_name("a" * 300 + "-report.xlsx").endswith("a-report.xlsx")
-    assert safe_name("a" * 300 + "-mended.xlsx").endswith("a-mended.xlsx")
+    assert safe_name("a" * 300 + "-autofixed.xlsx").endswith("a-autofixed.xlsx")
 
 
 def test_health_says_what_is_wrong(tmp_path, monkeypatch):
@@ -253,7 +253,7 @@ def test_health_says_what_is_wrong(tmp_path, monkeypatch):
         assert one.visitor().get("/health").json()["status"] == "ok"
         monkeypatch.setattr(Idle, "is_alive", False)
         answer = one.visitor().get("/health")
-        assert (answer.status_code, answer.json()["wrong"]) == (503, ["nothing takes what waits"])
+        assert (answer.status_code, answer.json()["wrong"]) == (503, ["nothing is taking the waiting submissions"])
         monkeypatch.undo()
         monkeypatch.setattr(one.store, "folder", tmp_path / "gone")
         assert one.visitor().get("/health").json()["wrong"] == ["the store cannot be used"]
@@ -263,7 +263,7 @@ def test_health_says_what_is_wrong(tmp_path, monkeypatch):
         one.visitor().hand_in()
         assert one.visitor().get("/health").status_code == 200
         now[0] += 61
-        assert one.visitor().get("/health").json()["wrong"] == ["what waits finds no workers"]
+        assert one.visitor().get("/health").json()["wrong"] == ["the waiting submissions find no workers"]
     with page(tmp_path / "full", limits=Limits(free_bytes=2**60)) as one:
         assert one.visitor().get("/health").json()["wrong"] == ["the disk is nearly full"]
 

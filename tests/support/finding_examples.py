@@ -409,7 +409,7 @@ def _by_machine(folder: Path) -> Made:
 def _mended(folder: Path) -> Made:
     """Write a table and what was mended in it."""
     original = _file(folder, _text([CUP]))[0]
-    fixed = _file(folder, _text([CUP]), "study-mended.csv")[0]
+    fixed = _file(folder, _text([CUP]), "study-autofixed.csv")[0]
     return fixed, {"given": [original, fixed]}
 
 

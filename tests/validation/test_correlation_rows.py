@@ -98,7 +98,7 @@ def test_a_pair_that_stands_twice_is_told_at_both_rows(judged):
     outcome = judged(*correlations((WALL, DISK, 0.5), (DISK, WALL, 0.6, "SHOP"), (WALL, DISK, 0.5, "Fine")))
     told = [(found.code, found.place) for found in outcome.findings if found.code == "E345"]
     assert told == [("E345", "Correlations!C2"), ("E345", "Correlations!C3")]
-    assert "also stands in C3" in next(found.message for found in outcome.findings if found.code == "E345")
+    assert "is also in C3" in next(found.message for found in outcome.findings if found.code == "E345")
     assert outcome.results["status"].to_list() == ["error", "ok"]
 
 

@@ -138,7 +138,7 @@ def test_a_source_named_twice():
     """Both rows of one name are told with each other, whatever the letters; neither counts."""
     found = _found(ANGLE, ANGLE | {"source": "Play "}, ANGLE | {"source": "plate"})
     assert [one for one in told(found) if one[0] == "E361"] == [("E361", "source", 2), ("E361", "source", 3)]
-    assert "also stands in A3" in next(one.message for one in found.findings if one.code == "E361")
+    assert "is also in A3" in next(one.message for one in found.findings if one.code == "E361")
     assert [one.name for one in found.other_sources] == ["plate"]
     assert found.sources_are_faulty
 

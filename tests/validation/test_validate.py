@@ -251,7 +251,7 @@ def test_duplicates_name_all_partners():
     partners = {"A2": "A4, A6", "A4": "A2, A6", "A6": "A2, A4"}
     assert set(found) == set(partners)
     for cell, others in partners.items():
-        assert found[cell].message == f'Variants!{cell} Variant = "A" also stands in {others}.'
+        assert found[cell].message == f'Variants!{cell} Variant = "A" is also in {others}.'
     assert _kept(validated) == ["B", "C"]
 
 
@@ -260,7 +260,7 @@ def test_all_partners_of_a_duplicate_are_named(count, others):
     """However many rows share a name, each names all the others; of more than a hundred the range of all is told."""
     validated = validate(_submission([ROW] * count))
     assert len(_told(validated, "error")) == count
-    assert consolidated(validated)[-1].message.endswith(f" also stands in {others}.")
+    assert consolidated(validated)[-1].message.endswith(f" is also in {others}.")
 
 
 def test_only_findings_of_a_row_name_its_variant():

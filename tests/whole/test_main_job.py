@@ -143,7 +143,7 @@ def test_a_faulty_submission_is_checked_marked_and_mended(folder):
     told = set(re.findall(r"[EW]\d{3}", done.stdout + done.stderr))
     assert {code for code, _, _ in regenerate.FAULTS} <= told
     assert "Findings" in _opened(folder / "needs-fixing-checked.xlsx").sheetnames
-    assert "Variants" in _opened(folder / "needs-fixing-mended.xlsx").sheetnames
+    assert "Variants" in _opened(folder / "needs-fixing-autofixed.xlsx").sheetnames
 
 
 def test_the_study_is_checked_by_elasticity(folder):

@@ -353,7 +353,7 @@ def test_a_missing_file_raises(tmp_path):
     """A path without a file is an OSError for the caller to tell."""
     with pytest.raises(FileNotFoundError, match=r"none\.xlsx"):
         check(tmp_path / "none.xlsx")
-    with pytest.raises(FileNotFoundError, match="this is no file"):
+    with pytest.raises(FileNotFoundError, match="this is not a file"):
         check(tmp_path)
 
 

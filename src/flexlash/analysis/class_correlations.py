@@ -173,7 +173,7 @@ class _Class:
             self._refuse("E349", entered[pair], "dimension_2", value=dimension_words(lot), detail=dimension_words(part))
         faults = [] if crossed else contradictions(entered, merged)
         for pair, nearest, alone in faults:
-            detail = "" if alone else ", if the other rows named here are mended too,"
+            detail = "" if alone else ", if the other rows named here are corrected too,"
             facts = {"value": merged[pair], "detail": detail, "suggestion": f"{nearest:.10g}"}
             self._refuse("E348", entered[pair], "correlation", **facts)
         for pair, found in measured.items():

@@ -68,7 +68,8 @@ class Options:
         default=False, metadata=_declared(flag, "End with exit code 6 when a variant does not meet its limit.")
     )
     cross_check: bool | None = field(
-        default=None, metadata=_declared(flag, "Put plain Monte Carlo beside the spread and say whether they agree.")
+        default=None,
+        metadata=_declared(flag, ("Compute plain Monte Carlo beside the spread and say whether they agree.")),
     )
     elasticity: bool | None = field(
         default=None, metadata=_declared(flag, "Check each variant by two-dimensional elasticity.")
@@ -81,13 +82,13 @@ class Options:
         default=None, metadata=_declared(file_path, "The Materials table to use instead of the submission's.")
     )
     measurements: str | Path | None = field(
-        default=None, metadata=_declared(file_path, "The Measurements table: measured parts, one a row.")
+        default=None, metadata=_declared(file_path, "The Measurements table: measured parts, one per row.")
     )
     correlations: str | Path | None = field(
         default=None, metadata=_declared(file_path, "The Correlations table: dimensions that scatter together.")
     )
     other_sources: str | Path | None = field(
-        default=None, metadata=_declared(file_path, "The Other sources table: what else plays in the drive.")
+        default=None, metadata=_declared(file_path, "The Other sources table: other sources of backlash in the drive.")
     )
     samples_out: str | Path | None = field(
         default=None,
@@ -108,19 +109,19 @@ class Options:
     limits: ReadingLimits = field(
         default_factory=ReadingLimits,
         metadata=_declared(
-            _LIMITS, "Read more, or less, of a file than usual: cells=2000000. A refusal names the limit."
+            _LIMITS, "Read more, or less, of a file than by default: cells=2000000. A refusal names the limit."
         ),
     )
     marked_copy: str | os.PathLike[str] | None = field(default=None, metadata=_declared(_output))
     marked_copies: bool = field(
-        default=False, metadata=_declared(flag, "Take marked copies (<name>-checked.xlsx) as submissions, too.")
+        default=False, metadata=_declared(flag, "Also accept marked copies (<name>-checked.xlsx) as submissions.")
     )
     given: Sequence[Path] = field(default=(), metadata=_declared(_paths))
     from_report: bool = field(
         default=False,
         metadata=_declared(
             flag,
-            "The files are reports: write the submission that each carries and compute it anew, with its own options.",
+            "The files are reports: write out the submission that each carries and recompute it, with its own options.",
         ),
     )
     progress: Progress | None = field(default=None, metadata=_declared(_PROGRESS))

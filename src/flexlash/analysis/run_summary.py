@@ -126,7 +126,7 @@ def group_lines(groups: Iterable[FindingGroup], all_listed: str) -> Iterator[tup
             yield "", f"    … and {group.count - len(group.first)} more of the same kind{whole}"
         for fix in dict.fromkeys(found.fix for found in group.first):
             if not fix.startswith(_NO_MEND):
-                yield "", f"    Mend: {fix}"
+                yield "", f"    Fix: {fix}"
 
 
 def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
@@ -175,7 +175,7 @@ def closing_lines(
     yield f"{name}: {words}."
     yield from details
     if ran and not counts["computed"]:
-        yield "No report was written: there is no computed row."
+        yield "No report was written: no row could be computed."
     yield from (_written_line(written, path) for path in written.paths if not is_picture(path))
     yield from (f"Written: {words}" for words in picture_words(written.paths))
     quoted_name = f'"{name}"' if " " in name else name
@@ -218,9 +218,9 @@ def _next_step(counts: Mapping[str, int], name: str) -> str:
     """Return what to do after a check, the command last."""
     computed = counts["computed"]
     if not computed:
-        return f"mend that, then: flexlash check {name}"
+        return f"fix that, then: flexlash check {name}"
     if computed < counts["rows"] or counts["errors"]:
-        return f"mend that and check again, or compute the {counted(computed, 'row')}: flexlash run {name}"
+        return f"fix that and check again, or compute the {counted(computed, 'row')}: flexlash run {name}"
     return f"flexlash run {name}"
 
 
@@ -372,7 +372,7 @@ class SpreadNotes:
             more = f" and {self.noted - 1} more, see Results" if self.noted > 1 else ""
             yield f"Spread of {quoted(shown(self.variant, longest=_NAME))}: {self.note}{more}."
         if cross_check and method == "random":
-            yield "The spread is plain Monte Carlo itself: there is nothing to cross-check it with."
+            yield "The spread is plain Monte Carlo already: there is nothing to cross-check it with."
         elif self.checked:
             yield (
                 f"Plain Monte Carlo agrees for {self.agreeing} of {self.checked} variants; the greatest difference is "

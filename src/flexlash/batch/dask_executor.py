@@ -164,7 +164,9 @@ class _DaskExecutor:
 def require_address(address: str) -> None:
     """Raise ValueError for what is no address of a scheduler, MissingDaskError where Dask is missing."""
     if address != LOCAL and not _ADDRESS.fullmatch(address):
-        raise ValueError(f"{shown(address)} is no address of a Dask scheduler: local or tcp://HOST:PORT is required")
+        raise ValueError(
+            f"{shown(address)} is not the address of a Dask scheduler: local or tcp://HOST:PORT is required"
+        )
     if find_spec("distributed") is None:
         raise MissingDaskError
 

@@ -53,7 +53,7 @@ _SUBMISSIONS = (
     ("Worst variant", 26),
     ("Units over its limit", 28),
     ("Report", 32),
-    ("Why not, or not all", 60),
+    ("Reason", 60),
 )
 _RULES = (
     ("Level", 10),

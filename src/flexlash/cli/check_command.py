@@ -23,10 +23,10 @@ __all__ = ["check"]
 @SUBMISSIONS
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), metavar="OUT",
-    help="The mended file, or the folder for marked and mended files. Default: beside the submission.",
+    help="The fixed file, or the folder for marked and fixed files. Default: beside the submission.",
 )  # fmt: skip
-@click.option("--annotate", is_flag=True, help="Write <name>-checked.xlsx: your file with the cells to mend marked.")
-@click.option("--apply-fixes", is_flag=True, help="Write a new file in which the certain suggestions are applied.")
+@click.option("--annotate", is_flag=True, help="Write <name>-checked.xlsx: your file with the cells to fix marked.")
+@click.option("--apply-fixes", is_flag=True, help="Write a new file with the certain fixes applied.")
 @option("strict")
 @LIMITS
 @option("marked_copies")

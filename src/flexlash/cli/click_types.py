@@ -52,11 +52,14 @@ class _Named(click.Path):
 SUBMISSION = click.argument("submission", type=_Named(path_type=Path, readable=False))
 SUBMISSIONS = click.argument("submissions", nargs=-1, required=True, type=_Named(path_type=Path, readable=False))
 JSON = click.option("--json", "as_json", is_flag=True, help="Machine-readable outcome on stdout.")
-QUIET = click.option("--quiet", is_flag=True, help="Print nothing unless something failed.")
+QUIET = click.option("--quiet", is_flag=True, help="Print nothing unless something fails.")
 VERBOSE = click.option(
-    "-v", "--verbose", is_flag=True, help="Of several submissions, print all that is printed of one, not a line each."
+    "-v",
+    "--verbose",
+    is_flag=True,
+    help=("With several submissions, print for each what is printed for one, not just a line."),
 )
-RECURSIVE = click.option("--recursive", is_flag=True, help="Of a folder, take also what lies below it.")
+RECURSIVE = click.option("--recursive", is_flag=True, help="Also look in the folders below a folder.")
 
 _DECLARED = {one.name: one for one in fields(Options)}
 

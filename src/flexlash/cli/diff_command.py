@@ -24,9 +24,9 @@ __all__ = ["diff"]
 @click.argument("new", metavar="B", type=click.Path(path_type=Path, readable=False))
 @click.option(
     "--tolerance", type=click.FloatRange(0, 1), default=1e-12, show_default=True, metavar="RELATIVE",
-    help="Numbers of Results that differ by no more than this part of themselves are equal.",
+    help="Numbers of Results whose relative difference is no greater than this count as equal.",
 )  # fmt: skip
-@click.option("--all", "every", is_flag=True, help="Tell every column of Results and every variant.")
+@click.option("--all", "every", is_flag=True, help="List every column of Results and every variant.")
 @LIMITS
 @JSON
 def diff(old: Path, new: Path, *, tolerance: float, every: bool, limits: ReadingLimits, as_json: bool) -> None:

@@ -41,7 +41,7 @@ __all__ = ["run"]
 @LIMITS
 @RECURSIVE
 @click.option(
-    "--resume", is_flag=True, help="Go on in the folder OUT where an earlier run was stopped; what is done stays."
+    "--resume", is_flag=True, help="Continue in the folder OUT where an earlier run was stopped; what is done is kept."
 )
 @click.option(
     "--scheduler", metavar="ADDRESS",
@@ -53,7 +53,7 @@ __all__ = ["run"]
 @VERBOSE
 @click.option(
     "--annotate/--no-annotate", default=True, show_default=True,
-    help="Write <name>-checked.xlsx, your file with the cells to mend marked, when there are errors or warnings.",
+    help="Write <name>-checked.xlsx, your file with the cells to fix marked, when there are errors or warnings.",
 )  # fmt: skip
 @option("marked_copies")
 @option("tolerances")

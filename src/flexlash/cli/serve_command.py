@@ -24,15 +24,17 @@ _PAGE = ("starlette", "uvicorn", "jinja2", "python_multipart")
 @click.argument("inbox", type=click.Path(path_type=Path), required=False, metavar="[INBOX]")
 @of_service
 @click.option("--host", default="127.0.0.1", show_default=True, metavar="ADDRESS", help="Where the page is reached.")
-@click.option("--port", type=click.IntRange(0, 65535), default=8765, show_default=True, help="Its port; 0: any free.")
+@click.option(
+    "--port", type=click.IntRange(0, 65535), default=8765, show_default=True, help=("Its port; 0: any free port.")
+)
 @click.option("--open", "opens", is_flag=True, help="Open the page in your browser, and for nobody else.")
 @click.option(
     "--token-file", type=click.Path(path_type=Path), metavar="FILE",
-    help="Only who knows the token in this file may open the page.",
+    help="Only people who know the token in this file may open the page.",
 )  # fmt: skip
 @click.option(
     "--behind-proxy", default="", metavar="HEADER",
-    help="A proxy on this machine lets people in and names them in this header, such as X-Remote-User.",
+    help="A proxy on this machine authenticates people and names them in this header, such as X-Remote-User.",
 )  # fmt: skip
 @click.option(
     "--host-name", "host_names", multiple=True, metavar="NAME", help="A name by which browsers call the page."

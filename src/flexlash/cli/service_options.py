@@ -54,12 +54,14 @@ SCHEDULER = click.option(
 )
 KEEP = click.option(
     "--keep", "keep_seconds", type=_Duration(), default="90d", show_default=True,
-    help="How long a submission is kept after it has ended: 12h, 90d, 26w, 2y.",
+    help="How long a submission is kept after it has finished: 12h, 90d, 26w, 2y.",
 )  # fmt: skip
-WEBHOOK = click.option("--webhook", default="", metavar="URL", help="Tell each ending to this address.")
+WEBHOOK = click.option(
+    "--webhook", default="", metavar="URL", help=("Report the end of each submission to this address.")
+)
 WEBHOOK_KEY = click.option(
     "--webhook-key-file", type=_PATH, metavar="FILE",
-    help="The key by which what is told is signed. Default: one that is made, webhook.key in the store.",
+    help="The key that signs these reports. Default: webhook.key in the store, made if absent.",
 )  # fmt: skip
 LOG_JSON = click.option("--json", "as_json", is_flag=True, help="Log lines as JSON.")
 

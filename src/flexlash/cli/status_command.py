@@ -40,7 +40,7 @@ def require_extra(*further: str) -> None:
 @STORE
 @click.option(
     "--backup", type=click.Path(path_type=Path, file_okay=False), metavar="FOLDER",
-    help="Copy the store into FOLDER first, also while a server works on it. The copy is a store itself.",
+    help="First copy the store into FOLDER, even while a server is working on it. The copy is a store itself.",
 )  # fmt: skip
 @JSON
 def status(id_: str, store: Path | None, *, backup: Path | None, as_json: bool) -> None:
@@ -78,7 +78,7 @@ def retry(id_: str, store: Path | None) -> None:
     with _opened(store) as held:
         found = held.submission(_known(held, id_))
     if found is None or not found.has_ended:
-        click.echo(f"{id_} has not ended yet; it is computed in its turn.")
+        click.echo(f"{id_} has not finished yet; it will be computed in turn.")
         return
     from flexlash.service.database import store_faults
     from flexlash.service.store import Store
@@ -108,7 +108,7 @@ def _known(held: Outbox, start: str) -> str:
     if found:
         raise click.UsageError(f"Several IDs begin with {shown(start)}; give more of it.")
     if held.was_forgotten(start):
-        raise click.UsageError(f"The submission {shown(start)} was kept as long as it was asked for, and is forgotten.")
+        raise click.UsageError(f"The submission {shown(start)} was kept as long as set, and has been deleted.")
     raise click.UsageError(f"There is no submission {shown(start)}; flexlash status lists those that there are.")
 
 

@@ -79,7 +79,7 @@ def one_lines(facts: Mapping[str, Any]) -> Iterator[str]:
     yield f"{shown(facts['name'], 200)}, {facts['size']:,} bytes, handed in{sender} at {_time(facts['received_at'])}."
     yield _state(facts)
     if facts["position"]:
-        yield f"{facts['position']} are begun before it."
+        yield f"{facts['position']} are ahead of it."
     if facts["same_as"]:
         yield f"It was answered with the result of {facts['same_as']}, which is the same submission."
     for file in facts["files"]:

@@ -157,7 +157,7 @@ class Submissions:
             where = f" Written: {files}" if files else ""
             complain(f"{'' if named(ended.path) in ended.error and not code else name}{code}{ended.error}{where}")
         if ended.mend:
-            click.echo(f"{name if self.several else ''}Mend: {ended.mend}", err=True)
+            click.echo(f"{name if self.several else ''}Fix: {ended.mend}", err=True)
 
     def _one_line(self, ended: Ended) -> Iterator[_Line]:
         """Yield what the screen shows of one submission among several: how much was computed, and what was written."""
@@ -222,9 +222,7 @@ class Submissions:
 
 def _fix_lines(fixes: Sequence[Fix]) -> Iterator[str]:
     """Yield what was changed in a mended submission, the first cells of it by name."""
-    yield (
-        f"{counted(len(fixes), 'cell')} mended:" if fixes else "There is nothing that could be mended with certainty."
-    )
+    yield (f"{counted(len(fixes), 'cell')} fixed:" if fixes else "Nothing can be fixed with certainty.")
     for fix in fixes[:_SHOWN_FIXES]:
         yield f'    {shown(fix.place)}: "{shown(fix.found)}" → {shown(fix.written)} ({fix.code})'
     if len(fixes) > _SHOWN_FIXES:

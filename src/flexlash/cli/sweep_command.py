@@ -36,8 +36,10 @@ _SHOWN = 5
 @SUBMISSION
 @click.option(
     "--vary", multiple=True, metavar="KEY=FROM:TO:STEP",
-    help="A dimension of Variants and its values, in the unit of its column; also KEY=V1,V2,… . Twice: each value of "
-    "the one with each of the other. Default: the sheet Sweep.",
+    help= (
+        "A dimension of Variants and its values, in the unit of its column; also KEY=V1,V2,… . Given twice: every "
+        "combination of values. Default: the sheet Sweep."
+    ),
 )  # fmt: skip
 @click.option("--variant", metavar="NAME", help="Sweep this variant alone. Default: every one that has the dimension.")
 @click.option(
@@ -116,9 +118,7 @@ def _given(submission: Path, variant: str | None, limits: ReadingLimits) -> Path
     if not (submission.is_file() and is_large(submission, limits)):
         return submission
     if variant is None:
-        raise click.UsageError(
-            f"Of a table of more than {LARGE_ROWS:,} rows name the variant that is swept: --variant."
-        )
+        raise click.UsageError(f"Of a table of more than {LARGE_ROWS:,} rows, name the variant to sweep: --variant.")
     found = excerpt_of_name(submission, variant, limits)
     if found is None:
         raise click.UsageError(f"Nothing is swept: there is no variant {shown(variant)}.")

@@ -44,7 +44,7 @@ def _optional(context: click.Context, option: click.Parameter, value: tuple[str,
 @click.option("--example", is_flag=True, help="Fill it with the published B3-160 study.")
 @click.option(
     "--upgrade", "old", type=click.Path(path_type=Path, readable=False), metavar="OLD",
-    help="Fill it with everything of an older template, or of a table (.csv, .parquet).",
+    help="Fill it with the contents of an older template, or of a table (.csv, .parquet).",
 )  # fmt: skip
 @click.option(
     "--with", "optional", multiple=True, callback=_optional, metavar="SHEETS",

@@ -49,7 +49,7 @@ def complain(text: str) -> None:
 def print_refusal(found: Finding, file: str) -> None:
     """Print why a file was refused, and the mend."""
     complain(f"{'' if file in found.message else f'{named(file)}: '}{found.code} {found.message}")
-    click.echo(f"Mend: {found.fix}", err=True)
+    click.echo(f"Fix: {found.fix}", err=True)
 
 
 def internal_error(fault: BaseException) -> str:

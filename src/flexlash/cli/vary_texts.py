@@ -64,7 +64,7 @@ def _stepped(values: str) -> tuple[float, ...]:
             f"the step must be greater than 0, not {step:.10g}; to count down write the greater value first"
         )
     if step > abs(last - first) > 0:
-        raise ValueError(f"the step {step:.10g} is greater than the way of {abs(last - first):.10g}")
+        raise ValueError(f"the step {step:.10g} is greater than the range of {abs(last - first):.10g}")
     if (count := swept_count(first, last, step)) > MOST_POINTS:
         words = f"{count:,}" if count < MOST_POINTS**2 else f"more than {MOST_POINTS**2:,}"
         raise ValueError(f"that is {words} values; at most {MOST_POINTS:,} are computed at once. Take a larger step")
@@ -77,7 +77,7 @@ def _number(text: str) -> float:
         value = float(text)
     except ValueError:
         point = "; decimals have a point" if "," in text else ""
-        raise ValueError(f'"{text.strip()}" is no number{point}') from None
+        raise ValueError(f'"{text.strip()}" is not a number{point}') from None
     if not math.isfinite(value):
-        raise ValueError(f'"{text.strip()}" is no number')
+        raise ValueError(f'"{text.strip()}" is not a number')
     return value

@@ -96,7 +96,7 @@ def _each_variant(difference: Difference, *, every: bool, all_by: str) -> Iterat
         yield _listed(variant.name)
         yield from (f"    {line}" for line in _variant_lines(variant, every=every, all_by=all_by))
     if len(own) > _LISTED and not every:
-        yield f"… and {len(own) - _LISTED} more variants{f' ({all_by} tells every one)' if all_by else ''}"
+        yield f"… and {len(own) - _LISTED} more variants{f' ({all_by} lists all)' if all_by else ''}"
 
 
 def _importance(variant: Differing) -> tuple[bool, float]:
@@ -221,4 +221,4 @@ def comparison_line(different: int, numbers: int, report: str) -> str:
     """Return whether the Results computed anew are those of a report."""
     if not different:
         return f"Every number of Results equals that of {report} ({numbers} compared)."
-    return f"{different} of {numbers} numbers of Results differ from {report}; flexlash diff tells which."
+    return f"{different} of {numbers} numbers of Results differ from {report}; flexlash diff shows which."

@@ -115,7 +115,7 @@ def _reason(allocation: Allocation, members: Sequence[Member]) -> str:
         named[share_of_units(allocation.over[place])].append(shown(members[place].variant.name))
     parts = [f"{share} of {' and '.join(names)}" for share, names in named.items()]
     more = len(allocation.helpless) - _NAMED
-    rest = f" and of {more} variants more" if more > 0 else ""
+    rest = f" and of {more} more variants" if more > 0 else ""
     kept = "; the others are kept with these" if allocation.values is not None else ""
     return f"even with the narrowest widths {', '.join(parts)}{rest} stay over the limit{kept}"
 

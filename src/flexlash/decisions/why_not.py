@@ -35,9 +35,9 @@ def never_met(dimension: str, value: float, ends: tuple[float, float], over: flo
     """Return that no value of a dimension meets the limit, where the best of all [SI] leaves such a share over it.
 
     >>> never_met("disk_inner_radius", 0.0795, (0.004, 0.0795), 0.12)
-    'no disk inner radius alone can: at 79.5 mm, the greatest that was tried, 12 % of units are still over the limit'
+    'no disk inner radius alone can: at 79.5 mm, the greatest value tried, 12 % of units are still over the limit'
     """
-    names = {ends[0]: "the least that was tried", ends[1]: "the greatest that was tried"}
+    names = {ends[0]: "the least value tried", ends[1]: "the greatest value tried"}
     which = f", {names.get(value, 'the best of all')}"
     share = share_of_units(over)
     verb = "is" if share.endswith("unit") else "are"

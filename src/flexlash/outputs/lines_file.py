@@ -40,7 +40,7 @@ class LinesFile:
         What a killed run left of another line is overwritten by the next.
         """
         if not stat.S_ISREG(os.fstat(self._handle).st_mode):
-            return "it is no file"
+            return "it is not a file"
         with os.fdopen(os.dup(self._handle), "rb") as file:
             *whole, rest = file.read().split(b"\n")
         if (whole[0] if whole else rest) != title.encode()[: None if whole else len(rest)]:

@@ -69,7 +69,7 @@ def opened_file(path: Path) -> Iterator[BinaryIO]:
     handle = _open(path)
     if not stat.S_ISREG(os.fstat(handle).st_mode):
         os.close(handle)
-        raise FileNotFoundError(errno.ENOENT, "this is no file", str(path))
+        raise FileNotFoundError(errno.ENOENT, "this is not a file", str(path))
     with os.fdopen(handle, "rb") as file:
         yield file
 
@@ -118,5 +118,5 @@ def _kind(data: bytes) -> Kind:
     text = data.strip()
     is_line = text and b"\n" not in text and b"\r" not in text
     if is_line and not any(sign in data for sign in _SIGNS):
-        raise Refusal("E101", found="its text is a single line and no table")
+        raise Refusal("E101", found="its text is a single line, not a table")
     return "csv"

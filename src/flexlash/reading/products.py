@@ -39,13 +39,15 @@ __all__ = [
     "stamped_product",
 ]
 
-REPORT_NAME, CHECKED_NAME, FIXED_NAME, SWEEP_NAME = "-report", "-checked", "-mended", "-sweep"
+REPORT_NAME, CHECKED_NAME, FIXED_NAME, SWEEP_NAME = "-report", "-checked", "-autofixed", "-sweep"
 """What flexlash puts behind the name of a submission."""
 
 SUMMARY_NAME = "flexlash-summary"
 """How the summary of all submissions is called in the folder of their reports."""
 
-_MADE = re.compile(rf"(?P<stem>.+)(?P<what>{REPORT_NAME}|{CHECKED_NAME}|{FIXED_NAME}|{SWEEP_NAME})(?: \(\d+\))?")
+_FORMER_FIXED_NAME = "-mended"
+_NAMES = f"{REPORT_NAME}|{CHECKED_NAME}|{FIXED_NAME}|{_FORMER_FIXED_NAME}|{SWEEP_NAME}"
+_MADE = re.compile(rf"(?P<stem>.+)(?P<what>{_NAMES})(?: \(\d+\))?")
 _FIXED = "mended"
 _PRODUCTS = {
     "report": "I508",
@@ -82,9 +84,9 @@ def results_header(keys: Iterable[object]) -> bool:
 
 
 def is_made_by_name(path: Path) -> bool:
-    """Whether a file has the kind of name that flexlash gives: `<name>-report`, `-checked`, `-mended` and so on.
+    """Whether a file has the kind of name that flexlash gives: `<name>-report`, `-checked`, `-autofixed` and so on.
 
-    >>> is_made_by_name(Path("a-mended (2).csv")), is_made_by_name(Path("a.csv"))
+    >>> is_made_by_name(Path("a-autofixed (2).csv")), is_made_by_name(Path("a.csv"))
     (True, False)
     """
     return _MADE.fullmatch(path.stem) is not None
@@ -95,9 +97,12 @@ def made_of(path: Path, what: str) -> str:
 
     >>> made_of(Path("a-checked (2).xlsx"), CHECKED_NAME), made_of(Path("b.xlsx"), CHECKED_NAME)
     ('a', 'b')
+    >>> made_of(Path("a-mended.csv"), FIXED_NAME)  # as it was called before version 0.10
+    'a'
     """
     match = _MADE.fullmatch(path.stem)
-    return match["stem"] if match and match["what"] == what else path.stem
+    made = match and (FIXED_NAME if match["what"] == _FORMER_FIXED_NAME else match["what"])
+    return match["stem"] if match and made == what else path.stem
 
 
 @dataclass(frozen=True, kw_only=True)

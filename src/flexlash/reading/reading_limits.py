@@ -61,7 +61,7 @@ class ReadingLimits:
         names = {limit.name for limit in fields(cls)}
         for name, value in settings.items():
             if name not in names:
-                raise ValueError(f"{shown(name)} is no limit; there are {', '.join(sorted(names))}")
+                raise ValueError(f"{shown(name)} is not a limit; the limits are {', '.join(sorted(names))}")
             if not _WHOLE.fullmatch(str(value)):
                 raise ValueError(f"{name} = {shown(value)}: a whole number of at least 1 is required")
         return cls(**{name: int(str(value)) for name, value in settings.items()})

@@ -30,28 +30,36 @@ __all__ = ["CHECKSUMS", "ERRATA", "LEFT_OUT", "MODEL", "PROOF", "SHEETS", "TABS"
 
 SHEETS = {
     "Summary": "One page: what was computed, what fails, by how much, why and what to change.",
-    "Allocation": "What the tolerances of each class may be, at least cost, so that all of its variants are kept.",
-    "Levers": "Which one change brings a failing variant within its limit; how far those of a sound one may go.",
+    "Allocation": (
+        "What the tolerances of each class may be, at the least cost, with all of its variants within their limits."
+    ),
+    "Levers": "Which single change brings a failing variant within its limit; how far a passing one may still change.",
     "Results": "Every number of every variant, in submitted order, to filter and to copy.",
     "Explorer": "One variant picked from a list: the share over any limit, the limit for any share, its curves.",
     "Compare": "Variants side by side: percentile boxes against their limits.",
     "Ranking": "Variants worst first, each beside a base variant that you pick.",
-    "Contributions": "Which dimension causes how much of whose spread, and how much of the backlash the disk adds.",
+    "Contributions": (
+        "How much of each variant's spread each dimension causes, and how much of the backlash the disk adds."
+    ),
     "Sweep": "Parametric studies: backlash and spread over one dimension or two, and where they cross the limit.",
-    "Trade-offs": "Backlash against mass and cost, with the front of what none beats; the worst by each dimension.",
+    "Trade-offs": (
+        "Backlash against mass and cost, with the variants that no other beats; the worst variant by each dimension."
+    ),
     "Trace": "One variant worked through in formulas, from its inputs to backlash and stress; inputs can be changed.",
     "Trace spread": "The tolerances of that variant added up to the first-order standard deviation, in formulas.",
     "Trace steps": "The sums over points and the search behind single lines of Trace.",
     "Sensitivity": "Which dimension causes the spread: tornado of the worst variant, shares of all.",
-    "Tolerances used": "Limits, mean and scatter of every dimension of every variant, and where these are from.",
-    "Samples": "What the measured parts tell of each dimension: mean, scatter, Cp, Cpk with 95 % intervals, normality.",
+    "Tolerances used": "Limits, mean and scatter of every dimension of every variant, and where they come from.",
+    "Samples": (
+        "What the measured parts say about each dimension: mean, scatter, Cp, Cpk with 95 % intervals, normality."
+    ),
     "Sections": "Where along the part the nominal backlash arises.",
     "Strength": "Stress in each section, when it yields or buckles, how stiff the part is.",
     "Drive": "The whole drive: wind-up and other sources added up in formulas by five rules; the catalogue's curve.",
     "Elasticity": "The formula beside two-dimensional elasticity, and the bounds under two lobes.",
     "Stress": "Shear stress in the half-section of the worst checked variants, as pictures.",
-    "Findings": "What was found in the submission: each rule with its mend, then every cell.",
-    "Submission": "Sheet Variants as read, cell by cell; coloured cells say in a comment what is wrong.",
+    "Findings": "What was found in the submission: each rule with its fix, then every cell.",
+    "Submission": "Sheet Variants as read, cell by cell; a coloured cell has a comment that says what is wrong.",
     "Materials": "The materials used, as read or built in.",
     "Tolerances": "The tolerance classes used, as read or built in.",
     "Settings": "The settings as read.",
@@ -63,7 +71,7 @@ SHEETS = {
     "About": "This page: where the numbers come from and what they mean.",
     "Curves": "Stored percentiles behind Summary and Explorer.",
     "Compared": "Stored figures behind Compare, Ranking and Contributions.",
-    "Swept": "Stored courses behind the charts of Sweep.",
+    "Swept": "Stored curves behind the charts of Sweep.",
     "Inputs": "What was entered and what the program found, behind Trace.",
     "Scatter": "How each dimension scatters, behind Trace spread.",
     "Tied": "Which dimensions scatter together, behind Trace spread.",
@@ -85,9 +93,10 @@ MODEL = (
     "Shear stress T/(2π r² t); von Mises √3 times it; wall buckling by NASA SP-8007 with its knock-down factor 0.67.",
     "Bending: the wave generator presses the wall out of round by w₀ cos 2θ, twice a turn: 1.5 E Δ w₀/(r_m² (1 − ν²)), "
     "without coning of the mouth and notches. All other stresses are of torsion only.",
-    "Two lobes, with --elasticity, of cups with a tooth face width: a bracket from harmonics of elasticity on a rigid, "
-    "tight wave generator. Low: all engaged teeth turn alike, the bore is held over the bearing's width. High: two "
-    "single teeth carry everything, the bore is held in the bearing's middle alone. There is no factor for two lobes.",
+    "Two lobes, with --elasticity, of cups with a tooth face width: a bracket from harmonics of elasticity on a "
+    "rigid, tight wave generator. Low: all engaged teeth turn by the same angle, the bore is held over the bearing's "
+    "width. High: two single teeth carry everything, the bore is held in the bearing's middle alone. There is no "
+    "factor for two lobes.",
     "With 25 to 50 % of the teeth engaged, parts of catalogue-like proportions so come to 4 % below to 9 % above the "
     "number without face width, which lies low in the bracket: two single teeth are further up than any drive.",
     "A blank disk thickness is the wall thickness and a blank disk radius the mean radius: one dimension, one scatter.",
@@ -233,8 +242,8 @@ def _verdict(bounds: VerdictBounds) -> Iterator[str]:
         "more samples may turn it."
     )
     yield (
-        "It is about the units of all lots together. How many lots fail by themselves is told beside it and changes no "
-        "verdict."
+        "It is about the units of all lots together. How many lots fail by themselves is shown beside it and changes "
+        "no verdict."
     )
     yield "A variant with warnings has its verdict all the same: a part beyond yield can meet its limit. See Findings."
 
@@ -307,7 +316,7 @@ def _of_large(extent: Extent) -> dict[str, str]:
     texts = {
         "Sensitivity": f"Which dimension causes the spread: tornado of the worst variant, shares of {worst}.",
         "Tolerances used": f"Limits, mean and scatter of every dimension of {worst}, and where these are from.",
-        "Findings": f"What was found: each rule with its mend and count, then the first {MOST_FINDINGS} findings.",
+        "Findings": f"What was found: each rule with its fix and count, then the first {MOST_FINDINGS} findings.",
         "Submission": f"Sheet Variants as read, of {worst}, worst first behind their row numbers.",
     }
     if extent.only_drawn:

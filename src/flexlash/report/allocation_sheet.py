@@ -22,10 +22,10 @@ _NOTES = (
     "For each class, what its tolerances may be so that every variant with a limit keeps the setting target_percent, "
     "at the least relative cost: IT grades finer times cost per IT grade of the sheet Levers, else 1. Middle, "
     "distribution and capability stay; moduli scatter as they do. Found on the engine's slopes, rounded to steps of "
-    "the drawing, and computed anew for every variant as a submission of it.",
-    "To have a class so, enter these widths in its rows of Tolerances: ± in mm or ° about the middle of the deviations "
-    "that it has, ± in % of the value, or the grade of that number. At most five IT grades wider or finer, and ± 10 % "
-    "of a value.",
+    "the drawing, and recomputed for every variant exactly as if it had been submitted.",
+    "To apply this to a class, enter these widths in its rows of Tolerances: ± in mm or ° about the middle of the "
+    "deviations that it has, ± in % of the value, or the grade of that number. At most five IT grades wider or finer, "
+    "and ± 10 % of a value.",
 )
 _SENTENCES = 12
 """Most classes of which the sheet says in words what they may have."""

@@ -36,9 +36,9 @@ _COLUMNS = (
 )
 _LOBE_NOTE = (
     "Two lobes, of cups with a tooth face width, on a rigid, tightly fitting wave generator. Low: all engaged teeth "
-    "turn alike, the bearing holds the bore over its width. High: two single teeth carry everything, the bearing holds "
-    "the bore in its middle alone. The wave generator's fit is not included: a few µm of play can add 20 to 130 %, "
-    "most where no tooth rim is thicker than the wall."
+    "turn by the same angle, the bearing holds the bore over its width. High: two single teeth carry everything, the "
+    "bearing holds the bore in its middle alone. The wave generator's fit is not included: a few µm of play can add "
+    "20 to 130 %, most where no tooth rim is thicker than the wall."
 )
 _LOBE_COLUMNS = (
     ("face_width_change_percent", "Change by the tooth face [%]", "0.00"),

@@ -108,12 +108,12 @@ def _write_rules(book: Book, sheet: Any, outcome: Outcome, listed: int) -> int:
     """Write one line for each rule, above a list of so many findings; return the row of the list's header."""
     rules, counts = rules_of(outcome), rule_counts(outcome)
     row = _RULES_HEADER
-    headings = {0: "Level", 1: "Code", 2: "Count", 3: "Rule", 6: "More", 7: "How to mend"}
+    headings = {0: "Level", 1: "Code", 2: "Count", 3: "Rule", 6: "More", 7: "Fix"}
     last = len(FINDINGS) - 1
     for column_index in range(last + 1):
         sheet.write_string(row, column_index, headings.get(column_index, ""), book.format("header"))
     sheet.merge_range(row, 3, row, 5, "Rule", book.format("header"))
-    sheet.merge_range(row, 7, row, last, "How to mend", book.format("header"))
+    sheet.merge_range(row, 7, row, last, "Fix", book.format("header"))
     for row, (code, group) in enumerate(rules.items(), start=_RULES_HEADER + 1):
         fixes = {finding.fix for finding in group}
         mend = fixes.pop() if len(fixes) == 1 and len(group) == counts[code] else explanation_of(code, {}).mend

@@ -20,7 +20,8 @@ _NOTES = (
     "Each sample is the measured parts of one process. From … to … are 95 % intervals: of a hundred samples of this "
     "size about 95 have the true figure of the process between them. More parts make them narrower.",
     "Mean by Student's t, standard deviation s (n − 1) by chi-square, Cp by the interval of s, Cpk by Bissell 1990. "
-    "They are those of a normal process; with p below 0.05 Anderson and Darling's test says that it is hardly one.",
+    "They are those of a normal process; with p below 0.05 Anderson and Darling's test says that the process is "
+    "probably not normal.",
     "Cp and Cpk compare the process with the limits of the class that uses the sample. Deviations are what was "
     "measured above the entered value, and so are their limits.",
 )
@@ -122,7 +123,7 @@ def write_samples(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
     variants = [one.computed for one in drawn] if extent.is_part else list(outcome.computed.values())
     rows, pairs = sample_uses(measured, variants), measured_pairs(measured, variants)
     sheet = book.sheet(SAMPLES)
-    sheet.write_string(0, 0, "What the measured parts tell", book.format("title"))
+    sheet.write_string(0, 0, "What the measured parts say", book.format("title"))
     sheet.set_row(0, 28)
     more = f"The first {MOST_ROWS} dimensions of samples." if len(rows) >= MOST_ROWS else ""
     notes = [*_NOTES, *filter(None, (extent.note, more))]

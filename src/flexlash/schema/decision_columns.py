@@ -259,7 +259,7 @@ SWEEP = (
         "requirement",
         "second_dimension",
         "Second dimension",
-        "Another dimension that is swept with it: each value of the one with each of the other.",
+        "Another dimension that is swept with it: every combination of values is computed.",
         type="choice",
         choices=_SIZES,
         group="Second",

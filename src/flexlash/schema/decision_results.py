@@ -94,7 +94,7 @@ LEVERS_TABLE = (
         "Whether the drawing value keeps to the rules of a part, to plausible proportions and to the range of Levers.",
         **_YES_NO,
     ),
-    _lever("range_note", "Range note", "What it does not keep to, or what gets worse with the change.", type="text"),
+    _lever("range_note", "Range note", "Which of these it breaks, or what gets worse with the change.", type="text"),
     _lever(
         "relative_cost", "Relative cost", "Steps times cost per step; of a tolerance IT grades times cost per grade."
     ),

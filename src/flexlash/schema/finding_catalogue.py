@@ -73,7 +73,7 @@ CATALOGUE = _rules(
     (
         "E105",
         "unsafe content",
-        "{file} holds hidden instructions for other programs, which no Excel workbook needs.",
+        "{file} holds hidden instructions for other programs, which an Excel workbook never needs.",
         "Copy the cells into a fresh template and submit that.",
         "Such instructions are used to attack programs that read the file. Excel never writes them.",
     ),
@@ -87,7 +87,7 @@ CATALOGUE = _rules(
     (
         "E107",
         "text encoding",
-        "{file} is a text table whose letters cannot be told: neither Unicode nor Windows-1252.",
+        "{file} is a text table whose characters cannot be decoded: neither Unicode nor Windows-1252.",
         "In Excel: Save As, type CSV UTF-8.",
         "UTF-8, UTF-16 with its mark and Windows-1252 are read. In other encodings µ, Δ and names with accents would "
         "be misread.",
@@ -125,8 +125,8 @@ CATALOGUE = _rules(
         "misspelt header",
         "{place}: the header {value} is unknown but probably means {name}.",
         "Write {label}, or a name that does not resemble a column of the template.",
-        "A misspelt optional column would otherwise be left out of the calculation without a word; a required one "
-        "would be missing. Rows that hold a value under it are not computed.",
+        "A misspelt optional column would otherwise be left out of the calculation silently; a required one would be "
+        "missing. Rows that hold a value under it are not computed.",
     ),
     (
         "E113",
@@ -139,9 +139,9 @@ CATALOGUE = _rules(
     (
         "E114",
         "column twice",
-        "{place}: {name} already stands in column {other}.",
+        "{place}: {name} is already in column {other}.",
         "Delete one of the two columns.",
-        "With two columns of one meaning flexlash cannot know which holds.",
+        "With two columns of one meaning flexlash cannot know which one applies.",
     ),
     (
         "E115",
@@ -160,9 +160,9 @@ CATALOGUE = _rules(
     (
         "E117",
         "two sheets of one name",
-        "{file} has two sheets of one name but for case and spaces: {other} and {found}.",
+        "{file} has two sheets whose names differ only in case or spaces: {other} and {found}.",
         "Rename or delete one of them.",
-        "With two sheets of one name flexlash cannot know which holds.",
+        "With two sheets of one name flexlash cannot know which one applies.",
     ),
     (
         "E118",
@@ -174,15 +174,15 @@ CATALOGUE = _rules(
     (
         "E120",
         "not a report",
-        "{file} is no report made by flexlash.",
+        "{file} is not a report made by flexlash.",
         "Give a report, <name>-report.xlsx; a submission is computed without --from-report.",
-        "With --from-report everything is computed anew from a report alone, without the file it was made of.",
+        "With --from-report everything is computed anew from a report alone, without the file it was made from.",
     ),
     (
         "E121",
         "report without its inputs",
         "{file} carries no inputs: an older version made it, or its hidden sheet Carried was deleted.",
-        "Run the submission that it was made of; its name stands on the report's sheet About.",
+        "Run the submission that it was made from; its name stands on the report's sheet About.",
         "A report carries what was read on a hidden sheet, with every digit, so that the report alone is enough.",
     ),
     (
@@ -197,8 +197,8 @@ CATALOGUE = _rules(
         "several sheets of one kind",
         "{place}: several sheets have the headers of {other}, but not one has its name: {found}.",
         "Rename the one that is meant to {other}, and delete the others or submit them on their own.",
-        "A sheet of another name is read when it alone has the headers of an entry sheet. Of several nobody but their "
-        "author knows which holds.",
+        "A sheet of another name is read when it alone has the headers of an entry sheet. Of several, only their "
+        "author knows which one applies.",
     ),
     (
         "E128",
@@ -212,7 +212,7 @@ CATALOGUE = _rules(
         "E201",
         "required cell empty",
         "{place} {name} is empty: {requirement} is required.",
-        "Fill the cell.",
+        "Fill in the cell.",
         "Required columns are tinted in the template.",
     ),
     (
@@ -243,7 +243,7 @@ CATALOGUE = _rules(
         "E205",
         "error in a cell",
         "{place} {name} shows {value}: {requirement} is required.",
-        "Mend the formula or type the value.",
+        "Correct the formula, or type the value.",
         "The cell's formula failed, so there is no value to compute with.",
     ),
     (
@@ -265,19 +265,19 @@ CATALOGUE = _rules(
         "number too large",
         "{place} {name} = {value}: {requirement} is required.",
         "Check the value and its unit.",
-        "The value lies above the greatest one that has a meaning here.",
+        "The value is greater than any that makes sense here.",
     ),
     (
         "E209",
         "not in the list",
         '{place} {name} = "{value}": {requirement} is required.',
         "Write an entry of the list: {choices}.",
-        "Letter case and spaces do not matter; the word must be one of the list.",
+        "Letter case and spaces do not matter; the word must be on the list.",
     ),
     (
         "E210",
         "unknown grade",
-        '{place} {name} = "{value}" is no grade; IT7, js7, h7, H7 or 2768-m, for instance, is required.',
+        '{place} {name} = "{value}" is not a grade; IT7, js7, h7, H7 or 2768-m, for instance, is required.',
         "Enter such a grade, or lower and upper deviation instead.",
         "Grades are IT, js, h or H with 5 to 12, and 2768-f, -m, -c, -v. h lies below the nominal value, H above, js "
         "and IT on both sides. Letter case matters: h is not H.",
@@ -330,8 +330,8 @@ CATALOGUE = _rules(
         "nothing but a name",
         '{place}: the row "{value}" holds no number, so that it is no variant.',
         "Fill the row, or delete it.",
-        "A variant needs a torque, a length, a radius and a wall. A row that lacks them all is told once, not cell by "
-        "cell.",
+        "A variant needs a torque, a length, a radius and a wall. A row that lacks them all is reported once, not "
+        "cell by cell.",
     ),
     (
         "E219",
@@ -339,16 +339,16 @@ CATALOGUE = _rules(
         "{place}: the row of units gives {value} for {name}, but its header is read in {other}.",
         "Write the unit in the header's brackets, then delete the row of units.",
         "A row of units below the headers is read only to compare it with them. Rows that hold a value in such a "
-        "column are not computed, since it is not certain which of the two holds.",
+        "column are not computed, since it is not certain which of the two applies.",
     ),
     (
         "E220",
         "numbers stored as text",
         "{place} {name} holds {suggestion} as text, not as a number.",
         "In Excel (green corner): select the cells, click the sign beside them, Convert to Number. Or let flexlash "
-        "check --apply-fixes mend all of them.",
+        "check --apply-fixes fix all of them.",
         "Exports, a leading apostrophe and cells formatted as Text store a number as text. It looks the same, but no "
-        "program reckons with it.",
+        "program calculates with it.",
     ),
     (
         "E221",
@@ -433,7 +433,7 @@ CATALOGUE = _rules(
     (
         "E308",
         "variant twice",
-        '{place} {name} = "{value}" also stands in {other}.',
+        '{place} {name} = "{value}" is also in {other}.',
         "Give each variant a name of its own.",
         "The report names rows by their variant; letter case does not make two names. All rows of a name are marked.",
     ),
@@ -476,7 +476,7 @@ CATALOGUE = _rules(
         "E314",
         "impossible at the limits",
         "{place} {name} = {value}: its tolerance in class {other} reaches {detail}.",
-        "Check the value and its unit; else narrow the tolerance, or mend the deviation unit.",
+        "Check the value and its unit; else narrow the tolerance, or correct the deviation unit.",
         "At the tolerance limits every thickness must stay above 0 and the hub inside the disk.",
     ),
     (
@@ -505,15 +505,15 @@ CATALOGUE = _rules(
         "E318",
         "deviations reversed",
         "{place} {name} = {value} is greater than the upper deviation {other}.",
-        "Exchange the two; deviations are signed.",
+        "Swap the two; deviations are signed.",
         "For −0.02/+0.01 the lower deviation is −0.02 and the upper 0.01.",
     ),
     (
         "E319",
         "tolerance twice",
-        "{place}: {name} {value} of this class also stands in {other}.",
+        "{place}: {name} {value} of this class is also in {other}.",
         "Keep one row per class and dimension.",
-        "With two rows flexlash cannot know which holds.",
+        "With two rows flexlash cannot know which one applies.",
     ),
     (
         "E320",
@@ -525,7 +525,7 @@ CATALOGUE = _rules(
     (
         "E321",
         "material twice",
-        '{place} {name} = "{value}" also stands in {other}.',
+        '{place} {name} = "{value}" is also in {other}.',
         "Give each material a name of its own.",
         "Variants refer to materials by name.",
     ),
@@ -539,9 +539,9 @@ CATALOGUE = _rules(
     (
         "E323",
         "setting twice",
-        "{place} {name} = {value} also stands in {other}.",
+        "{place} {name} = {value} is also in {other}.",
         "Keep one row per setting.",
-        "With two rows flexlash cannot know which holds.",
+        "With two rows flexlash cannot know which one applies.",
     ),
     (
         "E324",
@@ -580,9 +580,9 @@ CATALOGUE = _rules(
     ),
     (
         "E329",
-        "unit slipped, row contradictory",
+        "wrong unit, contradictory row",
         "{place} {name} = {value} is about {other} and contradicts {contradicted}.",
-        "Enter the value in the unit of the header, or mend the header's unit.",
+        "Enter the value in the unit of the header, or correct the unit in the header.",
         "Metres in a column of millimetres, for instance. Because of this one value the row makes no part, so it is "
         "not computed; the cell that it contradicts is probably right.",
     ),
@@ -599,25 +599,25 @@ CATALOGUE = _rules(
         "tolerance wider than the value",
         "{place} {name} = {value}: class {other} allows ± {detail} % of it; at most 100 % is possible.",
         "Check the deviations and their unit in Tolerances.",
-        "Half the distance between the limits exceeds the entered value, so that the unit of the deviations cannot be "
-        "meant: micrometres entered as millimetres, for instance.",
+        "Half the distance between the limits exceeds the entered value, so the unit of the deviations must be wrong: "
+        "micrometres entered as millimetres, for instance.",
     ),
     (
         "E334",
         "row that stops its process",
         "{place}: computing this row stopped its process three times, so that nothing of it was computed.",
-        "Look for a value that cannot be meant; if the row is in order, compute it alone and report the fault.",
+        "Look for an implausible value; if the row is right, compute it alone and report the fault.",
         "A large table is computed in chunks. A chunk that loses its process three times is halved until the row is "
         "found; all other rows are computed. This is a fault of the program or of the machine, such as too little "
         "memory, not of the file.",
     ),
     (
         "E335",
-        "process told twice",
-        "{place} {name} = {value}, beside {other}: only one of them can hold.",
+        "process given twice",
+        "{place} {name} = {value}, beside {other}: only one of them may be given.",
         "Clear one of the two cells.",
-        "Limits at ± sigma, Standard deviation, Cp and Sample each give the standard deviation, and Sample the mean as "
-        "well. With two of them flexlash cannot know which holds.",
+        "Limits at ± sigma, Standard deviation, Cp and Sample each give the standard deviation, and Sample the mean "
+        "as well. With two of them flexlash cannot know which one applies.",
     ),
     (
         "E336",
@@ -625,7 +625,7 @@ CATALOGUE = _rules(
         "{place} {name} = {value}: {detail}.",
         "Enter Cp, or correct one of the two; without Cpk the process lies in the middle of the limits.",
         "Cp tells how a process scatters within its limits, Cpk how much of that room it has on its nearer side. Off "
-        "the middle Cpk is less than Cp, in the middle they are alike, and it is never more.",
+        "the middle Cpk is less than Cp, in the middle the two are equal; it is never greater.",
     ),
     (
         "E337",
@@ -637,9 +637,10 @@ CATALOGUE = _rules(
     ),
     (
         "E338",
-        "base of a class that cannot hold",
+        "invalid base of a class",
         "{place} {name} = {value}: {detail}.",
-        "Keep one row per class that names the class it is based on, all else in it blank, and no circle of classes.",
+        "Keep one row per class that names its base, leave all else in that row blank, and let no class lead back to "
+        "itself.",
         "A class takes over every row of the class it is based on that it does not have itself, and what that one "
         "takes over in turn.",
     ),
@@ -648,16 +649,16 @@ CATALOGUE = _rules(
         "process far off its limits",
         "{place} {name} = {value}: {detail}.",
         "Check mean, standard deviation and sample of the row of Tolerances, their unit, and the limits.",
-        "Such a process has nothing to do with the limits of the drawing, so that an entry must be mistaken: a unit "
-        "off by a thousand, deviations taken for values, the sample of another dimension. Parts that were made "
-        "wrong lie nearer to their limits; they are computed, with a warning.",
+        "Such a process has nothing to do with the limits of the drawing, so an entry must be wrong: a unit off by a "
+        "thousand, deviations taken for values, the sample of another dimension. Parts that were made wrong lie "
+        "nearer to their limits; they are computed, with a warning.",
     ),
     (
         "E340",
         "too few measured parts",
         "{place}: sample {value} has {found} of {dimension}; at least 5 are required.",
         "Measure more parts, or enter what is known of the process as Standard deviation or Cp instead.",
-        "So few parts tell next to nothing of how a dimension scatters: of two, the true standard deviation may be "
+        "So few parts say next to nothing about how a dimension scatters: of two, the true standard deviation may be "
         "thirty times what was found. Rows whose class uses the sample are not computed.",
     ),
     (
@@ -680,16 +681,16 @@ CATALOGUE = _rules(
         "E343",
         "deviations taken for values",
         "{place}: {found} values of {name} in sample {other} are not above 0 ({detail}).",
-        "Write deviation under Use as in every row of the sample, or mend the values.",
-        "A dimension of a part is greater than 0. What was measured above and below the entered value is a deviation, "
-        "which flexlash must be told.",
+        "Write deviation under Use as in every row of the sample, or correct the values.",
+        "A dimension of a part is greater than 0. What was measured above and below the entered value is a deviation: "
+        "say so under Use as.",
     ),
     (
         "E345",
         "correlation twice",
-        "{place}: the same pair of this class also stands in {other}.",
+        "{place}: the same pair of this class is also in {other}.",
         "Keep one row per class and pair; which of the two dimensions comes first does not matter.",
-        "With two rows flexlash cannot know which holds.",
+        "With two rows flexlash cannot know which one applies.",
     ),
     (
         "E346",
@@ -711,9 +712,9 @@ CATALOGUE = _rules(
         "correlations contradict one another",
         "{place} {name} = {value} contradicts the other correlations of class {other}; the nearest admissible "
         "value{detail} is {suggestion}.",
-        "Enter {suggestion}, or mend one of the others.",
+        "Enter {suggestion}, or correct one of the others.",
         "Two dimensions that both follow a third closely follow one another: where each has 0.9 with it, they have at "
-        "least 0.62 with one another. In the words of matrices, no eigenvalue may be negative.",
+        "least 0.62 with one another. In matrix terms, no eigenvalue may be negative.",
     ),
     (
         "E349",
@@ -732,18 +733,18 @@ CATALOGUE = _rules(
     (
         "E361",
         "row twice",
-        '{place} {name} = "{value}" also stands in {other}.',
+        '{place} {name} = "{value}" is also in {other}.',
         "Keep one row for each of them, or give each source a name of its own.",
-        "With two rows of one name flexlash cannot know which holds. Other sources with an error give no budget of the "
-        "drive; a dimension whose row of Levers has one is left out of the levers.",
+        "With two rows of one name flexlash cannot know which one applies. Other sources with an error give no budget "
+        "of the drive; a dimension whose row of Levers has one is left out of the levers.",
     ),
     (
         "E362",
         "does not belong to this row",
         "{place} {name} = {value}: {detail}.",
-        "Clear the cell, or mend the cell that it does not go with.",
-        "Beside what else stands in the row the number has no meaning, so that one of the two must be mistaken: a "
-        "radius beside an angle in arcmin, a ratio on the output side, a range of another material.",
+        "Clear the cell, or correct the cell that contradicts it.",
+        "Beside the other cells of the row the number has no meaning, so one of the two must be wrong: a radius "
+        "beside an angle in arcmin, a ratio on the output side, a range of another material.",
     ),
     (
         "E363",
@@ -766,7 +767,7 @@ CATALOGUE = _rules(
         "E365",
         "range reversed",
         "{place} {name} = {value} is greater than the highest value {other}.",
-        "Exchange the two.",
+        "Swap the two.",
         "Lowest and highest are the ends of the range in which the drawing may change the dimension.",
     ),
     (
@@ -782,14 +783,14 @@ CATALOGUE = _rules(
         "one dimension swept twice",
         "{place} {name} = {value}: another dimension than the first of the row is required.",
         "Enter another dimension, or clear the four cells of the second one.",
-        "A study over two dimensions computes each value of the one with each of the other.",
+        "A study over two dimensions computes every combination of their values.",
     ),
     (
         "E368",
         "step greater than the range",
         "{place} {name} = {value} reaches no second value: from the first to the last it is {other}.",
         "Enter a smaller step; for a single value let both ends be the same.",
-        "Values run from the first by the step up to the last, or down to it where that is the lesser one. The step is "
+        "Values run from the first by the step up to the last, or down to it where that is smaller. The step is "
         "always above 0.",
     ),
     (
@@ -826,7 +827,8 @@ CATALOGUE = _rules(
         "W402",
         "beyond yield",
         "{place}: von Mises stress {value} MPa in the {detail} exceeds the yield strength {other} MPa.",
-        "Keep the torque below the elastic limit torque of Results, thicken that section, or take a stronger material.",
+        "Keep the torque below the elastic limit torque (Results), thicken that section, or choose a stronger "
+        "material.",
         "Linear elasticity no longer holds: the real wind-up is greater and part of it stays.",
     ),
     (
@@ -847,7 +849,7 @@ CATALOGUE = _rules(
         "W405",
         "normal tail cut",
         "{place} {name} = {value}: the normal tail of class {other} is cut where the shape becomes impossible.",
-        "Choose a truncated normal, or narrow the tolerance.",
+        "Choose a truncated normal distribution, or narrow the tolerance.",
         "A normal distribution has no end. Where it would reach a thickness of 0, or a hub outside the disk, "
         "within 8.3 standard deviations, it is cut there.",
     ),
@@ -908,7 +910,7 @@ CATALOGUE = _rules(
         "W414",
         "elasticity differs",
         "{place}: the formula is {value} two-dimensional elasticity; the spread keeps the formula.",
-        "Trust the elasticity result for the nominal value, and mind the difference in the spread.",
+        "Use the elasticity result for the nominal value, and allow for the difference in the spread.",
         "Short, thick or strongly stepped parts depart from the thin shell of the formula. Both are compared without "
         "calibration. More than 2 % is reported.",
     ),
@@ -930,7 +932,7 @@ CATALOGUE = _rules(
     (
         "W417",
         "fillet beyond yield",
-        "{place} {name} = {value} mm: its peak von Mises stress {detail} MPa exceeds the yield strength {other} MPa.",
+        "{place} {name} = {value} mm: peak von Mises stress {detail} MPa exceeds the yield strength {other} MPa.",
         "Enlarge the fillet, thicken the disk there, or lower the torque.",
         "By two-dimensional elasticity, which adds to the thin disk's stress what the fillet concentrates. A ductile "
         "part yields there before its section does; under alternating torque it fatigues there.",
@@ -941,20 +943,20 @@ CATALOGUE = _rules(
         "{place} {name} = {value} mm is {detail} of the mean diameter {other} mm; 0.01 to 0.015 is usual.",
         "Check wall and radius for a diameter entered as a radius, or the other way round, and for the decimal point.",
         "Flexsplines have walls of 0.01 to 0.015 of their diameter. Outside 0.006 to 0.02 it is reported; above 0.05 "
-        "I506 and W403 speak of it.",
+        "I506 and W403 report it instead.",
     ),
     (
         "W419",
         "large hub",
         "{place} {name} = {value} mm exceeds 0.7 of the bore radius {other} mm.",
         "Check for a diameter entered as a radius.",
-        "A hub of about half the bore is usual. A disk much narrower than that is hardly flexible enough.",
+        "A hub of about half the bore is usual. A much narrower disk is barely flexible enough.",
     ),
     (
         "W420",
-        "unit slipped",
+        "probably a wrong unit",
         "{place} {name} = {value} is about {other} {detail}.",
-        "Enter the value in the unit of the header, or mend the header's unit.",
+        "Enter the value in the unit of the header, or correct the unit in the header.",
         "Metres in a column of millimetres, MPa or Pa in a column of GPa, N·mm or kN·m in a column of N·m: each value "
         "is compared with the rest of its row, or with real materials. It is used as entered.",
     ),
@@ -1019,20 +1021,20 @@ CATALOGUE = _rules(
         "second table not read",
         "{place}: this sheet holds the headers of {other} as well, but only the sheet {other} is read.",
         "Move its rows to the sheet {other}, submit it as a file of its own, or delete it.",
-        "Excel names the copy of a sheet Variants (2); what stands there takes no part in the calculation.",
+        "Excel names the copy of a sheet Variants (2); its contents take no part in the calculation.",
     ),
     (
         "W429",
         "class resembles another",
         '{place} {name} = "{value}": no variant uses this class.',
-        "Mend the spelling in every row of the class, or delete these rows.",
-        "A dimension without a row in a variant's class is exact, so that a misspelt class takes its tolerance away "
-        "from everybody. An unused class with a name of its own is no fault.",
+        "Correct the spelling in every row of the class, or delete these rows.",
+        "A dimension without a row in a variant's class is exact, so a misspelt class silently loses its tolerances. "
+        "An unused class with a name of its own is not a fault.",
     ),
     (
         "W430",
         "digits instead of remarks",
-        '{place} {name} = "{value}": nothing but short digits stands in this column, as behind split decimal commas.',
+        '{place} {name} = "{value}": this column holds only a few digits a row, as split decimal commas leave behind.',
         "Write decimal points, or separate the columns by semicolons; if the digits are meant, add a word.",
         "In a table separated by commas 40,5 without quotes fills two cells. Where the last cell of a row was left "
         "out, the row has as many cells as there are headers, and the digits of the decimals stand in its last column.",
@@ -1041,9 +1043,9 @@ CATALOGUE = _rules(
         "W433",
         "no row of the table",
         '{place}: this row was not read, since it looks like {detail}: "{value}".',
-        "Nothing to do; or complete the row, or give it another name, if it is an entry.",
-        "Sums and means below a table, notes and legends are no entries. A row is taken for one only when it lacks "
-        "what every entry needs.",
+        "Nothing to do; if it is an entry, complete the row or give it another name.",
+        "Sums and means below a table, notes and legends are not entries. A row is taken for one of these only when "
+        "it lacks what every entry needs.",
     ),
     (
         "W434",
@@ -1064,7 +1066,7 @@ CATALOGUE = _rules(
     (
         "W436",
         "empty column twice",
-        "{place}: {name} already stands in column {other}; this one is empty and was not read.",
+        "{place}: {name} is already in column {other}; this one is empty and was not read.",
         "Delete the empty column.",
         "With values in both columns flexlash could not know which holds, and would compute nothing.",
     ),
@@ -1074,8 +1076,8 @@ CATALOGUE = _rules(
         '{place}: class "{value}" has no row for {detail}, which class standard scatters; taken as exact.',
         "Add a row for each, or one that bases the class on standard (Based on class); for a dimension that is meant "
         "to be exact, a row with both deviations 0.",
-        "A dimension without a row in a variant's class does not scatter, so that a class of your own which lists the "
-        "walls alone takes the scatter of the material away. Only dimensions that a variant of the class has count.",
+        "A dimension without a row in a variant's class does not scatter, so that a class of your own that lists only "
+        "the walls loses the scatter of the material. Only dimensions that a variant of the class has count.",
     ),
     (
         "W440",
@@ -1125,17 +1127,17 @@ CATALOGUE = _rules(
         "{place}: sample {value} has only {found} of {dimension}; the true standard deviation lies between {detail} "
         "what they show.",
         "Measure at least 20 parts, better 50.",
-        "What a few parts tell of a process is uncertain. The report shows the interval that their number leaves "
-        "beside every figure that hangs on it.",
+        "What a few parts say about a process is uncertain. The report shows the interval that their number leaves "
+        "beside every figure that depends on it.",
     ),
     (
         "W446",
         "measured value far from the others",
         "{place} {name} = {value}: the other values of sample {other} lie within {detail}.",
-        "Compare with the record of the measurement; mend the cell, or leave the value if the part is as it says.",
-        "One slip of a point, a unit or two digits makes the standard deviation many times what the process has. A "
-        "value is told when it lies more than twelve standard deviations from the median, as the middle half of the "
-        "sample shows them. It is used as it stands.",
+        "Compare with the measurement record; correct the cell, or leave it if the value is right.",
+        "One misplaced decimal point, wrong unit or swapped pair of digits makes the standard deviation many times "
+        "that of the process. A value is reported when it lies more than twelve standard deviations from the median, "
+        "as judged by the middle half of the sample. It is used as entered.",
     ),
     (
         "W447",
@@ -1149,9 +1151,9 @@ CATALOGUE = _rules(
     (
         "W448",
         "correlation beside the measured one",
-        "{place} {name} = {value} is used in class {other}, but the parts measured together say {detail}.",
+        "{place} {name} = {value} is used in class {other}, but the parts measured together give {detail}.",
         "Check the entered value; delete the row to use the measured one.",
-        "An entered correlation goes before a measured one. It lies outside the interval that holds the true "
+        "An entered correlation overrides a measured one. It lies outside the interval that holds the true "
         "correlation in 95 of 100 samples.",
     ),
     (
@@ -1175,7 +1177,7 @@ CATALOGUE = _rules(
         "W453",
         "sample resembles another",
         '{place} {name} = "{value}": no class uses this sample.',
-        "Mend the spelling in every row of the sample, or delete these rows.",
+        "Correct the spelling in every row of the sample, or delete these rows.",
         "Rows of a misspelt sample are missing from the one that was meant. A sample with a name of its own that no "
         "class uses is no fault.",
     ),
@@ -1186,22 +1188,24 @@ CATALOGUE = _rules(
         "Write the unit of the measurement into the header; under Use as, value for sizes, deviation for what was "
         "measured above the entered value.",
         "A column of micrometres under a header in millimetres, or sizes called deviations, put the whole process "
-        "beside its drawing. The values are used as they stand.",
+        "beside its drawing. The values are used as entered.",
     ),
     (
         "W460",
-        "bending may tire the part",
+        "bending fatigue",
         "{place} {name}: alternating stress {value} MPa exceeds {detail} of the yield strength {other} MPa.",
-        "Take a thinner wall or rim, a smaller deflection or a stronger material; a thicker wall is bent harder.",
-        "Twice a turn the wave generator bends wall and rim, which no torsion shows. Polished steels endure half of "
-        "their tensile strength, ground ones about 0.4 of the yield strength; tooth roots are notches and endure less.",
+        "Choose a thinner wall or rim, a smaller deflection or a stronger material; a thicker wall bends under more "
+        "stress.",
+        "Twice a turn the wave generator bends wall and rim; the stresses of torsion do not show it. Polished steels "
+        "endure half of their tensile strength, ground ones about 0.4 of the yield strength; tooth roots are notches "
+        "and endure less.",
     ),
     (
         "W461",
         "entry takes no part",
         "{place} {name} = {value} takes no part: {detail}.",
-        "Nothing to do; or clear the cell, or mend the cell beside it.",
-        "Another cell of the row leaves nothing for this one to say. The row is used without it.",
+        "Nothing to do; or clear the cell, or correct the cell beside it.",
+        "Another cell of the row makes this one irrelevant. The row is used without it.",
     ),
     (
         "W462",
@@ -1216,12 +1220,12 @@ CATALOGUE = _rules(
         "coarse drawing step",
         "{place} {name} = {value}: {detail}.",
         "Check the step and its unit, that of the dimension's column in Variants.",
-        "The values that levers offer are multiples of the step within the range. A step wider than the range, or than "
-        "every entered value, leaves hardly one; often it is in another unit.",
+        "The values that levers offer are multiples of the step within the range. A step wider than the range, or "
+        "than every entered value, leaves one value at most; often it is in another unit.",
     ),
     (
         "W464",
-        "range beside every variant",
+        "range misses every variant",
         "{place} {name} = {value}: {other} is {detail} in Variants, outside the range of Levers.",
         "Check the range and its unit, that of the dimension's column in Variants.",
         "Lowest and highest say which values the drawing may have. When the drawings of all variants lie outside, the "
@@ -1249,7 +1253,7 @@ CATALOGUE = _rules(
         "system limit below the average",
         "{place} {name} = {value} arcmin is below the average {other} arcmin of wind-up and other sources; about half "
         "or more exceed it.",
-        "Raise the limit, or lower the backlash: the sheet Drive of the report shows whose share is whose.",
+        "Raise the limit, or lower the backlash: the sheet Drive of the report shows what each source contributes.",
         "The average is the nominal backlash of the wind-up and the middle of every source of the sheet Other sources.",
     ),
     (
@@ -1266,7 +1270,8 @@ CATALOGUE = _rules(
         "system limit below the backlash limit",
         "{place} {name} = {value} arcmin is below the backlash limit {other} arcmin of the flexspline alone.",
         "Check which limit is meant: the system limit is that of the whole drive.",
-        "The wind-up of the flexspline is a part of the whole drive's backlash, so that its limit cannot be used up.",
+        "The wind-up of the flexspline is a part of the whole drive's backlash, so the backlash limit could never be "
+        "used in full.",
     ),
     (
         "I501",
@@ -1299,7 +1304,7 @@ CATALOGUE = _rules(
     (
         "I505",
         "built-in table used",
-        "{file} brings no {value}; used instead: the built-in {other}.",
+        "{file} has no {value}; used instead: the built-in {other}.",
         "Nothing to do, or add the sheet from the template.",
         "Built-in are the materials of the template and the tolerance class standard.",
     ),
@@ -1335,25 +1340,26 @@ CATALOGUE = _rules(
         "I510",
         "decimal comma recognised",
         '{file} writes numbers with a decimal comma: {place} "{value}" was read as {suggestion}.',
-        "Nothing to do, if the numbers of the report are yours.",
-        "In a table separated by semicolons, tabs or bars a comma is the decimal sign when at least three times as "
-        "many commas as points can be nothing else. Numbers with a point, such as 1.200, are then errors.",
+        "Nothing to do, if the report shows your numbers.",
+        "In a table separated by semicolons, tabs or bars a comma is taken as the decimal sign when commas that can "
+        "be nothing else outnumber such points by at least three to one. Numbers with a point, such as 1.200, are "
+        "then errors.",
     ),
     (
         "I511",
         "encoding assumed",
         '{file} was read as Windows-1252 text, since it is no Unicode; {place} shows "{value}".',
         "Check accents and symbols. In Excel: Save As, type CSV UTF-8, keeps every letter.",
-        "A plain CSV of Excel does not say which letters its bytes stand for. Numbers are the same in any case; names, "
-        "notes and symbols of units may be shown wrongly.",
+        "A plain CSV from Excel does not say which encoding it uses. Numbers are the same in any case; names, notes "
+        "and symbols of units may be shown wrongly.",
     ),
     (
         "I513",
         "marked copy skipped",
         "{file} is a marked copy of a submission; it was skipped.",
-        "Mend and submit your own file, or take the copy itself with --marked-copies.",
+        "Fix and submit your own file, or take the copy itself with --marked-copies.",
         "Marked copies carry a mark by which they are recognised when a whole folder is submitted. A copy is "
-        "never computed by mistake: mend your own file.",
+        "never computed by mistake: fix your own file.",
     ),
     (
         "I514",
@@ -1366,7 +1372,7 @@ CATALOGUE = _rules(
         "I515",
         "row of units",
         "{place}: this row holds the units of the columns ({value}) and was not read as data.",
-        "Nothing to do. A unit belongs into its header's brackets.",
+        "Nothing to do. A unit belongs in the brackets of its header.",
         "A row of units right below the headers is skipped when its units are those that the headers name or imply.",
     ),
     (
@@ -1386,11 +1392,11 @@ CATALOGUE = _rules(
     ),
     (
         "I526",
-        "mended file skipped",
-        "{file} is a mended copy of a file that is submitted as well; it was skipped.",
-        "To compute the mended file, submit it without its original.",
-        "Both hold the same variants. A mended workbook says of which file it was made, also when somebody worked in "
-        "it; a mended table is known by its name, <name>-mended.csv, beside <name>.csv.",
+        "fixed file skipped",
+        "{file} is a fixed copy of a file that is also submitted; it was skipped.",
+        "To compute the fixed file, submit it without its original.",
+        "Both hold the same variants. A fixed workbook names the file it was made from, even after somebody has "
+        "worked in it; a fixed table is known by its name, <name>-autofixed.csv, beside <name>.csv.",
     ),
     (
         "I527",
@@ -1411,14 +1417,14 @@ CATALOGUE = _rules(
         "part measured more than once",
         "{place}: {found} more than once in sample {other}, such as {value} ({detail}); each row counts as a part.",
         "Nothing to do if these are different parts; else keep one row of each part.",
-        "Measuring one part again tells of the gauge, not of the process: the sample looks larger than it is, and its "
-        "interval narrower.",
+        "Measuring one part again says something about the gauge, not about the process: the sample looks larger than "
+        "it is, and its interval narrower.",
     ),
     (
         "I531",
         "dimensions measured together",
         "{place}: in class {other} the parts of sample {value} scatter together as measured: {detail}.",
-        "Nothing to do; a row of Correlations goes before it, if the correlation is known better.",
+        "Nothing to do; a row of Correlations overrides it, if the correlation is known better.",
         "Two dimensions that are measured on the same parts have the correlation of these parts. That of few parts is "
         "uncertain, as its interval says.",
     ),

@@ -18,7 +18,7 @@ _FAMILIES = {
     "E1": "The file as a whole",
     "E2": "One cell by itself",
     "E3": "Cells that contradict one another",
-    "W4": "Warnings of an engineer",
+    "W4": "Engineering warnings",
     "I5": "What was repaired or assumed",
 }
 _WORDS = {
@@ -56,7 +56,7 @@ class Explanation:
         yield self.pattern
         yield self.meaning
         yield ""
-        yield f"Mend: {self.mend}"
+        yield f"Fix: {self.mend}"
         if self.example:
             yield f"Example: {self.example}"
 
@@ -110,7 +110,7 @@ def _section(explanation: Explanation) -> str:
         f"### {explanation.code} {explanation.title}",
         f"`{explanation.pattern}`",
         explanation.meaning,
-        f"Mend: {explanation.mend}",
+        f"Fix: {explanation.mend}",
         f"Example: `{explanation.example}`\n" if explanation.example else "",
     )
     return "\n\n".join(filter(None, parts)).rstrip() + "\n"

@@ -12,6 +12,7 @@ from flexlash.schema.number_words import (
     LEAST_SHARE,
     RARE_SHARE,
     glance,
+    places,
     rounded,
     share_unit,
     share_words,
@@ -86,7 +87,7 @@ def lots_words(row: Mapping[str, Any], has: str = "", have: str = "") -> str:
         if rare < LEAST_SHARE and error < LEAST_SHARE:
             # What is told as none of lots that differ is hardly ever so.
             return f"{'practically ' if scatters_between_lots(row) else ''}{one} {has}".strip()
-    words = f"all but {_counted(1 - share, error)}" if 1 - share < RARE_SHARE else _counted(share, error)
+    words = _nearly_every(share, error) if 1 - share < RARE_SHARE else _counted(share, error)
     return f"{words} {have}".strip()
 
 
@@ -108,6 +109,20 @@ def _counted(share: float, error: float) -> str:
         return f"at most {spelled_out((share + INTERVAL * error) * factor, _REACH_DIGITS)}{unit}"
     factor, unit = _unit(share)
     return f"{rounded(share * factor, max(error * factor, 10 * glance(share * factor)))}{unit}"
+
+
+def _nearly_every(share: float, error: float) -> str:
+    """Return a share of almost all lots in per cent, in as many decimals as its standard error leaves."""
+    rest = 1 - share
+    if rest < 2 * error:
+        rest = rest + INTERVAL * error
+        return f"at least {_per_cent_of_lots(rest, 10 * glance(rest))}"
+    return _per_cent_of_lots(rest, max(error, 10 * glance(rest)))
+
+
+def _per_cent_of_lots(rest: float, error: float) -> str:
+    """Return all lots but a share of them in per cent, down to the first digit of its error."""
+    return f"{100 - 100 * rest:.{max(0, places(100 * error))}f} % of lots"
 
 
 def _unit(share: float) -> tuple[float, str]:

@@ -73,8 +73,7 @@ def share_words(row: Mapping[str, Any]) -> str:
     if low == high and value in (0, 1):
         return "all" if value else "none"
     if 1 - value < RARE_SHARE:
-        rest = _interval(1 - value, 1 - high, 1 - low)
-        return _ALL if rest == _NONE else f"all but {rest}"
+        return _nearly_all(value, low, high)
     return _interval(value, low, high)
 
 
@@ -142,6 +141,9 @@ LEAST_SHARE = 1e-9
 _ROUGH = 0.01
 """Width of an interval over its share beyond which three digits are not known."""
 
+_MOST_DECIMALS = 10
+"""Decimals of a share in per cent, which leave two digits of the least rest that is told."""
+
 _MOST_DIGITS = 7
 """Digits from on which the ends of an interval are told alike."""
 
@@ -181,6 +183,34 @@ def _interval(value: float, low: float, high: float) -> str:
     if told in ends:  # an interval that reaches much further to one side
         told, *ends = (rounded(end * factor, error * factor / 10) for end in (value, low, high))
     return f"{told}{unit} ({ends[0]} to {ends[1]}{unit})"
+
+
+def _nearly_all(value: float, low: float, high: float) -> str:
+    """Return a share of almost all with its interval, in as many decimals of per cent as what is left has digits."""
+    if 1 - low < LEAST_SHARE:
+        return _ALL
+    if 1 - value < LEAST_SHARE:
+        told = _per_cent(low, _digit(1 - low, 3)).removesuffix(" %")
+        return f"at least {told.rstrip('0').rstrip('.')} %"
+    rest = 1 - value
+    error = min(share_error(low, high), rest)
+    finest = max(rest * _FINEST, _digit(rest, 2 if rest < _BRIEF else 3) if low == high or rest < _BRIEF else 0.0)
+    if error < finest or rest < _BRIEF:
+        return _per_cent(value, max(finest, _digit(error, 1) if error > 0 else 0.0))
+    told, *ends = (_per_cent(end, error) for end in (value, low, high))
+    if told in ends:  # an interval that reaches much further to one side
+        told, *ends = (_per_cent(end, error / 10) for end in (value, low, high))
+    return f"{told} ({ends[0].removesuffix(' %')} to {ends[1]})"
+
+
+def _digit(value: float, digits: int) -> float:
+    """Return the last of so many digits of a number above 0, as a power of ten."""
+    return float(10.0 ** (math.floor(math.log10(value)) + 1 - digits))
+
+
+def _per_cent(share: float, error: float) -> str:
+    """Return a share in per cent down to the first digit of its error."""
+    return f"{100 * share:.{max(0, min(_MOST_DECIMALS, places(100 * error)))}f} %"
 
 
 def _share(share: float, digits: int) -> str:

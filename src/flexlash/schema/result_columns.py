@@ -296,8 +296,8 @@ CROSS_CHECK = (
     _result(
         "cross_check",
         "Cross-check",
-        "agrees: all within 5 combined standard errors, which chance exceeds in fewer than one row in 10,000. differs: "
-        "not so.",
+        "agrees: all within 5 combined standard errors, which chance exceeds in fewer than one row in 10,000. "
+        "differs: otherwise.",
         type="choice",
         choices=("agrees", "differs"),
     ),
@@ -338,8 +338,8 @@ ELASTICITY = (
     _angle(
         "two_lobe_low",
         "Two-lobe backlash low",
-        "Of cups with a tooth face width, on a rigid, tightly fitting wave generator: all engaged teeth turn alike. "
-        "What the wave generator's fit adds is not in it.",
+        "Of cups with a tooth face width, on a rigid, tightly fitting wave generator: all engaged teeth turn by the "
+        "same angle. What the wave generator's fit adds is not in it.",
     ),
     _angle("two_lobe_high", "Two-lobe backlash high", "The same where two single teeth carry the whole torque."),
     _result(
@@ -373,7 +373,7 @@ FINDINGS = tuple(
         ("column", "Column", "Key of the column."),
         ("value", "Value", "What the cell holds, as entered."),
         ("message", "Message", "Where, what was found, what is required."),
-        ("fix", "Fix", "How to mend it."),
+        ("fix", "Fix", "What to do."),
         ("suggestion", "Suggestion", "What was probably meant."),
     )
 )

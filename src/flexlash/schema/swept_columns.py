@@ -24,7 +24,7 @@ def swept_column(name: str) -> Column:
         return column
     other = next((one for one in VARIANTS if plain(name) in {plain(one.key), plain(one.dimension)}), None)
     if other is not None:
-        raise ValueError(f"{other.key} is no dimension of the part, so that it cannot be swept")
+        raise ValueError(f"{other.key} is not a dimension of the part, so it cannot be swept")
     near = suggested(name, _SWEPT)
     hint = f"; did you mean {near}?" if near else f". Dimensions: {', '.join(_SWEPT)}"
     raise ValueError(f"there is no dimension {shown(name)}{hint}")

@@ -18,7 +18,7 @@ TOLERANCES_USED = (
     _used(
         "dimension",
         "Dimension",
-        "A dimension of the variant that scatters, or whose limits lie beside its entered value; others are exact.",
+        "A dimension of the variant that scatters, or whose limits do not include its entered value; others are exact.",
         type="choice",
         choices=tuple(DIMENSIONS),
         role="identity",

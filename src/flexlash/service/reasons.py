@@ -63,9 +63,9 @@ def _lines(answer: Answer, name: str, submission: str, reason: str) -> Iterator[
     yield f"{name}: {answer.words or 'nothing was computed'}."
     yield ""
     if computed and counts.get("computed") == counts.get("rows"):
-        yield f"All rows are in {_place(answer, stem)}. This is to be looked at:"
+        yield f"All rows are in {_place(answer, stem)}. Please check:"
     elif computed:
-        yield f"The rows that could be computed are in {_place(answer, stem)}. Of the others this is to be mended:"
+        yield f"The rows that could be computed are in {_place(answer, stem)}. Fix this in the others:"
     else:
         yield "No report was written. This is why:"
     yield ""
@@ -117,9 +117,9 @@ def _steps(answer: Answer, stem: str) -> Iterator[str]:
             without = f", without its {', '.join(answer.copy.not_carried)}" if answer.copy.not_carried else ""
             yield f"Open {copy} beside this text: a copy of your file{without} in which each of these cells is marked."
         where = "" if has_errors else ", where they are not as they should be,"
-        yield f"Mend the cells in your own file{where} and save it."
+        yield f"Fix the cells in your own file{where} and save it."
     elif has_errors:
-        yield "Mend this as it says."
+        yield "Fix this as described."
     if has_errors:
         yield f"Then {_AGAIN}."
     elif answer.file is not None:

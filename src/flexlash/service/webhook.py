@@ -47,7 +47,9 @@ def webhook_address(url: str) -> SplitResult:
     except ValueError:
         is_one = False
     if not is_one or not url.isascii() or not url.isprintable() or " " in url:
-        raise ValueError(f"{shown(url, 200)} is no address of a webhook: http://HOST/PATH or https://… is required")
+        raise ValueError(
+            f"{shown(url, 200)} is not the address of a webhook: http://HOST/PATH or https://… is required"
+        )
     if parts.username is not None or parts.fragment:
         raise ValueError("the address of a webhook holds neither a user nor a fragment: they would stand in every log")
     return parts

@@ -140,7 +140,9 @@ def _check_play(table: Table, ledger: Ledger, record: Mapping[str, Any]) -> None
     if lower is None and upper is None:
         if value is None or record["kind"] == "random":
             is_random = record["kind"] == "random"
-            detail = "deviations, of which a random source consists," if is_random else "a value, deviations or both"
+            detail = (
+                "deviations, which are all that a random source has," if is_random else "a value, deviations or both"
+            )
             ledger.add_in(table, "E363", row, "lower_deviation" if is_random else "value_arcmin", detail=detail)
     elif lower is not None and upper is not None:
         if lower > upper:

@@ -54,7 +54,7 @@ def _misplaced(table: Table, record: Mapping[str, Any], given: Mapping[str, Any]
     lower, upper = record["lower_deviation"], record["upper_deviation"]
     has_grade = record["grade"] is not None or (record["row"], "grade") in table.faulty
     if lower is not None and lower == upper and not has_grade:
-        words = "both deviations are alike, so that the dimension does not scatter"
+        words = "both deviations are equal, so that the dimension does not scatter"
         return dict.fromkeys(["upper_deviation"] if lower and keys else keys, words)
     if distribution == "measured":
         words = "a measured distribution has mean and standard deviation of its sample"

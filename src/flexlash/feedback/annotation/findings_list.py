@@ -90,7 +90,7 @@ def findings_sheet(
     if not order:
         rows.append(_row(last, [cell_xml(f"A{last}", "Nothing was found.")]))
     elif len(order) > MOST_LISTED:
-        more = f"{len(order) - MOST_LISTED:,} more findings are not listed. Mend these first."
+        more = f"{len(order) - MOST_LISTED:,} more findings are not listed. Fix these first."
         rows.append(_row(last + 1, [cell_xml(f"A{last + 1}", more)]))
     return _sheet(rows, links, header, last), header, last
 

@@ -60,7 +60,7 @@ def worst(findings: Iterable[Finding]) -> Level:
 def note_text(findings: Sequence[Finding]) -> str:
     """Return what a note says of a cell's findings, worst first."""
     order = sorted(findings, key=lambda finding: LEVELS.index(finding.level))
-    texts = [f"{one.level.capitalize()} {one.code}: {one.message}\nMend: {one.fix}" for one in order[:_MOST_IN_A_NOTE]]
+    texts = [f"{one.level.capitalize()} {one.code}: {one.message}\nFix: {one.fix}" for one in order[:_MOST_IN_A_NOTE]]
     if len(order) > _MOST_IN_A_NOTE:
         texts.append(f"{len(order) - _MOST_IN_A_NOTE} more: see the Findings sheet.")
     return "\n\n".join(texts)

@@ -37,7 +37,7 @@ _UNLIMITED = ReadingLimits().times(1000, "part_mebibytes", "unpacked_mebibytes",
 """For workbooks of our own making."""
 
 _STYLES = "xl/styles.xml"
-_TO_DO = "Mend the coloured cells in your own file and submit that; flexlash skips this copy without --marked-copies."
+_TO_DO = "Fix the coloured cells in your own file and submit that; flexlash skips this copy without --marked-copies."
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +63,7 @@ def marked_copy(
     lines = [_TO_DO]
     if lost:
         lines.append(f"Your own file holds what this copy could not take over: {', '.join(lost)}.")
-    title = f"flexlash: what to mend in {name}"
+    title = f"flexlash: what to fix in {name}"
     record, more = _mark(book, styles, findings, lost)
     _add_findings(book, styles, findings, [title, more[0], *lines, *more[1:]], record)
     return MarkedCopy(data=_finished(book, styles), lost=lost)
@@ -88,7 +88,7 @@ def findings_workbook(
     styles = _stylesheet(book)
     lines = [
         f"{name} has {number or counted(findings)}.",
-        "Mend the cells listed here in your own file and submit it again.",
+        "Fix the cells listed here in your own file and submit it again.",
     ]
     _add_findings(book, styles, findings, [why, *lines], None)
     book.remove_sheet(RECORD)
@@ -163,7 +163,7 @@ def _mark(
     threads = sum(add_notes(book, sheets[title], on_sheet) for title, on_sheet in texts.items())
     first = (
         f"{counted(findings).capitalize()}. Cells with an error are red, cells with a warning yellow; "
-        "each has a note that says how to mend it."
+        "each has a note that says how to fix it."
     )
     words = [first]
     if len(guilty) > MOST_NOTES:

@@ -67,7 +67,7 @@ def _with_cells(part: bytes, fixes: list[Fix]) -> tuple[bytes, list[Fix]]:
 
 def _sheet(made: Sequence[Fix]) -> bytes:
     """Return the list of fixes as a worksheet, each linked to its cell."""
-    title = f"flexlash mended {len(made)} cell{'s' if len(made) != 1 else ''}; check each of them."
+    title = f"flexlash fixed {len(made)} cell{'s' if len(made) != 1 else ''}; check each of them."
     table = [(title,), _HEADINGS, *((one.place, one.found, one.written, one.code) for one in made)]
     rows = b"".join(
         b'<row r="%d">%s</row>'

@@ -147,7 +147,7 @@ _PROCESS = (
         holds=lambda row, _: _is_no_normal(row) and given(row, *_OF_A_PROCESS) > 0,
     ),
     Rule(
-        text="both deviations are alike: no process scatters between them",
+        text="both deviations are equal: no process scatters between them",
         excel=f'AND({{lower_deviation}}<>"",{{lower_deviation}}={{upper_deviation}},{count_formula(*_OF_A_PROCESS)}>0)',
         holds=lambda row, _: (
             given(row, *_DEVIATIONS) == 2  # noqa: PLR2004

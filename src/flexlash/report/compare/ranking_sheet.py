@@ -138,12 +138,12 @@ def _write_base(book: Book, sheet: Any, compared: Stored, first: int) -> dict[st
         "input_title": "Base variant",
         "input_message": "All differences are to this variant.",
         "error_title": "Base variant",
-        "error_message": "Pick a variant of the list.",
+        "error_message": "Pick a variant from the list.",
     })  # fmt: skip
     rank = match_exactly(picked, names)
     rank = put(sheet, BASE_ROW, 2, rank, book.format("quiet"))
     is_listed = rank > 0.0
-    remark = IF(is_listed, "◄ its rank", "◄ not in the list: pick one")
+    remark = IF(is_listed, "◄ its rank", "◄ not on the list: pick one")
     put(sheet, BASE_ROW, 3, remark, book.format("quiet"))
 
     def write(heading: str, column: int, number: str) -> Live:

@@ -79,10 +79,10 @@ class DrivePage:
             "input_title": "Variant",
             "input_message": "The whole sheet follows.",
             "error_title": "Variant",
-            "error_message": "Pick a variant of the list.",
+            "error_message": "Pick a variant from the list.",
         })  # fmt: skip
         place = put(sheet, _PICK, 5, match_exactly(name, names), book.format("quiet", '"number "0;;""'))
-        put(sheet, _PICK, 6, IF(place > 0.0, "", "◄ not in the list: the worst is shown"), book.format("hint"))
+        put(sheet, _PICK, 6, IF(place > 0.0, "", "◄ not on the list: the worst is shown"), book.format("hint"))
         return MAX(place, 1.0)
 
     def result(self, key: str) -> Live:

@@ -100,7 +100,7 @@ def _list(sheet: Any, row: int, source: str | Sequence[str], title: str, message
         "input_title": title,
         "input_message": message,
         "error_title": title,
-        "error_message": "Pick an entry of the list.",
+        "error_message": "Pick one from the list.",
     })  # fmt: skip
 
 

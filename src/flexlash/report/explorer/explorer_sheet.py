@@ -160,7 +160,7 @@ def _write_share(book: Book, sheet: Any, choice: Choice, reading: tuple[Working,
         kept = (MIN if sign > 0 else MAX)(end, beyond)
         ends.append(working.cell("end of its interval", IF(working.is_level, share_told, kept)))
     error = working.cell("its standard error in %", (ends[1] - ends[0]) * (50 / INTERVAL))
-    finest = working.cell("least of it that is told", MIN(share_told, 1 - share_told) * (100 * _FINEST))
+    finest = working.cell("least of it that is shown", MIN(share_told, 1 - share_told) * (100 * _FINEST))
     decimals = working.cell("decimals of per cent", decimals_to(MAX(error, finest), _USUAL, most=_MOST))
     narrow = working.cell("interval inside the last digit", decimals_to(error, 0.0, most=2 * _MOST) > decimals)
     for row, share in ((_SHARE, share_told), (_LOW, ends[0]), (_HIGH, ends[1])):

@@ -287,7 +287,7 @@ class Number(TypedDict):
 
 
 class VariantPage(TypedDict):
-    """A variant's own page: sentences, distribution, what causes the spread, where the wind-up sits, its numbers.
+    """A variant's own page: sentences, distribution, what causes the spread, where the wind-up arises, its numbers.
 
     `levers` is null without a limit; facts of earlier versions have none, nor a `sketch`.
     """

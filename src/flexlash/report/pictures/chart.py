@@ -153,7 +153,7 @@ def _density_words(edges: Sequence[float], limit: float | None, unit: str) -> st
     """Return the density in words."""
     words = f"The backlash of units lies between {number(edges[0])}{unit} and {number(edges[-1])}{unit}. "
     if not finite(limit):
-        return words + "There is no limit."
+        return words + "No limit is given."
     if limit <= edges[0]:
         return words + f"All of it is over the limit of {number(limit)}{unit}."
     if limit >= edges[-1]:

@@ -22,5 +22,5 @@ def variant_charts(density: Density, shares: Sequence[Share], segments: Sequence
         charts["causes"] = causes_chart("causes", causes, density["nominal"], UNIT)
     if segments:
         parts = [(one["name"], one["share"]) for one in segments]
-        charts["segments"] = shares_chart("segments", "Where the wind-up sits", parts)
+        charts["segments"] = shares_chart("segments", "Where the wind-up arises", parts)
     return charts

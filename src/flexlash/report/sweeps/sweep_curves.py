@@ -18,7 +18,7 @@ from flexlash.report.formula.stored import Row, Stored
 __all__ = ["LEVELS", "SWEPT", "SWEPT_NOTE", "Grid", "crossing_heading", "grid_of", "heading_of", "stored_sweeps"]
 
 SWEPT = "Swept"
-SWEPT_NOTE = "Stored course of the levels of each sweep, behind its chart; straight between two computed points."
+SWEPT_NOTE = "Stored curve of each level of each sweep, behind its chart; straight between two computed points."
 
 LEVELS = {"P2.5": "p2_5_arcmin", "P50": "p50_arcmin", "P97.5": "p97_5_arcmin", "P99.865": "p99_865_arcmin"}
 """The levels that are drawn, with their columns of Results."""

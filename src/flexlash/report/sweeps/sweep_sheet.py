@@ -35,7 +35,8 @@ _SHARE_COLUMN = 8
 """Column, from 0, at which the second chart begins."""
 
 _NOTES = (
-    "Each point is computed as a submission with its value would be; crossings are exact, not read off between points.",
+    "Each point is computed as a submission with its value would be; crossings are computed exactly, not interpolated "
+    "between points.",
     "Other dimensions stay as entered; a blank one that is the same as the swept one goes with it.",
 )
 

@@ -81,7 +81,7 @@ def _write_words(page: Page) -> None:
     submitted, change = _cells(page, "flexspline_type", "Flexspline type", "@")
     page.sheet.data_validation(page.row + 1, CHANGE, page.row + 1, CHANGE, {
         "validate": "list", "source": list(TYPES), "error_title": "Flexspline type",
-        "error_message": "Pick an entry of the list.",
+        "error_message": "Pick one from the list.",
     })  # fmt: skip
     words = ("Flexspline type", "", "", "cup or hat: with a disk or flange; cylinder: without")
     page.line("flexspline_type", _counting(submitted, change), words, "plain")

@@ -127,7 +127,7 @@ def write_rules(page: Page, sheet: Any, top: int) -> tuple[Live, int]:
         [rule.code.value for rule in rules],
     )
     columns = [Range(xl_range_abs(top + 1, column, last, column), values) for column, values in enumerate(entries)]
-    sheet.write_string(last + 1, 0, "The first of these lines that is so; 0 for none", page.book.format("label"))
+    sheet.write_string(last + 1, 0, "The first of these lines that applies; 0 for none", page.book.format("label"))
     first = put(sheet, last + 1, 1, IFERROR(MATCH(1.0, columns[1], 0), 0.0), page.book.format("figure"))
     words = INDEX(columns[0], first)
     code = INDEX(columns[2], first)

@@ -28,7 +28,7 @@ AGREEMENT = 1e-12
 """Relative difference up to which a traced number agrees with the program's."""
 
 AGREES, CHANGED, _DIFFERS = "agrees to 1e-12", "inputs changed", "differs"
-NOT_LISTED = "◄ not in the list: pick one"
+NOT_LISTED = "◄ not on the list: pick one"
 NO_PART = "◄ these inputs make no part: "
 UNREAL = "◄ no flexspline has such a backlash: check values and units (E324)"
 _LEAST, _MOST = 1e-12, 10.0
@@ -91,7 +91,7 @@ def _pick(book: Book, sheet: Any, inputs: Stored, picked: int) -> Live:
         "input_title": "Variant",
         "input_message": "The whole sheet follows.",
         "error_title": "Variant",
-        "error_message": "Pick a variant of the list.",
+        "error_message": "Pick a variant from the list.",
     })  # fmt: skip
     return put(sheet, HEADER - 1, _PLACE, match_exactly(name, names), book.format("quiet", '"number "0'))
 

@@ -69,7 +69,7 @@ def _scatter(facts: SummaryFacts, row: Row) -> Iterator[str]:
             yield _alike(row, ppm)
         return
     whole = scatters_within_lots(row)
-    parts = f"within one lot 95 % of parts lie within {within}" if whole else "the parts of a lot are all alike"
+    parts = f"within one lot 95 % of parts lie within {within}" if whole else "all parts of a lot are identical"
     failing = ""
     if has_limit and whole:
         failing = f"; {lots_words(row, 'has', 'have')} more than {ppm} over the limit ({of_all_units(row)})"

@@ -131,7 +131,7 @@ def _verdict(row: Row, bounds: VerdictBounds) -> Iterator[str]:
     if times > _MANY:
         yield "It lies so near to where the verdict changes that no number of parts would settle it."
     else:
-        yield f"About {_rounded_up(times)} times as many parts would settle it, if they come out alike."
+        yield f"About {_rounded_up(times)} times as many parts would settle it, if they scatter as these do."
 
 
 def _between(low: float, high: float, bounds: VerdictBounds) -> set[str | None]:

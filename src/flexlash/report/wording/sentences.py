@@ -108,7 +108,7 @@ def _computed(facts: SummaryFacts) -> Iterator[str]:
         yield f"Not computed: {listed([facts.named(name) if name else '(no name)' for name in lost], NAMED)}."
         first = next((finding for finding in outcome.findings if finding.level == "error"), None)
         if first:
-            yield f"The first fault: {first.message}"
+            yield f"First fault: {first.message}"
 
 
 def _shown(facts: SummaryFacts) -> Iterator[str]:
@@ -144,7 +144,7 @@ def cause_of(facts: SummaryFacts, row: Row) -> Iterator[str]:
     spread = facts.computed(row).spread
     shares = spread.shares if spread else {}
     if not shares:
-        yield f"Nothing scatters in {name}: no tolerance applies to its dimensions, so all units are alike."
+        yield f"Nothing scatters in {name}: no tolerance applies to its dimensions, so all units are identical."
     ranked = sorted(shares, key=lambda cause: (-shares[cause], cause))
     named = ranked[:1] + [cause for cause in ranked[1:_CAUSES] if shares[cause] >= _LEAST_CAUSE]
     if named:
@@ -187,7 +187,7 @@ def _classical(facts: SummaryFacts) -> Iterator[str]:
     ratios = (with_disk["cylinder_only_backlash_arcmin"] / with_disk["backlash_arcmin"]).to_list()
     if len(ratios) > 1:
         least, most = _off(max(ratios)), _off(min(ratios))
-        if least.split("%")[1] == most.split("%")[1]:
+        if least != most and least.split("%")[1] == most.split("%")[1]:
             least = least.split(" %")[0]
         yield f"Over all {grouped(len(ratios))} cups and hats: {least if least == most else f'{least} to {most}'}."
 
@@ -204,10 +204,10 @@ def _strength(facts: SummaryFacts) -> Iterator[str]:
         reserves.setdefault((float(spelled_out(exact, _DIGITS)), section), []).append(name)
     if reserves:
         times, section = least = min(reserves)
-        alike = len(reserves[least])
-        which = f", one of {grouped(alike)} alike, is" if alike > 1 else " is"
+        others = len(reserves[least]) - 1
+        more = f" and {counted(others, 'other')}" if others else ""
         yield (
-            f"Nearest to yield{which} {facts.named(reserves[least][0])}: its {section} yields at "
+            f"Nearest to yield: {facts.named(reserves[least][0])}{more}, whose {section} yields at "
             f"{spelled_out(times, _DIGITS)} times the torque, corners not counted."
         )
     yield from bending(facts)

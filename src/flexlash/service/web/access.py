@@ -108,7 +108,7 @@ def _address(text: str) -> str:
     try:
         return str(ipaddress.ip_address(text))
     except ValueError:
-        raise AccessError(f"{text!r} is no address of a proxy: give its number, such as 10.0.0.7.") from None
+        raise AccessError(f"{text!r} is not the address of a proxy: give its number, such as 10.0.0.7.") from None
 
 
 def _token(path: Path) -> str:

@@ -22,9 +22,9 @@ async def answer_of(ask: Callable[[], Future[Result]], seconds: float) -> Result
         future = ask()
         return await asyncio.wait_for(asyncio.shield(asyncio.wrap_future(future)), seconds)
     except TooManyQuestionsError:
-        raise Refused(503, "Others are having files looked through just now: try again in a minute.") from None
+        raise Refused(503, "Other files are being checked just now: try again in a minute.") from None
     except TimeoutError:
-        raise Refused(503, "The workers are busy: hand it in, and it gets its turn.") from None
+        raise Refused(503, "The workers are busy: hand it in, and it waits its turn.") from None
     except WorkerLostError as lost:
         raise Refused(422, f"This file stopped the program that reads it: {lost}.") from None
     except ClusterError:

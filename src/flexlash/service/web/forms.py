@@ -73,7 +73,7 @@ class Forms:
         """Refuse where too much waits already."""
         store, limits = self._site.store, self._site.limits
         if store.totals()["waiting"] >= limits.most_waiting or store.waiting_bytes() >= limits.waiting_bytes:
-            raise Refused(503, "As many submissions wait as may wait: try again in a few minutes.", retry_after="120")
+            raise Refused(503, "The queue is full: try again in a few minutes.", retry_after="120")
 
     async def _checked(self, request: Request, one: Received) -> Response:
         """Show what is found in a submission, of which nothing is kept."""
@@ -81,7 +81,7 @@ class Forms:
         data = await run_in_threadpool(one.content)
         answer = await answer_of(lambda: self._site.works.check(one.name, data), self._site.limits.answer_seconds)
         if not answer.page:
-            raise Refused(500, "This file could not be looked through: that is a fault of flexlash.")
+            raise Refused(500, "This file could not be checked: that is a fault of flexlash.")
         page = json.loads(answer.page)
         if wants_json(request):
             told = {**answer.told, "exit_code": int(answer.exit_code), "outputs": [], "words": answer.words}
@@ -90,12 +90,12 @@ class Forms:
 
     async def retry(self, request: Request) -> Response:
         """Have a submission computed anew."""
-        return await self._changed(request, self._site.store.retry, "It has not ended yet: wait until it has.", "")
+        return await self._changed(request, self._site.store.retry, "It has not finished yet: wait until it has.", "")
 
     async def forget(self, request: Request) -> Response:
         """Forget a submission."""
         return await self._changed(
-            request, self._site.store.forget, "It has not ended, or its files are still being delivered.", "/history"
+            request, self._site.store.forget, "It has not finished, or its files are still being delivered.", "/history"
         )
 
     async def _changed(self, request: Request, change: Callable[[str], bool], not_yet: str, then: str) -> Response:
@@ -115,5 +115,7 @@ class Forms:
         """Return the ID that the token of a form of ours is; raise UnusableForm where it is none."""
         id_ = self._site.form_value(request, token)
         if id_ is None:
-            raise UnusableForm(400, "This form is older than a day, or not one of ours: open the page and try again.")
+            raise UnusableForm(
+                400, ("This form is more than a day old, or did not come from this page: open the page and try again.")
+            )
         return id_

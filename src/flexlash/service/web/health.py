@@ -35,13 +35,13 @@ class Health:
 
     def _wrong(self) -> list[str]:
         """Return what is wrong, in words."""
-        wrong = [] if self._site.works.is_alive else ["nothing takes what waits"]
+        wrong = [] if self._site.works.is_alive else ["nothing is taking the waiting submissions"]
         try:
             with tempfile.TemporaryFile(dir=self._site.store.folder):
                 pass
             waited = self._site.store.figures()["oldest_waiting_seconds"]
             if not self._site.works.workers and waited > _PATIENCE:
-                wrong.append("what waits finds no workers")
+                wrong.append("the waiting submissions find no workers")
             wrong += self._site.troubles()
             if self._free() < self._site.limits.free_bytes:
                 wrong.append("the disk is nearly full")

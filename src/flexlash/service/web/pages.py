@@ -52,7 +52,7 @@ class Pages:
         number = _number(request.path_params["number"])
         context = None if number is None else views.variant(self._site.store, one, number)
         if context is None:
-            raise Refused(404, "This submission has no page of such a variant.")
+            raise Refused(404, "This submission has no such variant.")
         return self._site.page(request, "variant", context)
 
     def file(self, request: Request) -> Response:

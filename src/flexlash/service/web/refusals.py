@@ -16,17 +16,20 @@ _WORDS = {
     404: ("There is no such page", "Look at the address, or find the submission in the history."),
     405: ("This cannot be done at this address", "Go back to the page and use its buttons."),
     408: ("This took too long to arrive", "The connection paused for too long: try again."),
-    409: ("Not now", "Wait until it has ended."),
+    409: ("Not now", "Wait until it has finished."),
     410: (
         "This submission is no longer kept",
         "It has been forgotten, or was kept as long as is set: hand it in again.",
     ),
-    413: ("This file is too large", "At most 20 MiB are taken here: flexlash run takes larger tables from the screen."),
+    413: (
+        "This file is too large",
+        ("At most 20 MiB are accepted here: use flexlash run on the command line for larger tables."),
+    ),
     415: ("This form cannot be read", "Send it as multipart/form-data, as the page does."),
     421: ("This address is not that of flexlash", "Use the address that flexlash printed when it was started."),
     422: ("This file cannot be read", "Hand in the template, filled in, or a table."),
     429: ("Too many wrong tokens", "Wait a minute and try again."),
-    500: ("flexlash has failed here", "This is a fault of flexlash, which has written it down. Nothing is lost."),
+    500: ("flexlash failed here", "This is a fault of flexlash, which has written it down. Nothing is lost."),
     503: ("flexlash is busy", "Try again in a minute; what has been handed in is kept."),
     507: (
         "The disk of flexlash is full",

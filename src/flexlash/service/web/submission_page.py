@@ -200,7 +200,7 @@ def _trouble(submission: StoredSubmission, now: float) -> str:
     if not submission.trouble or submission.state != "waiting":
         return ""
     again = submission.not_before - now
-    when = "It is tried again in a moment" if again < 1 else f"It is tried again in {round(again)} seconds"
+    when = "It will be tried again in a moment" if again < 1 else f"It is tried again in {round(again)} seconds"
     trouble = submission.trouble[:1].upper() + submission.trouble[1:].rstrip(".")
     return f"{trouble}. The fault is this machine's, not your file's. {when}; nothing is lost."
 
@@ -235,14 +235,14 @@ _EVENTS = {
     "put back": "put back in the queue",
     "handed back": "put back in the queue",
     "retried": "asked to be computed anew",
-    "delivered": "put into the folder for results",
+    "delivered": "put into the results folder",
 }
 
 
 def _event(row: Mapping[str, Any]) -> str:
     """Return an event in words."""
     if row["kind"] == "answered again":
-        return "answered with the result of the same file, which was there"
+        return "answered with the stored result of the same file"
     return ": ".join(filter(None, (_EVENTS.get(row["kind"], row["kind"]), row["text"])))
 
 

@@ -75,7 +75,7 @@ async def form_of(request: Request, fields: int, files: int = 0) -> FormData:
         if isinstance(fault, HTTPException) and fault.status_code != 400:  # noqa: PLR2004
             raise
         if "Too many files" in str(fault):
-            raise UnusableForm(400, "Choose one file at a time: several came in.") from None
+            raise UnusableForm(400, "Choose one file at a time: several arrived.") from None
         raise UnusableForm(400, "The form did not arrive as the page sends it: choose the file again.") from None
 
 
@@ -83,9 +83,9 @@ def _only_file(form: FormData) -> Received:
     """Return the one file of a form; a browser sends a nameless one where none was chosen."""
     files = [value for _, value in form.multi_items() if isinstance(value, UploadFile) and value.filename]
     if not files:
-        raise UnusableForm(400, "Choose a file first: none came in.")
+        raise UnusableForm(400, "Choose a file first: none arrived.")
     if len(files) > 1:
-        raise UnusableForm(400, "Choose one file at a time: several came in.")
+        raise UnusableForm(400, "Choose one file at a time: several arrived.")
     if (action := field_of(form, "action") or "run") not in {"run", "check"}:
         raise UnusableForm(400, "Use one of the two buttons of the form.")
     return Received(

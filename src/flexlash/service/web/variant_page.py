@@ -1,4 +1,4 @@
-"""What the page of a variant shows: how its backlash is spread, what causes that, where the wind-up sits."""
+"""What the page of a variant shows: how its backlash is spread, what causes that, where the wind-up arises."""
 
 from __future__ import annotations
 
