@@ -11,6 +11,7 @@ SOURCE = Path(__file__).resolve().parents[2] / "src" / "flexlash"
 
 FORBIDDEN = {
     r"\bmend(s|ed|ing)?\b": "fix (of cells), change (of the design)",
+    r"\bof its list\b": "what it is: a material, a unit, a choice",
     r"\balike\b": "identical, equal, together, or the names",
     r"\ball but\b": "the share itself, such as 99.99989 %",
     r"\bhardly\b": "barely, almost no",

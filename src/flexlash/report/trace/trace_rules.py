@@ -144,7 +144,7 @@ def _entries(inputs: InputRow) -> Iterator[_Rule]:
     """Yield that a change is an entry of the list, or a number within the bounds of its column."""
     change = inputs.change("flexspline_type")
     known = OR(*(change.equals(word) for word in ("", *TYPES)))
-    yield _rule("E209", "the type is not one of its list", NOT(known))
+    yield _rule("E209", "the flexspline type is unknown", NOT(known))
     for name in inputs.names:
         column, change = ENTERED[name], inputs.change(name)
         least = column.minimum or 0.0
