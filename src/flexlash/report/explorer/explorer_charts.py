@@ -36,7 +36,7 @@ def write_charts(book: Book, sheet: Any, choice: Choice, working: Working, limit
     _write_notes(book, sheet, choice, working, limit)
     name = shown(str(choice.name.value), longest=_NAME)
     when = f"picked variant (when the report was written, {name}"
-    at = f"the limit{f' {limit.value:.4g}′' if isinstance(limit.value, float) else ', of which there is none'}"
+    at = f"the limit{f' {limit.value:.4g}′' if isinstance(limit.value, float) else ' (none is given)'}"
     segments = {segment: choice.angle(segment).value for segment in SEGMENTS.values()}
     median = choice.angle("P50").value
     middle = f", median {median:.4g}′" if isinstance(median, float) else ""
