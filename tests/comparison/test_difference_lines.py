@@ -98,7 +98,7 @@ def test_many_variants_are_told_worst_first_and_cut():
     assert lines[0] == "31 of 40 variants differ, 9 are equal."
     assert lines[1] == "crossed"
     assert lines[3] == "C-30"
-    assert lines[-2] == "… and 11 more variants (--all tells every one)"
+    assert lines[-2] == "… and 11 more variants (--all lists all)"
     assert lines[-1] == "31 of 40 variants differ: crossed, C-30, C-29 and 28 more (31 in results)."
     assert len(_lines([*variants, crossed], common=40, every=True)) == 64
 
