@@ -25,7 +25,7 @@ SHEETS = [
     "Summary", "Levers", "Allocation", "Results", "Explorer", "Compare", "Ranking", "Contributions", "Trade-offs",
     "Trace", "Trace spread",
     "Sensitivity", "Tolerances used", "Sections", "Strength", "Findings", "Submission", "Materials", "Tolerances",
-    "Settings", "About", "Curves", "Compared", "Inputs", "Scatter", "Trace steps", "Trace slope", "Carried",
+    "Settings", "About", "Curves", "Compared", "Bars", "Inputs", "Scatter", "Trace steps", "Trace slope", "Carried",
 ]  # fmt: skip
 
 _FINEST_UNIT = 1e-8

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 import re
+import statistics
 import subprocess
 import zipfile
 
+import openpyxl
 import pytest
 import regenerate
 import xlsxwriter
@@ -13,22 +17,25 @@ from libreoffice import convert_all, needs_pages
 from report_entries import opened
 from said import said_of
 
-from flexlash.analysis.run_summary import share_words
 from flexlash.pipeline import run
-from flexlash.report.explorer.curves_sheet import stored_curves
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
 from flexlash.report.report_data import drawn_variants, report_data
+from flexlash.report.summary.relative_bars import relative_bars
+from flexlash.report.summary.summary_chart import CHARTED
 from flexlash.report.summary.summary_sheet import write_summary
 from flexlash.report.wording.verdict import verdict_rules, verdict_word
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.limit_verdict import VerdictBounds
+from flexlash.schema.number_words import brief_share
 
 _ASCENT_AND_DESCENT = 1.22
 """Height of a word's box over the size of its letters, in Calibri and Carlito."""
 
 FILLS = {"fails": "FFF8CBAD", "marginal": "FFFFE699", "meets": "FFC6E5D8"}
-NUMBERS = ("backlash_arcmin", "p50_arcmin", "p97_5_arcmin", "backlash_limit_arcmin")
+NUMBERS = ("backlash_limit_arcmin", "backlash_arcmin", "p97_5_arcmin", "p99_865_arcmin")
+KEY_FIGURES = (1, 2, 6, 9, 11)
+"""Columns of the key figures, in the sixth row above their captions."""
 
 
 def _row(sheet, words):
@@ -59,17 +66,17 @@ def _many(count, first=700.0):
 def test_key_figures_and_their_rule(study):
     """Computed, verdicts and findings stand in words above their rule; only what occurs is coloured."""
     sheet = opened(study[1])["Summary"]
-    places = (1, 2, 5, 8, 9)
-    assert [sheet.cell(4, place).value for place in places] == [
+    places = KEY_FIGURES
+    assert [sheet.cell(5, place).value for place in places] == [
         "11 of 11",
         "3 fail",
         "0 marginal",
         "8 meet",
         "5 warnings",
     ]
-    captions = [sheet.cell(5, place).value for place in places]
+    captions = [sheet.cell(6, place).value for place in places]
     assert captions == ["variants computed", *verdict_rules(VerdictBounds()).values(), "see Findings"]
-    fills = [sheet.cell(4, place).fill.fgColor.rgb for place in places]
+    fills = [sheet.cell(5, place).fill.fgColor.rgb for place in places]
     assert fills == ["00000000", FILLS["fails"], "00000000", FILLS["meets"], "00000000"]
 
 
@@ -81,28 +88,54 @@ def test_every_sentence_stands_beside_its_topic(study):
     for topic, text in said_of(outcome).items():
         row = _row(sheet, topic)
         assert sheet.cell(row, 2).value == text
-        assert f"B{row}:I{row}" in merged
+        assert f"B{row}:L{row}" in merged
         assert sheet.cell(row, 2).alignment.wrap_text
-        width = sum(sheet.column_dimensions[letter].width for letter in "BCDEFGHI")
+        width = sum(sheet.column_dimensions[letter].width for letter in "BCDEFGHIJKL")
         assert sheet.row_dimensions[row].height >= LINE_HEIGHT * lines_of(text, width)
 
 
-def test_the_table_holds_the_worst_with_their_numbers(study):
-    """Each row of the table repeats a variant's results, its verdict in word and colour, worst first."""
-    outcome, path = study
-    sheet = opened(path)["Summary"]
+def _listed(sheet):
+    """Return the rows of the table."""
     first = _row(sheet, "Variant") + 1
-    for row, one in enumerate(drawn_variants(outcome), start=first):
-        cells = [sheet.cell(row, place) for place in range(1, 10)]
-        name, verdict, *numbers, excess, share, cause = (cell.value for cell in cells)
-        assert name == one.row["variant"]
-        assert verdict == verdict_word(one.row, VerdictBounds())
+    return list(itertools.takewhile(lambda row: sheet.cell(row, 2).value is not None, range(first, sheet.max_row)))
+
+
+def test_the_table_holds_the_worst_with_their_numbers(study):
+    """Each row repeats a variant's results beside what first order, worst case and normal theory say, worst first."""
+    outcome, path = study
+    sheet = openpyxl.load_workbook(path, data_only=True)["Summary"]
+    rows = _listed(sheet)
+    assert len(rows) >= 6
+    for row, one in zip(rows, drawn_variants(outcome), strict=False):
+        cells = [sheet.cell(row, place) for place in range(1, 13)]
+        name, verdict, *numbers, excess, first_order, worst, share, normal, cause = (cell.value for cell in cells)
+        result = one.row
+        assert name == result["variant"]
+        assert verdict == verdict_word(result, VerdictBounds())
         assert cells[1].fill.fgColor.rgb == FILLS[verdict]
-        assert numbers == [pytest.approx(one.row[key], rel=1e-15) for key in NUMBERS]
-        assert excess == pytest.approx(one.row["p97_5_arcmin"] - one.row["backlash_limit_arcmin"], rel=1e-12)
-        assert share == share_words(one.row)
-        main = dimension_words(one.row["main_contributor"])
-        assert cause == f"{main} ({100 * one.row['main_contributor_share']:.0f} %)"
+        assert numbers == [pytest.approx(result[key], rel=1e-15) for key in NUMBERS]
+        assert excess == pytest.approx(result["p99_865_arcmin"] - result["backlash_limit_arcmin"], rel=1e-12)
+        assert first_order == pytest.approx(result["mean_arcmin"] + 3 * result["first_order_sd_arcmin"], rel=1e-12)
+        assert worst == pytest.approx(result["worst_case_high_arcmin"], rel=1e-12)
+        assert share == brief_share(result)
+        z = (result["backlash_limit_arcmin"] - result["mean_arcmin"]) / result["sd_arcmin"]
+        below = statistics.NormalDist().cdf(z)
+        assert normal == ("practically all" if z < -8 else f"{100 * (1 - below):.3g} %" if z < 0 else normal)
+        main = dimension_words(result["main_contributor"])
+        assert cause == f"{main} ({100 * result['main_contributor_share']:.0f} %)"
+
+
+def test_one_cell_turns_angles_into_arc_seconds(study):
+    """Every angle of the table is a formula on the unit's cell, stored as arcmin; the Explorer's unit follows it."""
+    book = openpyxl.load_workbook(study[1])
+    sheet = book["Summary"]
+    assert sheet["L2"].value == "arcmin"
+    assert '"arcmin,arcsec"' in {str(one.formula1) for one in sheet.data_validations.dataValidation}
+    for row in _listed(sheet):
+        for place in range(3, 10):
+            assert re.fullmatch(r'=IF\(\$L\$2="arcsec",60,1\)\*.+', sheet.cell(row, place).value)
+    assert book["Explorer"]["B5"].value == "=Summary!$L$2"
+    assert openpyxl.load_workbook(study[1], data_only=True)["Explorer"]["B5"].value == "arcmin"
 
 
 @pytest.mark.slow
@@ -127,30 +160,20 @@ def test_links_lead_to_their_variants(table, sound, tmp_path):
     assert title in book.sheetnames
 
 
-def test_distances_are_the_same_in_sentence_and_table(study):
-    """What a sentence says a failing variant is over its limit by is what its row of the table shows."""
-    sheet = opened(study[1])["Summary"]
-    cells = [sheet.cell(_row(sheet, "Variant") + 1 + place, 7) for place in range(3)]
-    shown = [f"{cell.value:.{len(cell.number_format.split(';')[0].partition('.')[2])}f}" for cell in cells]
-    assert re.findall(r"([\d.]+)′ over", sheet.cell(_row(sheet, "Which fail"), 2).value) == shown
-    assert shown == ["2.462", "0.480", "0.138"]
-
-
 @pytest.mark.slow
 def test_verdicts_of_few_points_have_a_mark(folder):
     """By 64 draws eight variants meet with a ? in cell and key figure, in the same colour, and shares an ≈."""
     study = regenerate.ROOT / "data" / "b3-160-study.xlsx"
     run(study, folder / "few.xlsx", method="random", samples=64)
     sheet = opened(folder / "few.xlsx")["Summary"]
-    assert [sheet.cell(4, place).value for place in (2, 5, 8)] == ["3 fail", "0 marginal", "8 meet?"]
-    assert sheet.cell(5, 8).value == f"{verdict_rules(VerdictBounds())['meets']}; 8 not settled"
-    assert sheet.cell(4, 8).fill.fgColor.rgb == FILLS["meets"]
-    first = _row(sheet, "Variant") + 1
-    cells = [sheet.cell(row, 2) for row in range(first, first + 11)]
-    assert [cell.value for cell in cells] == ["fails"] * 3 + ["meets?"] * 8
-    assert [cell.fill.fgColor.rgb for cell in cells] == [FILLS["fails"]] * 3 + [FILLS["meets"]] * 8
-    assert sheet.cell(first, 9).value == "Young's modulus (≈68 %)"
-    assert {sheet.row_dimensions[row].height or LINE_HEIGHT for row in range(first, first + 11)} == {LINE_HEIGHT}
+    assert [sheet.cell(5, place).value for place in KEY_FIGURES[1:4]] == ["3 fail", "0 marginal", "8 meet?"]
+    assert sheet.cell(6, 9).value == f"{verdict_rules(VerdictBounds())['meets']}; 8 not settled"
+    assert sheet.cell(5, 9).fill.fgColor.rgb == FILLS["meets"]
+    rows = _listed(sheet)
+    cells = [sheet.cell(row, 2) for row in rows]
+    assert [cell.value for cell in cells] == ["fails"] * 3 + ["meets?"] * (len(rows) - 3)
+    assert {cell.fill.fgColor.rgb for cell in cells[3:]} == {FILLS["meets"]}
+    assert sheet.cell(rows[0], 12).value == "Young's modulus (≈68 %)"
 
 
 def test_further_sheets_and_a_line_to_sign(study):
@@ -162,7 +185,7 @@ def test_further_sheets_and_a_line_to_sign(study):
         assert sheet.cell(row, place).hyperlink.location == f"{title}!A1"
         assert title in book.sheetnames
     assert re.fullmatch(r"Reviewed by _+   Date _+", sheet.cell(sheet.max_row, 1).value)
-    assert sheet.print_area.endswith(f"$I${sheet.max_row}")
+    assert sheet.print_area.endswith(f"$L${sheet.max_row}")
 
 
 @pytest.mark.slow
@@ -216,52 +239,46 @@ def _chart(path):
         return archive.read("xl/charts/chart1.xml").decode()
 
 
-def test_the_chart_holds_every_variant(study):
-    """Bars, median and limit carry the points of all variants, and the bars the colours of their verdicts."""
+def test_the_chart_shows_a_narrow_spread_beside_the_limit(study):
+    """Bars are in per cent of the limit, by verdict, on a scale of ten per cent; who is beyond stands at its end."""
     outcome, path = study
-    text = _chart(path)
     drawn = drawn_variants(outcome)
-    series = re.findall(r"<c:ser>.*?</c:ser>", text, re.DOTALL)
-    assert len(series) == 4
-    lengths = [row.row["p97_5_arcmin"] - row.row["p2_5_arcmin"] for row in drawn]
-    expected = [
-        [one.row["p2_5_arcmin"] for one in drawn],
-        lengths,
-        [one.row["p50_arcmin"] for one in drawn],
-        [one.row["backlash_limit_arcmin"] for one in drawn],
-    ]
-    for one, numbers in zip(series, expected, strict=True):
-        values = re.search(r"<c:val>.*?</c:val>", one, re.DOTALL)[0]
-        assert [float(value) for value in re.findall(r"<c:v>([^<]+)</c:v>", values)] == pytest.approx(numbers)
-    colours = re.findall(r'<c:dPt>.*?<a:solidFill>\s*<a:srgbClr val="(\w+)"', series[1], re.DOTALL)
-    names = {"fails": "red", "marginal": "orange"}
-    assert colours == [PALETTE[names.get(verdict_word(one.row, VerdictBounds()), "sky")].strip("#") for one in drawn]
-    low = float(re.search(r'<c:min val="([^"]+)"', text)[1])
-    assert 0 < low < min(expected[0])
+    text = _chart(path)
+    assert [float(re.search(rf'<c:{end} val="([^"]+)"', text)[1]) for end in ("min", "max")] == [-10, 10]
+    bars = opened(path)["Bars"]
+    headings = [cell.value for cell in bars[2]]
+    for number, one in enumerate(drawn, start=3):
+        told = dict(zip(headings, (cell.value for cell in bars[number]), strict=False))
+        result, limit = one.row, one.row["backlash_limit_arcmin"]
+        low, median, high, top = (
+            100 * (result[f"{key}_arcmin"] - limit) / limit for key in ("p2_5", "p50", "p97_5", "p99_865")
+        )
+        verdict = verdict_word(result, VerdictBounds())
+        if abs(median) > 10:
+            assert told["above" if median > 0 else "below"] == math.copysign(10, median)
+            assert told["off"] == pytest.approx(median, abs=0.05)
+            assert told[verdict] is None
+        else:
+            assert told[verdict] == pytest.approx(median)
+            assert told[verdict] - told["down"] == pytest.approx(max(low, -10))
+            assert told[verdict] + told["up"] == pytest.approx(min(high, 10))
+            assert told["P99.865"] == pytest.approx(top)
+    for verdict, colour in (("fails", "red"), ("meets", "blue")):
+        series = next(
+            one for one in re.findall(r"<c:ser>.*?</c:ser>", text, re.DOTALL) if f"<c:v>{verdict}</c:v>" in one
+        )
+        assert PALETTE[colour].strip("#") in re.search(r"<c:errBars>.*?</c:errBars>", series, re.DOTALL)[0]
 
 
 @pytest.mark.slow
 def test_more_variants_than_fit_are_said(table, tmp_path, monkeypatch):
-    """The table lists the twelve worst and the chart the sixty worst; both say of how many, not of how many drawn."""
+    """The table lists the worst that fit and the chart the sixty worst; both say of how many, not of how many drawn."""
     monkeypatch.setattr("flexlash.report.report_data.DRAWN", 70)
     run(table(_many(80)), tmp_path / "report.xlsx", samples=64)
     texts = [str(cell.value) for cell in opened(tmp_path / "report.xlsx")["Summary"]["A"] if cell.value]
-    assert any(text.startswith("The 12 worst of 80 are listed; all are in Results.") for text in texts)
-    assert ": the 60 worst of 80<" in _chart(tmp_path / "report.xlsx")
-    assert _chart(tmp_path / "report.xlsx").count('<c:ptCount val="60"/>') == 8
-
-
-@pytest.mark.slow
-def test_few_decimals_of_an_axis_are_enough(table, sound, tmp_path):
-    """Whatever the size of the backlash, the axis has a handful of steps whose numbers differ."""
-    for place, torque in enumerate((0.8, 80.0, 8000.0)):
-        path = tmp_path / f"{place}.xlsx"
-        run(table([{**sound, "torque_Nm": torque, "backlash_limit_arcmin": ""}]), path, samples=64)
-        text = _chart(path)
-        step = float(re.search(r'<c:majorUnit val="([^"]+)"', text)[1])
-        decimals = re.search(r'<c:numFmt formatCode="0\.?(0*)" sourceLinked="0"/>', text)[1]
-        assert round(step, len(decimals)) == pytest.approx(step)
-        assert 0 < step < 3.7 * torque / 800 / 10
+    assert any(re.match(r"The \d+ worst of 80 are listed; all are in Results\.", text) for text in texts)
+    shown = int(re.search(r": the (\d+) worst of 80<", _chart(tmp_path / "report.xlsx"))[1])
+    assert 50 < shown <= 60
 
 
 @pytest.mark.slow
@@ -278,10 +295,10 @@ def _alone(outcome, path, paper):
     with xlsxwriter.Workbook(str(path)) as workbook:
         book = Book(workbook)
         data = report_data(outcome)
-        curves = stored_curves(data.drawn)
-        write_summary(book, outcome, data, curves)
+        bars = relative_bars(data.drawn, outcome.settings.verdict_bounds, CHARTED)
+        write_summary(book, outcome, data, bars)
         workbook.get_worksheet_by_name("Summary").set_paper(paper)
-        curves.write(book, "")
+        bars.write(book, "")
         workbook.add_worksheet("Results")
         workbook.add_worksheet("Findings")
     return path

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import io
+from collections.abc import Mapping
 
 import xlsxwriter
 
@@ -22,6 +23,7 @@ from flexlash.report.explorer.curves_sheet import CURVES_NOTE, stored_curves
 from flexlash.report.explorer.explorer_sheet import write_explorer
 from flexlash.report.extent import extent_of
 from flexlash.report.findings_sheet import write_findings
+from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
 from flexlash.report.levers_sheet import write_levers
 from flexlash.report.report_data import ReportData, report_data
@@ -31,6 +33,8 @@ from flexlash.report.sections_sheet import write_sections
 from flexlash.report.sensitivity_sheet import write_sensitivity
 from flexlash.report.strength_sheet import write_strength
 from flexlash.report.submission_sheets import write_submission
+from flexlash.report.summary.relative_bars import BARS_NOTE, relative_bars
+from flexlash.report.summary.summary_chart import CHARTED
 from flexlash.report.summary.summary_sheet import write_summary
 from flexlash.report.sweeps.sweep_curves import SWEPT_NOTE, stored_sweeps
 from flexlash.report.sweeps.sweep_sheet import MOST_STUDIES, write_sweep
@@ -51,17 +55,16 @@ _NO_DATE = datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=Non
 def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     """Return the report as an .xlsx file; `data` is what it draws, made here where it is None."""
     buffer = io.BytesIO()
-    workbook = _begun(buffer, outcome)
-    book = Book(workbook)
+    book = Book(workbook := _begun(buffer, outcome))
     data = report_data(outcome) if data is None else data
-    drawn = data.drawn
+    drawn, extent = data.drawn, extent_of(outcome)
     curves = stored_curves(drawn)
-    extent = extent_of(outcome)
-    write_summary(book, outcome, data, curves)
+    bars = relative_bars(drawn, outcome.settings.verdict_bounds, CHARTED)
+    unit = write_summary(book, outcome, data, bars)
     write_levers(book, outcome, data)
     write_allocation(book, data.allocation, outcome.settings.target_percent)
     write_results(book, outcome, drawn)
-    write_explorer(book, curves, extent, outcome.settings.verdict_bounds)
+    write_explorer(book, curves, extent, outcome.settings.verdict_bounds, unit)
     compared = compared_variants(drawn)
     write_compare(book, outcome, drawn, compared)
     write_ranking(book, outcome, drawn, compared)
@@ -84,10 +87,11 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     computed = [variant.computed for variant in drawn]
     inputs = stored_inputs(computed, outcome.settings.lost_motion_percent)
     scatter, tied = stored_scatter(computed)
-    behind = [(scatter, SCATTER_NOTE), *([(tied, TIED_NOTE)] if tied.rows else [])]
-    charted = [(swept, SWEPT_NOTE)] if swept.rows else []
-    driven = [(drives, DRIVES_NOTE)] if drives else []
-    noted = [(curves, CURVES_NOTE), (compared, COMPARED_NOTE), *charted, *driven, (inputs, INPUTS_NOTE), *behind]
+    noted = _noted({
+        CURVES_NOTE: curves, COMPARED_NOTE: compared, BARS_NOTE: bars if bars.rows else None,
+        SWEPT_NOTE: swept if swept.rows else None, DRIVES_NOTE: drives, INPUTS_NOTE: inputs,
+        SCATTER_NOTE: scatter, TIED_NOTE: tied if tied.rows else None,
+    })  # fmt: skip
     steps = [STEPS] * bool(inputs.rows) + [SLOPE] * bool(scatter.rows)
     write_about(book, outcome, later=(*(stored.name for stored, _ in noted), *steps))
     part = f"{extent.note} " if extent.large and extent.note else ""
@@ -98,6 +102,11 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     write_carried(book, outcome)
     workbook.close()
     return buffer.getvalue()
+
+
+def _noted(sheets: Mapping[str, Stored | None]) -> list[tuple[Stored, str]]:
+    """Return the data sheets that there are, by their notes, each with its note."""
+    return [(stored, note) for note, stored in sheets.items() if stored is not None]
 
 
 def _begun(buffer: io.BytesIO, outcome: Outcome) -> xlsxwriter.Workbook:

@@ -31,7 +31,7 @@ class Choice:
     allows, `wants` whether it is one; `allowed` is the share over the limit with which a variant meets it.
     """
 
-    def __init__(self, book: Book, sheet: Any, curves: Stored, bounds: VerdictBounds) -> None:
+    def __init__(self, book: Book, sheet: Any, curves: Stored, bounds: VerdictBounds, unit: Live | None) -> None:
         self._curves = curves
         entry, hint = book.format("input"), book.format("hint")
         entry_of_share = book.format("input", "0.0000##%")
@@ -39,7 +39,10 @@ class Choice:
         for row, label in enumerate(_LABELS, start=_FIRST_ROW):
             sheet.write_string(row, 0, label, book.format("label"))
         self.name = fill(sheet, _FIRST_ROW, 1, str(names.values[0]), entry)
-        unit = fill(sheet, _FIRST_ROW + 1, 1, "arcmin", entry)
+        if unit is None:
+            unit = fill(sheet, _FIRST_ROW + 1, 1, "arcmin", entry)
+        else:
+            unit = put(sheet, _FIRST_ROW + 1, 1, unit, entry)
         typed = fill(sheet, _FIRST_ROW + 2, 1, "", book.format("input", "general"))
         wanted = fill(sheet, _FIRST_ROW + 3, 1, bounds.meets, entry_of_share)
         _list(sheet, _FIRST_ROW, f"={names.text}", "Variant", "Everything on this sheet follows.")

@@ -96,8 +96,8 @@ _LOTS = ("Within-lot sd", "Between-lots sd")
 """Figures of lots and parts, below the others."""
 
 
-def write_explorer(book: Book, curves: Stored, extent: Extent, bounds: VerdictBounds) -> None:
-    """Write the Explorer of the stored variants, the worst one picked."""
+def write_explorer(book: Book, curves: Stored, extent: Extent, bounds: VerdictBounds, unit: Live | None = None) -> None:
+    """Write the Explorer of the stored variants, the worst one picked, in the unit of another cell if one is given."""
     sheet = book.sheet("Explorer", landscape=False, pages_tall=1, tab="entry")
     for column, width in enumerate(_WIDTHS):
         sheet.set_column(column, column, width)
@@ -114,7 +114,7 @@ def write_explorer(book: Book, curves: Stored, extent: Extent, bounds: VerdictBo
         for column in range(first_column, first_column + 3):
             sheet.write_blank(row, column, None, book.format("section"))
         sheet.write_string(row, first_column, text, book.format("section"))
-    choice = Choice(book, sheet, curves, bounds)
+    choice = Choice(book, sheet, curves, bounds, unit)
     working = Working(book, sheet, choice)
     limit = _write_answers(book, sheet, choice, working)
     _write_figures(book, sheet, choice, working, limit)

@@ -24,11 +24,17 @@ def merged_width(widths: Sequence[float]) -> float:
 
 
 def lines_of(text: str, width: float) -> int:
-    """Return how many lines a text takes in a cell so many digits wide, rather too many than too few.
+    r"""Return how many lines a text takes in a cell so many digits wide, rather too many than too few.
 
     >>> lines_of("one two three", 20), lines_of("one two three", 8), lines_of("o" * 50, 20)
     (1, 2, 3)
+    >>> lines_of("one\ntwo three", 20)
+    2
     """
+    return sum(_lines_of_paragraph(paragraph, width) for paragraph in text.split("\n"))
+
+
+def _lines_of_paragraph(text: str, width: float) -> int:
     lines, used = 1, 0.0
     for word in text.split(" "):
         long = sum(map(_size, word))

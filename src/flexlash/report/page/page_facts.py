@@ -24,8 +24,10 @@ from flexlash.report.wording.drive_sentences import DRIVE
 from flexlash.report.wording.lever_sentences import LEVER_TOPICS
 from flexlash.report.wording.lot_sentences import LOTS
 from flexlash.report.wording.measured_parts import PARTS
+from flexlash.report.wording.normal_theory import NORMAL
 from flexlash.report.wording.sentences import sentences
 from flexlash.report.wording.summary_facts import summary_facts
+from flexlash.report.wording.verdict_sentences import WORST_CASE
 from flexlash.schema.findings import CATALOGUE, Finding, shown
 
 __all__ = ["PAGED", "TABLED", "Found", "page_bytes", "page_facts"]
@@ -40,6 +42,8 @@ _KINDS: Mapping[str, str] = {
     "Computed": "computed",
     "Which fail": "verdict",
     "How sure": "verdict",
+    NORMAL: "verdict",
+    WORST_CASE: "verdict",
     PARTS: "verdict",
     LOTS: "verdict",
     DRIVE: "verdict",

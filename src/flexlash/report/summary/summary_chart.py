@@ -1,4 +1,4 @@
-"""The chart of the Summary: where 95 % of each variant's units lie, its median and its limit."""
+"""The chart of the Summary: how far each variant's units are from its limit, in per cent of it."""
 
 from __future__ import annotations
 
@@ -6,14 +6,12 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from flexlash.analysis.outcome import Outcome
-from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
-from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
+from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.report_data import Drawn
+from flexlash.report.summary.relative_bars import KINDS
 from flexlash.report.wording.chart_words import limits_over, spans_of
-from flexlash.report.wording.verdict import firm, verdict_word
-from flexlash.schema.limit_verdict import VerdictBounds
+from flexlash.report.wording.verdict import NO_VERDICT
 from flexlash.schema.number_words import grouped
 
 __all__ = ["CHARTED", "chart_axis", "chart_title", "chart_words", "variants_chart"]
@@ -21,45 +19,80 @@ __all__ = ["CHARTED", "chart_axis", "chart_title", "chart_words", "variants_char
 CHARTED = 60
 """Most variants whose names can be read below a chart."""
 
-_COLOURS = {"fails": "red", "marginal": "orange"}
-_LOOKS: tuple[tuple[int, dict[str, int]], ...] = (
-    (3, {"gap": 500, "turned": 0, "font": 9, "median": 6, "limit": 14}),
-    (12, {"gap": 150, "turned": -45, "font": 9, "median": 5, "limit": 12}),
-    (30, {"gap": 60, "turned": -90, "font": 9, "median": 4, "limit": 9}),
-    (CHARTED, {"gap": 30, "turned": -90, "font": 8, "median": 3, "limit": 6}),
+_COLOURS = {"fails": "red", "marginal": "orange", "meets": "blue", NO_VERDICT: "grey"}
+_FONT = 11
+"""Size of letters [pt]: more than 7 when the page is printed."""
+
+_TOLD_ABOVE, _TOLD_BELOW = 30, 12
+"""Most variants of which the figures beyond the scale stand beside their marks without touching."""
+
+_LOOKS: tuple[tuple[int, dict[str, float]], ...] = (
+    (3, {"turned": 0, "bar": 14.0, "mark": 6}),
+    (12, {"turned": -45, "bar": 12.0, "mark": 5}),
+    (30, {"turned": -90, "bar": 8.0, "mark": 4}),
+    (CHARTED, {"turned": -90, "bar": 5.0, "mark": 3}),
 )
-"""Up to how many variants: space between bars in per cent of their width, turn and size of labels, size of marks."""
+"""Up to how many variants: turn of names, width [pt] of bars, size of marks."""
 
 
-def variants_chart(book: Book, drawn: Sequence[Drawn], curves: Stored, outcome: Outcome) -> Any:
-    """Return the chart of the worst variants; its data stand on the sheet of the curves."""
-    shown, total = drawn[:CHARTED], extent_of(outcome).total
-    look = next(look for most, look in _LOOKS if len(shown) <= most)
-    bars = book.chart("column", chart_title(len(shown), total), subtype="stacked")
-    marks = book.workbook.add_chart({"type": "line"})
-    names = curves.series("Label", len(shown))
-    hidden = {"fill": {"none": True}, "border": {"none": True}, "gap": look["gap"]}
-    for chart, heading, name, how in (
-        (bars, "P2.5", "P2.5", hidden),
-        (
-            bars,
-            "P2.5 to P97.5",
-            "P2.5 to P97.5 (orange: marginal, dark orange: fails)",
-            _bars(shown, outcome.settings.verdict_bounds),
-        ),
-        (marks, "P50", "Median", _marker("diamond", PALETTE["ink"], look["median"])),
-        (marks, "Limit", "Limit", _marker("long_dash", "#000000", look["limit"])),
-    ):
-        chart.add_series({"name": name, "categories": names, "values": curves.series(heading, len(shown)), **how})
-    bars.combine(marks)
-    bars.set_y_axis({**_axis(shown), "major_gridlines": GRID})
-    bars.set_x_axis({"num_font": {"rotation": look["turned"], "size": look["font"]}, "interval_unit": 1})
-    bars.set_legend({"position": "bottom", "delete_series": [0]})
-    return bars
+def variants_chart(book: Book, bars: Stored, reach: float, total: int) -> Any:
+    """Return the chart of the worst variants; its data stand on the sheet of the bars."""
+    count = len(bars.rows)
+    look = next(look for most, look in _LOOKS if count <= most)
+    is_limited = any(row[NO_VERDICT] is None for row in bars.rows)
+    chart = book.chart("line", relative_title(count, total, is_limited=is_limited))
+    names = bars.series("Label")
+    for kind in KINDS:
+        if any(row[kind] is not None for row in bars.rows):
+            ink = PALETTE[_COLOURS[kind]]
+            chart.add_series({
+                "name": "no limit" if kind == NO_VERDICT else kind,
+                "categories": names, "values": bars.series(kind), "line": {"none": True},
+                "marker": _marker("diamond", ink, look["mark"], "#FFFFFF"),
+                "y_error_bars": {
+                    "type": "custom", "end_style": 0, "direction": "both",
+                    "line": {"color": ink, "width": look["bar"]},
+                    "plus_values": _range(bars, "up"), "minus_values": _range(bars, "down"),
+                    "plus_data": [row["up"] for row in bars.rows], "minus_data": [row["down"] for row in bars.rows],
+                },
+            })  # fmt: skip
+    chart.add_series({
+        "name": "P99.865", "categories": names, "values": bars.series("P99.865"), "line": {"none": True},
+        "marker": _marker("long_dash", PALETTE["ink"], look["mark"] + 5),
+    })  # fmt: skip
+    for heading, position, most in (("above", "below", _TOLD_ABOVE), ("below", "above", _TOLD_BELOW)):
+        if any(row[heading] is not None for row in bars.rows):
+            labels = [{"value": f"{row['off']:+.0f} %" if row[heading] is not None else ""} for row in bars.rows]
+            told = {"value": True, "position": position, "custom": labels, "font": {"size": _FONT}}
+            chart.add_series({
+                "name": f"median further {heading}", "categories": names, "values": bars.series(heading),
+                "line": {"none": True}, "marker": _marker("triangle", PALETTE["grey"], look["mark"] + 3),
+                **({"data_labels": told} if count <= most else {}),
+            })  # fmt: skip
+    zero = {"color": "#000000", "width": 2.25}
+    chart.set_y_axis({
+        "min": -reach, "max": reach, "major_unit": reach / 2, "num_format": '+0.#" %";-0.#" %";0" %"',
+        "num_font": {"size": _FONT}, "major_gridlines": GRID,
+    })  # fmt: skip
+    chart.set_x_axis({
+        "num_font": {"rotation": look["turned"], "size": _FONT}, "interval_unit": 1, "label_position": "low",
+        "line": zero, "major_tick_mark": "none",
+    })  # fmt: skip
+    chart.show_blanks_as("gap")
+    chart.set_legend({"position": "bottom", "font": {"size": _FONT}})
+    return chart
+
+
+def relative_title(shown: int, total: int, *, is_limited: bool) -> str:
+    """Return the title of the chart that shows so many variants of so many."""
+    part = f": the {shown} worst of {grouped(total)}" if shown < total else ""
+    if is_limited:
+        return f"Backlash less its limit (line at 0), in % of the limit: P2.5 to P97.5 with median{part}"
+    return f"Backlash less its median (line at 0), in % of the median: P2.5 to P97.5{part}"
 
 
 def chart_title(shown: int, total: int) -> str:
-    """Return the title of the chart that shows so many variants of so many."""
+    """Return the title of the page's chart that shows so many variants of so many."""
     part = f": the {shown} worst of {grouped(total)}" if shown < total else ""
     return f"Backlash of 95 % of units (P2.5 to P97.5), median and limit [arcmin]{part}"
 
@@ -69,32 +102,20 @@ def chart_words(drawn: Sequence[Drawn]) -> str:
     charted = drawn[:CHARTED]
     return (
         f"Backlash of {len(charted)} variants, worst first: {spans_of(charted)}. {limits_over(charted)} "
-        "A bar goes from the backlash that 2.5 % of units stay below to that which 97.5 % stay below, the median as "
-        "a diamond, the limit as a dash. Bars of variants that "
-        "fail are dark orange, of marginal ones orange, of others blue."
+        "Drawn in per cent of the limit, which is the line at zero: a bar goes from the backlash that 2.5 % of units "
+        "stay below to that which 97.5 % stay below, the median as a diamond, P99.865 as a dash. Bars of variants that "
+        "fail are dark orange, of marginal ones orange, of those that meet it blue; a triangle with its figure stands "
+        "for one beyond the scale."
     )
 
 
-def _bars(shown: Sequence[Drawn], bounds: VerdictBounds) -> dict[str, Any]:
-    """Return the look of the bars, coloured by verdict."""
-
-    def look(colour: str) -> dict[str, Any]:
-        return {"fill": {"color": PALETTE[colour]}, "border": OUTLINE}
-
-    colours = [_COLOURS.get(firm(verdict_word(variant.row, bounds)), "sky") for variant in shown]
-    return {**look("sky"), "points": [look(colour) for colour in colours]}
+def _range(bars: Stored, heading: str) -> str:
+    return f"={bars.cells(heading).text}"
 
 
-def _marker(shape: str, colour: str, size: int) -> dict[str, Any]:
-    """Return the look of a series that is marks without a line."""
-    fill = {"color": colour}
-    return {"line": {"none": True}, "marker": {"type": shape, "size": size, "fill": fill, "border": fill}}
-
-
-def _axis(shown: Sequence[Drawn]) -> dict[str, Any]:
-    """Return the same as the axis of a chart has it."""
-    start, step, digits = chart_axis([variant.row for variant in shown])
-    return {"min": start, "major_unit": step, "num_format": f"0.{'0' * digits}" if digits else "0"}
+def _marker(shape: str, colour: str, size: float, border: str = "") -> dict[str, Any]:
+    """Return the look of a mark."""
+    return {"type": shape, "size": size, "fill": {"color": colour}, "border": {"color": border or colour}}
 
 
 def chart_axis(rows: Sequence[dict[str, Any]]) -> tuple[float, float, int]:

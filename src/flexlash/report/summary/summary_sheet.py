@@ -12,20 +12,22 @@ from flexlash.analysis.run_summary import counted, points_words
 from flexlash.report.allocation_sheet import ALLOCATED
 from flexlash.report.drive.drive_page import SHEET as DRIVE_SHEET
 from flexlash.report.extent import extent_of
+from flexlash.report.formula.live import Live, fill
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.links import result_rows, write_link
-from flexlash.report.layout.styles import Book, decimals_of
+from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, fitted, lines_of, merged_width
 from flexlash.report.levers_sheet import LEVERS, lever_places
 from flexlash.report.report_data import Drawn, ReportData
-from flexlash.report.summary.summary_chart import chart_words, variants_chart
+from flexlash.report.summary.relative_bars import scale_end
+from flexlash.report.summary.summary_chart import CHARTED, chart_words, variants_chart
+from flexlash.report.summary.summary_table import WIDTHS, SummaryTable
 from flexlash.report.wording.allocation_sentences import CLASSES
-from flexlash.report.wording.distances import distance, distance_format
 from flexlash.report.wording.drive_sentences import DRIVE
 from flexlash.report.wording.lever_sentences import CHANGE, LENGTH, RELAX
 from flexlash.report.wording.lever_words import shown_levers
 from flexlash.report.wording.sentences import FINDINGS, sentences
-from flexlash.report.wording.summary_facts import labels_of, main_cause
+from flexlash.report.wording.summary_facts import labels_of
 from flexlash.report.wording.sweep_words import summary_sentence
 from flexlash.report.wording.verdict import (
     COLOURS,
@@ -34,47 +36,45 @@ from flexlash.report.wording.verdict import (
     verdict_counts,
     verdict_rules,
     verdict_verb,
-    verdict_word,
 )
 from flexlash.schema.findings import shown
 from flexlash.schema.limit_verdict import VERDICTS, Verdict
-from flexlash.schema.number_words import glance, grouped, share_words
+from flexlash.schema.number_words import grouped
 
 __all__ = ["write_summary"]
 
-_LISTED = 12
-"""Most variants in the table."""
+_LISTED = (6, 12)
+"""Fewest and most variants in the table."""
 
-_COLUMNS = (
-    ("Variant", 26),
-    ("Verdict", 8),
-    ("Nominal [arcmin]", 9),
-    ("P50 [arcmin]", 9),
-    ("P97.5 [arcmin]", 9),
-    ("Limit [arcmin]", 9),
-    ("P97.5 over limit by [arcmin]", 9),
-    ("Units over the limit", 29),
-    ("Main contributor", 23),
-)
-_WIDTHS = [width for _, width in _COLUMNS]
-_FIGURES = ((0, 0), (1, 3), (4, 6), (7, 7), (8, 8))
+_FIGURES = ((0, 0), (1, 4), (5, 7), (8, 9), (10, 11))
 """First and last column of each key figure."""
 
-_PAGE = 940.0
-"""Height [pt] of what fits on a Letter page when it is as wide as the table; A4 is higher."""
+_UNIT = (1, 11)
+"""Row and column, from 0, of the cell that names the unit of angles."""
 
-_CHART = (170.0, 340.0)
+_PAGE = 1085.0
+"""Height [pt] of what fits on a Letter page in letters of 7 pt; A4 is higher."""
+
+_CHART = (200.0, 340.0)
 """Least and greatest height [pt] of the chart."""
 
-_CHART_WIDTH = sum(7 * width + 5 for width in _WIDTHS)
+_CHART_WIDTH = sum(7 * width + 5 for width in WIDTHS)
 _LINES = 5
 """Lines below the chart: provenance, and one to sign above which there is room to write."""
 
+_COMPARED = (
+    "What is compared with the limit is 2U, the elastic lag of the flexspline when its whole torque reverses; no "
+    "catalogue defines backlash so. Clearances and hysteresis come on top; sheet Drive combines them where they are "
+    "entered."
+)
 _SIGNED = "Reviewed by ______________________________   Date ____________________"
 
 
-def write_summary(book: Book, outcome: Outcome, data: ReportData, curves: Stored) -> None:
-    """Write the Summary sheet; its chart draws on the data sheet of the curves."""
+def write_summary(book: Book, outcome: Outcome, data: ReportData, bars: Stored) -> Live | None:
+    """Write the Summary sheet; its chart draws on the data sheet of the bars.
+
+    Return the cell that names the unit of angles, for other sheets that follow it; None where nothing was computed.
+    """
     page = _Page(book, outcome)
     page.heading()
     page.key_figures()
@@ -83,13 +83,16 @@ def write_summary(book: Book, outcome: Outcome, data: ReportData, curves: Stored
         page.sentence(topic, text, targets.get(topic, ""))
     if swept := summary_sentence(data.studies, outcome.settings.target_percent):
         page.sentence("Sweep", swept, "Sweep!A1")
+    unit = None
     if data.drawn:
-        page.table(data.drawn)
-        page.chart(data.drawn, curves)
+        unit = page.unit()
+        page.table(data.drawn, unit)
+        page.chart(data.drawn, bars)
     page.provenance()
     page.signature()
-    page.sheet.print_area(0, 0, page.row - 1, len(_COLUMNS) - 1)
+    page.sheet.print_area(0, 0, page.row - 1, len(WIDTHS) - 1)
     page.sheet.activate()
+    return unit and Live(f"Summary!{unit.text}", unit.value)
 
 
 class _Page:
@@ -99,7 +102,7 @@ class _Page:
         self.book = book
         self.outcome = outcome
         self.sheet = book.sheet("Summary", landscape=False, pages_tall=1)
-        for column, width in enumerate(_WIDTHS):
+        for column, width in enumerate(WIDTHS):
             self.sheet.set_column(column, column, width)
         self.row = 0
         self.height = 0.0
@@ -125,6 +128,8 @@ class _Page:
         name = shown(self.outcome.submission.name, longest=100)
         self.sheet.write_string(self.row, 0, f"Submission {name}", self.book.format("quiet"))
         self._end_row()
+        self._across(0, len(WIDTHS) - 1, _COMPARED, self.book.format("said"))
+        self._end_row(LINE_HEIGHT * lines_of(_COMPARED, merged_width(WIDTHS)) + 2)
         self._end_row(6)
 
     def key_figures(self) -> None:
@@ -156,7 +161,7 @@ class _Page:
         lines = 2
         for (_, caption, _), (first, last) in zip(figures, _FIGURES, strict=True):
             self._across(first, last, caption, self.book.format("caption"))
-            lines = max(lines, lines_of(caption, merged_width(_WIDTHS[first : last + 1])))
+            lines = max(lines, lines_of(caption, merged_width(WIDTHS[first : last + 1])))
         self._end_row(lines * LINE_HEIGHT)
         self._end_row(8)
 
@@ -166,30 +171,56 @@ class _Page:
             write_link(self.sheet, self.row, 0, target, topic, style=self.book.format("topic link"))
         else:
             self.sheet.write_string(self.row, 0, topic, self.book.format("topic"))
-        self._across(1, len(_COLUMNS) - 1, text, self.book.format("said"))
-        self._end_row(LINE_HEIGHT * lines_of(text, merged_width(_WIDTHS[1:])) + 2)
+        self._across(1, len(WIDTHS) - 1, text, self.book.format("said"))
+        self._end_row(LINE_HEIGHT * lines_of(text, merged_width(WIDTHS[1:])) + 2)
 
-    def table(self, drawn: Sequence[Drawn]) -> None:
-        """Write the worst variants, each leading to its row of Results."""
+    def unit(self) -> Live:
+        """Write the cell that names the unit of angles, which the reader may change, with its label."""
+        row, column = _UNIT
+        self.sheet.write_string(row, column - 1, "Angles in ►", self.book.format("label"))
+        cell = fill(self.sheet, row, column, "arcmin", self.book.format("input"))
+        self.sheet.data_validation(row, column, row, column, {
+            "validate": "list",
+            "source": ["arcmin", "arcsec"],
+            "input_title": "Unit of angles",
+            "input_message": "The table below and the Explorer follow; other sheets are in arcmin.",
+            "error_title": "Unit of angles",
+            "error_message": "arcmin or arcsec, nothing else.",
+        })  # fmt: skip
+        return cell
+
+    def table(self, drawn: Sequence[Drawn], unit: Live) -> None:
+        """Write as many of the worst variants as the page has room for, each leading to its row of Results."""
         self._end_row(8)
-        for column, (heading, _) in enumerate(_COLUMNS):
-            self.sheet.write_string(self.row, column, heading, self.book.format("header"))
-        self._end_row(3 * LINE_HEIGHT + 2)
+        table = SummaryTable(self.book, self.sheet, self.outcome.settings.verdict_bounds, unit)
+        table.write_headings(self.row)
+        self._end_row(4 * LINE_HEIGHT + 2)
         targets = result_rows(self.outcome)
         labels = labels_of(self.outcome, [variant.row["variant"] for variant in drawn])
-        for variant in drawn[:_LISTED]:
-            name = _fitted(labels[variant.row["variant"]], merged_width(_WIDTHS[:1]))
-            self._variant(variant.row, name, targets[variant.computed.variant.row])
+        room = _PAGE - self.height - _CHART[0] - (_LINES + 5) * LINE_HEIGHT
+        listed, first = drawn[: max(_LISTED[0], min(_LISTED[1], int(room / LINE_HEIGHT)))], self.row
+        for variant in listed:
+            name = _fitted(labels[variant.row["variant"]], merged_width(WIDTHS[:1]))
+            target = f"Results!A{targets[variant.computed.variant.row] + 1}"
+            self._end_row(LINE_HEIGHT * table.write(self.row, variant.row, name, target))
+        table.finish(first, self.row - 1)
+        self._notes(len(listed), len(drawn))
+        self._further()
+
+    def _notes(self, listed: int, drawn: int) -> None:
+        """Write what the table lists and what its columns say."""
         extent = extent_of(self.outcome)
-        more = f"The {_LISTED} worst of {grouped(extent.total)} are listed; {extent.elsewhere}. "
+        more = f"The {listed} worst of {grouped(extent.total)} are listed; {extent.elsewhere}. "
         note = (
             "Worst first: by share over the limit. The verdict judges the backlash alone, over the units of all lots."
         )
-        if len(drawn) > _LISTED:
-            note = more + note
-        self.sheet.write_string(self.row, 0, note, self.book.format("quiet"))
-        self._end_row()
-        self._further()
+        columns = (
+            "Beside the computed percentiles: mean + 3 sd by first order (RSS), and every dimension at its worst "
+            "limit; by normal theory: from mean and sd alone."
+        )
+        for text in ((more if drawn > listed else "") + note, columns):
+            self.sheet.write_string(self.row, 0, text, self.book.format("quiet"))
+            self._end_row()
 
     def _further(self) -> None:
         """Write where a variant can be looked into, with links to these sheets."""
@@ -200,37 +231,14 @@ class _Page:
         self.sheet.write_string(self.row, 3, "to look into it further.", self.book.format("text"))
         self._end_row()
 
-    def _variant(self, row: dict[str, Any], name: str, target: int) -> None:
-        """Write a variant's row of the table."""
-        verdict = verdict_word(row, self.outcome.settings.verdict_bounds)
-        link = self.book.format("link")
-        write_link(self.sheet, self.row, 0, f"Results!A{target + 1}", name, style=link)
-        self.sheet.write_string(self.row, 1, verdict, self.book.format(COLOURS[verdict]))
-        for column, key in enumerate(("backlash", "p50", "p97_5", "backlash_limit"), start=2):
-            value, error = row[f"{key}_arcmin"], row.get(f"{key}_standard_error_arcmin")
-            if value is not None:
-                self.sheet.write_number(self.row, column, value, self.book.format("text", _glance(value, error)))
-        lines = 1
-        if row["backlash_limit_arcmin"] is not None:
-            style = self.book.format("text", distance_format(row, "p97_5"))
-            self.sheet.write_number(self.row, 6, distance(row, "p97_5"), style)
-            share = share_words(row)
-            lines = lines_of(share, merged_width(_WIDTHS[7:8]) - 1)
-            self.sheet.write_string(self.row, 7, share, self.book.format("indented wrap"))
-        if row["main_contributor"]:
-            cause = main_cause(row)
-            lines = max(lines, lines_of(cause, merged_width(_WIDTHS[8:])))
-            self.sheet.write_string(self.row, 8, cause, self.book.format("wrap"))
-        self._end_row(LINE_HEIGHT * lines)
-
-    def chart(self, drawn: Sequence[Drawn], curves: Stored) -> None:
+    def chart(self, drawn: Sequence[Drawn], bars: Stored) -> None:
         """Draw the chart as high as the page has room."""
         self._end_row(8)
         least, greatest = _CHART
         height = min(greatest, max(least, _PAGE - self.height - (_LINES + 1) * LINE_HEIGHT))
         rows = math.ceil(height / LINE_HEIGHT)
-        size = (_CHART_WIDTH, round(rows * LINE_HEIGHT / 0.75) - 4)
-        chart = variants_chart(self.book, drawn, curves, self.outcome)
+        size = (round(_CHART_WIDTH), round(rows * LINE_HEIGHT / 0.75) - 4)
+        chart = variants_chart(self.book, bars, scale_end(drawn[:CHARTED]), extent_of(self.outcome).total)
         self.book.insert(self.sheet, self.row, 0, chart, size=size, text=chart_words(drawn))
         for _ in range(rows):
             self._end_row()
@@ -295,8 +303,3 @@ def _fitted(label: str, width: float) -> str:
     while fitted(f"{start}…{end}", width) != f"{start}…{end}":
         start, end = (start[:-1], end) if len(start) > len(end) else (start, end[1:])
     return f"{start}…{end}"
-
-
-def _glance(value: float, error: float | None) -> str:
-    """Return the number format of an angle in four digits, or fewer where its standard error is greater."""
-    return decimals_of(max(error or 0.0, glance(value)), "plain")

@@ -39,8 +39,8 @@ CHANGE, RELAX, LENGTH = "What to change", "What may be relaxed", "Length allowed
 LEVER_TOPICS = (CHANGE, RELAX, LENGTH)
 """Topics of the sentences that lead to the sheet Levers: the three questions of who decides."""
 
-_TOLD = 2
-"""Most variants of which a topic tells: the sheet has all."""
+_TOLD, _CHANGED = 2, 5
+"""Most variants of which a topic tells, and most whose change is told: the sheet has all."""
 
 _IDLE = 0.01
 """Share of the variance below which a tolerance does nothing for the spread."""
@@ -55,16 +55,18 @@ _MEGAPASCAL = 1e6
 _NAME = 200
 
 
-def what_to_change(facts: SummaryFacts, most: int = _TOLD) -> Iterator[str]:
+def what_to_change(facts: SummaryFacts, most: int = _CHANGED) -> Iterator[str]:
     """Yield the cheapest single change of the worst variants that miss their limit, or why there is none."""
     names = _names(facts.levers, "meet")
-    stuck = []
+    stuck, told = [], False
     for name in names[:most]:
         lever = cheapest(facts.levers, name)
         if lever is None:
             stuck.append(name)
         else:
-            yield _cheapest(facts, lever)
+            start = "For" if told else "Cheapest single change for"
+            told = True
+            yield f"{start} {_cheapest(facts, lever)}"
     for name in stuck:
         yield _stuck(facts, name)
     hopeless = [name for name in names[:most] if _no_tolerance_can(facts, name)]
@@ -76,7 +78,7 @@ def what_to_change(facts: SummaryFacts, most: int = _TOLD) -> Iterator[str]:
             f"{whose} or more are over the limit."
         )
     if (more := len(names) - most) > 0:
-        yield f"The changes of {grouped(more)} more are on Levers."
+        yield f"{grouped(more)} more on Levers."
 
 
 def cheapest(levers: pl.DataFrame, variant: str) -> Lever | None:
@@ -140,10 +142,7 @@ def _cheapest(facts: SummaryFacts, lever: Lever) -> str:
         *_effects(facts, row, lever),
     ]
     note = f" Mind: {lever['range_note']}." if lever["range_note"] else ""
-    return (
-        f"Cheapest single change for {facts.named(lever['variant'])}: {_changed(facts, row, lever)}; "
-        f"{', '.join(effects)}.{note}"
-    )
+    return f"{facts.named(lever['variant'])}: {_changed(facts, row, lever)}; {', '.join(effects)}.{note}"
 
 
 def _changed(facts: SummaryFacts, row: Row, lever: Lever) -> str:

@@ -25,8 +25,9 @@ from flexlash.report.wording.lever_sentences import (
 )
 from flexlash.report.wording.lot_sentences import LOTS, lots_and_parts
 from flexlash.report.wording.measured_parts import PARTS, measured_parts
+from flexlash.report.wording.normal_theory import NORMAL, normal_theory
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows, rough, summary_facts
-from flexlash.report.wording.verdict_sentences import failing, sureness
+from flexlash.report.wording.verdict_sentences import WORST_CASE, extremes_of_worst, failing, sureness
 from flexlash.report.wording.wave_generator import bending, two_lobes
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import CATALOGUE, spelled_out
@@ -76,6 +77,8 @@ def sentences(
         "Computed": _computed(facts),
         "Which fail": failing(facts),
         "How sure": sureness(facts),
+        NORMAL: normal_theory(facts),
+        WORST_CASE: extremes_of_worst(facts),
         PARTS: measured_parts(facts),
         LOTS: lots_and_parts(facts),
         "Why": _causes(facts),
@@ -91,7 +94,7 @@ def sentences(
     }
     of_these = f"Of the {facts.extent.drawn} worst: " if outcome.whole else ""
     for topic, answer in topics.items():
-        text = " ".join(answer)
+        text = ("\n" if topic == CHANGE else " ").join(answer)
         if text:
             yield topic, f"{of_these if topic in _OF_THOSE_DRAWN else ''}{text}"
 

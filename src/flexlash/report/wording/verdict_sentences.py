@@ -22,7 +22,10 @@ from flexlash.report.wording.verdict import (
 from flexlash.schema.limit_verdict import VERDICTS, Verdict
 from flexlash.schema.number_words import angle_words, brief_share, share_words
 
-__all__ = ["extremes", "failing", "judged", "sureness"]
+WORST_CASE = "Worst case"
+"""The topic of what the tolerances allow at worst, whatever the calculation's own error is."""
+
+__all__ = ["WORST_CASE", "extremes", "extremes_of_worst", "failing", "judged", "sureness"]
 
 _PERCENTILES = {"p97_5": "97.5 %", "p99_865": "99.865 %"}
 _VERDICTS = {"fails": "It fails", "marginal": "It is marginal", "meets": "It meets its limit"}
@@ -66,10 +69,7 @@ def failing(facts: SummaryFacts) -> Iterator[str]:
 
 
 def sureness(facts: SummaryFacts) -> Iterator[str]:
-    """Yield the share over the limit of the worst variants with its interval, and the bounds of the worst one."""
-    worst = facts.worst
-    if worst is None:
-        return
+    """Yield the share over the limit of the worst variants with its interval, and what is not settled."""
     named = first_rows(facts.failing) or first_rows(facts.judged, 1)
     shares = [(facts.named(row["variant"]), share_words(row)) for row in named]
     if shares:
@@ -77,7 +77,20 @@ def sureness(facts: SummaryFacts) -> Iterator[str]:
         if any("(" in words for _, words in shares):
             yield _IN_BRACKETS
     yield from _unsettled(facts)
-    yield from extremes(facts, worst)
+
+
+def extremes_of_worst(facts: SummaryFacts) -> Iterator[str]:
+    """Yield what the worst case, first order and the computed distribution say of the worst variant."""
+    row = facts.worst
+    if row is None or not row["worst_case_low_arcmin"] < row["worst_case_high_arcmin"]:
+        return
+    yield from extremes(facts, row)
+    if row["first_order_sd_arcmin"] is not None:
+        high = angle_words(row["mean_arcmin"] + 3 * row["first_order_sd_arcmin"])
+        yield (
+            f"Mean + 3 first-order standard deviations (RSS) make {high}; by Monte Carlo 99.865 % of units stay below "
+            f"{_tail(row, 'p99_865')}, from a nominal {angle_words(row['backlash_arcmin'])}."
+        )
 
 
 def extremes(facts: SummaryFacts, row: Row) -> Iterator[str]:
