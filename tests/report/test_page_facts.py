@@ -48,7 +48,7 @@ def test_the_table_is_that_of_the_summary(facts, study):
     """Verdict, angles and main cause of each variant are the Summary's, in its order."""
     sheet = openpyxl.load_workbook(study[1], data_only=True)["Summary"]
     header = next(row for row in range(1, 60) if sheet.cell(row, 1).value == "Variant")
-    for place, told in enumerate(facts["table"][:6], start=header + 1):
+    for place, told in enumerate(facts["table"][:4], start=header + 1):
         shown = [sheet.cell(place, column).value for column in (1, 2, 12)]
         assert shown == [told["variant"], told["light"], told["main_cause"]]
         for column, text in ((3, "limit"), (4, "nominal"), (5, "p97_5"), (6, "p99_865")):

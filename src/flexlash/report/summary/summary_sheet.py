@@ -43,7 +43,7 @@ from flexlash.schema.number_words import grouped
 
 __all__ = ["write_summary"]
 
-_LISTED = (6, 12)
+_LISTED = (3, 12)
 """Fewest and most variants in the table."""
 
 _FIGURES = ((0, 0), (1, 4), (5, 7), (8, 9), (10, 11))
@@ -55,8 +55,8 @@ _UNIT = (1, 11)
 _PAGE = 1085.0
 """Height [pt] of what fits on a Letter page in letters of 7 pt; A4 is higher."""
 
-_CHART = (200.0, 340.0)
-"""Least and greatest height [pt] of the chart."""
+_CHART, _USUAL_CHART = (170.0, 340.0), 200.0
+"""Least and greatest height [pt] of the chart, and what the table leaves it where sentences are not too long."""
 
 _CHART_WIDTH = sum(7 * width + 5 for width in WIDTHS)
 _LINES = 5
@@ -197,7 +197,7 @@ class _Page:
         self._end_row(4 * LINE_HEIGHT + 2)
         targets = result_rows(self.outcome)
         labels = labels_of(self.outcome, [variant.row["variant"] for variant in drawn])
-        room = _PAGE - self.height - _CHART[0] - (_LINES + 5) * LINE_HEIGHT
+        room = _PAGE - self.height - _USUAL_CHART - (_LINES + 5) * LINE_HEIGHT
         listed, first = drawn[: max(_LISTED[0], min(_LISTED[1], int(room / LINE_HEIGHT)))], self.row
         for variant in listed:
             name = _fitted(labels[variant.row["variant"]], merged_width(WIDTHS[:1]))
