@@ -69,7 +69,7 @@ def test_shell_blocks_run(copy, monkeypatch, capsys):
         "needs-fixing-checked.xlsx",
         "needs-fixing-report.xlsx",
     }
-    assert (copy / "mended.xlsx").exists()
+    assert (copy / "fixed.xlsx").exists()
     assert "Traceback" not in capsys.readouterr().err
 
 
