@@ -210,7 +210,7 @@ def test_variants_that_were_not_computed_say_why(table, sound):
 
 @pytest.mark.slow
 def test_many_variants_stay_within_bounds(table, sound):
-    """Of 700 variants the worst are drawn, listed and have pages with sketches, in less than 3 MiB; names stay apart."""
+    """Of 700 variants the worst are drawn and have pages with sketches, in less than 3 MiB; names stay apart."""
     name = "a very long name of a variant that goes on and on and on, so that it is cut at its end: number"
     rows = [sound | {"variant": f"{name} {number}", "torque_Nm": 700 + number / 2} for number in range(700)]
     outcome = run(table(rows), samples=64)
