@@ -47,9 +47,7 @@ def test_a_history_of_nothing_does_not_blame_the_filter():
     nothing = render("history", view=lists.history_view([], NOW, totals={}))
     assert "Nothing has been handed in yet" in nothing
     assert "No submission matches" not in nothing
-    assert "No submission matches" in render(
-        "history", view=lists.history_view([], NOW, text="x", totals={"done": 1})
-    )
+    assert "No submission matches" in render("history", view=lists.history_view([], NOW, text="x", totals={"done": 1}))
 
 
 def test_what_fails_most_names_columns_as_the_template_does():

@@ -100,9 +100,10 @@ def chart_title(shown: int, total: int) -> str:
 def chart_words(drawn: Sequence[Drawn]) -> str:
     """Return the alternative text of the chart."""
     charted = drawn[:CHARTED]
+    base = "median" if all(one.row["backlash_limit_arcmin"] is None for one in drawn) else "limit"
     return (
         f"Backlash of {len(charted)} variants, worst first: {spans_of(charted)}. {limits_over(charted)} "
-        "Drawn in per cent of the limit, which is the line at zero: a bar goes from the backlash that 2.5 % of units "
+        f"Drawn in per cent of the {base}, which is the line at zero: a bar goes from the backlash that 2.5 % of units "
         "stay below to that which 97.5 % stay below, the median as a diamond, P99.865 as a dash. Bars of variants that "
         "fail are dark orange, of marginal ones orange, of those that meet it blue; a triangle with its figure stands "
         "for one beyond the scale."
