@@ -60,13 +60,16 @@ def variants_chart(book: Book, bars: Stored, reach: float, total: int) -> Any:
         "name": "P99.865", "categories": names, "values": bars.series("P99.865"), "line": {"none": True},
         "marker": _marker("long_dash", PALETTE["ink"], look["mark"] + 5),
     })  # fmt: skip
-    for heading, position, most in (("above", "below", _TOLD_ABOVE), ("below", "above", _TOLD_BELOW)):
+    for heading, position, most, shape in (
+        ("above", "below", _TOLD_ABOVE, "triangle"),
+        ("below", "above", _TOLD_BELOW, "square"),
+    ):
         if any(row[heading] is not None for row in bars.rows):
             labels = [{"value": f"{row['off']:+.0f} %" if row[heading] is not None else ""} for row in bars.rows]
             told = {"value": True, "position": position, "custom": labels, "font": {"size": _FONT}}
             chart.add_series({
                 "name": f"median further {heading}", "categories": names, "values": bars.series(heading),
-                "line": {"none": True}, "marker": _marker("triangle", PALETTE["grey"], look["mark"] + 3),
+                "line": {"none": True}, "marker": _marker(shape, PALETTE["grey"], look["mark"] + 3),
                 **({"data_labels": told} if count <= most else {}),
             })  # fmt: skip
     zero = {"color": "#000000", "width": 2.25}
