@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.allocation_sheet import ALLOCATED
 from flexlash.report.extent import MOST_FINDINGS, Extent, extent_of
 from flexlash.report.layout.links import write_link
+from flexlash.report.layout.paper import print_one_page
 from flexlash.report.layout.styles import Book
 from flexlash.report.results_sheet import AS_SUBMITTED, ERROR_DIGITS, SHARE_DECIMALS
 from flexlash.report.wording.correlation_words import correlation_sentences, first_order_sentence, share_sentence
@@ -26,10 +27,22 @@ from flexlash.tolerance.engine.line_points import LINE_REPLICATES
 from flexlash.tolerance.engine.line_precision import MOST_LINES, PROBABILITY_PRECISION, SD_PRECISION
 from flexlash.tolerance.sampling import REPLICATES
 
-__all__ = ["CHECKSUMS", "ERRATA", "LEFT_OUT", "MODEL", "PROOF", "SHEETS", "TABS", "write_about"]
+__all__ = [
+    "CHECKSUMS",
+    "ERRATA",
+    "HOW_TO_SHOW",
+    "LEFT_OUT",
+    "MODEL",
+    "PROOF",
+    "SHEETS",
+    "TABS",
+    "about_sheet",
+    "write_about",
+]
 
 SHEETS = {
     "Summary": "One page: what was computed, what fails, by how much, why and what to change.",
+    "Failing variants": "One printed page for each variant that misses its limit: by how much, why, what to change.",
     "Allocation": (
         "What the tolerances of each class may be, at the least cost, with all of its variants within their limits."
     ),
@@ -71,6 +84,7 @@ SHEETS = {
     "About": "This page: where the numbers come from and what they mean.",
     "Curves": "Stored percentiles behind Summary and Explorer.",
     "Compared": "Stored figures behind Compare, Ranking and Contributions.",
+    "Pages": "Stored figures behind Failing variants.",
     "Swept": "Stored curves behind the charts of Sweep.",
     "Inputs": "What was entered and what the program found, behind Trace.",
     "Scatter": "How each dimension scatters, behind Trace spread.",
@@ -79,6 +93,11 @@ SHEETS = {
     "Trace slope": "The formulas of Trace in the middle of the tolerances, with one dimension moved.",
 }
 """What each sheet is for, in one line."""
+
+HOW_TO_SHOW = (
+    "To see one: right-click the tab of any sheet, Unhide (in LibreOffice: Show Sheet), and pick it from the list."
+)
+"""How a reader gets at a hidden sheet."""
 
 TABS = "Sheets with orange tabs have yellow cells to change; sheets with grey tabs hold stored numbers."
 
@@ -267,7 +286,10 @@ def _digits() -> Iterator[str]:
         "Standard errors are shown with two digits. A share of units within 1 ppm of none or all is shown with at most "
         "four decimals of per cent; its cell and the column in ppm hold the rest."
     )
-    yield "The columns marked + above can be folded away: standard errors, radians, arc seconds and bounds."
+    yield (
+        "Columns that few need are folded away: the + above the columns of Results shows them. The key below a heading "
+        "is the name of the column in files."
+    )
     yield f"Columns of the submission that flexlash does not know stand at the right end, marked “{AS_SUBMITTED}”."
 
 
@@ -280,9 +302,13 @@ _LINES = (30, 88, 114)
 """Widths of both columns, and how many characters fit on a line across both."""
 
 
-def write_about(book: Book, outcome: Outcome, later: Sequence[str] = ()) -> None:
-    """Write the About sheet; `later` are sheets that follow it."""
-    sheet = book.sheet("About", landscape=False)
+def about_sheet(book: Book) -> Any:
+    """Return the sheet About in its place among the others; what it tells of them comes when all are known."""
+    return book.sheet("About", landscape=False)
+
+
+def write_about(book: Book, sheet: Any, outcome: Outcome, later: Sequence[str] = ()) -> None:
+    """Write the About sheet; `later` are sheets that are not made yet."""
     sheet.set_column(0, 0, _LINES[0])
     sheet.set_column(1, 1, _LINES[1])
     sheet.write_string(0, 0, "About this report", book.format("title"))
@@ -293,8 +319,9 @@ def write_about(book: Book, outcome: Outcome, later: Sequence[str] = ()) -> None
     present = [worksheet.get_name() for worksheet in book.workbook.worksheets()] + list(later)
     sections: tuple[tuple[str, list[tuple[str, str]]], ...] = (
         ("Provenance and settings", list(_identity(outcome).items())),
-        ("Sheets", [*((name, sheets.get(name, "")) for name in present), ("", TABS)]),
+        ("Sheets", [(name, sheets.get(name, "")) for name in present if book.shows(name)]),
         ("Verdict", [("", text) for text in _verdict(outcome.settings.verdict_bounds)]),
+        ("Hidden sheets", [("", HOW_TO_SHOW), ("", TABS), *_hidden(book, present, sheets)]),
         ("Digits and columns", [("", text) for text in _digits()]),
         ("Spread", [("", text) for text in _statistics(outcome)]),
         ("Model", [("", text) for text in MODEL]),
@@ -306,8 +333,16 @@ def write_about(book: Book, outcome: Outcome, later: Sequence[str] = ()) -> None
         ("Columns of Allocation", [(column.label, column.help) for column in ALLOCATION if ALLOCATED in present]),
         ("Dimensions", [(name, f"{column.sheet}: {column.label}") for name, column in DIMENSIONS.items()]),
     )
+    ends = []
     for title, entries in sections:
         row = _write_section(book, sheet, row, title, entries)
+        ends.append(row - 2)
+    print_one_page(sheet, _LINES[:2], ends[-1], upright=True, ends=ends)
+
+
+def _hidden(book: Book, present: Sequence[str], sheets: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Return the sheets that are hidden, with what each is for."""
+    return [(name, sheets.get(name, "")) for name in present if not book.shows(name)]
 
 
 def _of_large(extent: Extent) -> dict[str, str]:

@@ -8,18 +8,19 @@ from typing import Any
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.extent import extent_of
+from flexlash.report.failing.failing_places import variant_targets
 from flexlash.report.layout.links import (
     FIRST_FINDING,
     listed_findings,
     mirrored,
-    result_rows,
     row_of,
     rule_counts,
     rules_of,
     write_link,
 )
+from flexlash.report.layout.paper import print_one_page
 from flexlash.report.layout.styles import Book
-from flexlash.report.report_data import Drawn
+from flexlash.report.report_data import ROW, Drawn
 from flexlash.report.submission_sheets import SUBMISSION, mirrored_schema, titles_of
 from flexlash.schema.columns import ENTRY_SHEETS
 from flexlash.schema.finding_explanations import explanation_of
@@ -29,13 +30,23 @@ from flexlash.schema.result_columns import FINDINGS
 
 __all__ = ["write_findings"]
 
-_WIDTHS = {"message": 66, "fix": 50, "suggestion": 18, "variant": 22, "column": 24, "value": 24}
+_WIDTHS = {
+    "level": 8,
+    "code": 7,
+    "cell": 8,
+    "variant": 20,
+    "column": 20,
+    "value": 16,
+    "message": 54,
+    "fix": 42,
+    "suggestion": 14,
+}
 _STYLES = {"error": "error", "warning": "warning", "info": "text"}
 _NAME = 30
-_PER_LINE = {"message": 68, "fix": 52, "value": 24, "suggestion": 18}
+_PER_LINE = {"message": 56, "fix": 44, "value": 16, "suggestion": 14}
 """Characters of a column's text on one line."""
 
-_MEND_PER_LINE = 130
+_MEND_PER_LINE = 105
 _LINE = 15.5
 _RULES_HEADER = 3
 _LABELS = {(schema, column.key): column.label for schema, columns in ENTRY_SHEETS.items() for column in columns}
@@ -43,7 +54,7 @@ _BY_KEY = {key: label for (_, key), label in reversed(_LABELS.items())}
 
 
 def write_findings(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
-    """Write the Findings sheet; cells link to the submission as read, variants to Results."""
+    """Write the Findings sheet; cells link to the submission as read, variants to their pages."""
     sheet = book.sheet("Findings")
     for column_index, column in enumerate(FINDINGS):
         sheet.set_column(column_index, column_index, _WIDTHS.get(column.key, 11))
@@ -60,18 +71,21 @@ def write_findings(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None
     for column_index, column in enumerate(FINDINGS):
         sheet.write_string(header, column_index, column.label, book.format("header"))
         sheet.write_comment(header, column_index, column.help)
-    rows, by_name, variants = result_rows(outcome), _rows_by_name(outcome), mirrored(outcome, drawn)
+    variants = mirrored(outcome, drawn)
+    targets = variant_targets(drawn, outcome.settings.verdict_bounds)
+    by_name = {variant.row["variant"]: targets[variant.row[ROW]] for variant in drawn}
     titles = titles_of(outcome.submission)
     for row, finding in enumerate(findings, start=header + 1):
-        result = rows.get(row_of(outcome, finding), by_name.get(finding.variant))
+        target = targets.get(row_of(outcome, finding)) or by_name.get(finding.variant, "")
         title = titles.get(finding.sheet, "")
         place = finding.address
         if place and title == SUBMISSION:
             place = variants.place(place)
         cell = str(place) if place and title else ""
-        _write_finding(book, sheet, row, finding, title=title, links=(cell, result))
+        _write_finding(book, sheet, row, finding, title=title, links=(f"{title}!{cell}" if cell else "", target))
     sheet.autofilter(header, 0, header + len(findings), len(FINDINGS) - 1)
     sheet.freeze_panes(0, 2)
+    print_one_page(sheet, [_WIDTHS.get(column.key, 11) for column in FINDINGS], header + len(findings))
 
 
 def _counts(outcome: Outcome, listed: int) -> str:
@@ -96,12 +110,6 @@ def _left_out(outcome: Outcome, listed: int) -> str:
     file = extent_of(outcome).findings_file
     where = f"all are in {file}" if file else "flexlash check with --json or --annotate tells all"
     return f"{grouped(listed)} findings are listed below, {grouped(more)} more are not; {where}."
-
-
-def _rows_by_name(outcome: Outcome) -> dict[str, int]:
-    """Return the row of Results by the variant's name, for findings on other sheets."""
-    names = outcome.results["variant"].to_list()
-    return {name: row for row, name in zip(result_rows(outcome).values(), names, strict=False) if name}
 
 
 def _write_rules(book: Book, sheet: Any, outcome: Outcome, listed: int) -> int:
@@ -133,14 +141,12 @@ def _write_rules(book: Book, sheet: Any, outcome: Outcome, listed: int) -> int:
     return header
 
 
-def _write_finding(
-    book: Book, sheet: Any, row: int, finding: Finding, *, title: str, links: tuple[str, int | None]
-) -> None:
-    """Write one finding, its level coloured, its cell linked to the submission and its variant to Results.
+def _write_finding(book: Book, sheet: Any, row: int, finding: Finding, *, title: str, links: tuple[str, str]) -> None:
+    """Write one finding, its level coloured, its cell linked to the submission, its variant to its page or Explorer.
 
-    `links` are the address of that cell in the report, empty where it is not shown, and the row of Results.
+    `links` are both targets, empty where there is none.
     """
-    cell, result = links
+    cell, target = links
     texts = finding.as_dictionary()
     label = _LABELS.get((mirrored_schema(title), finding.column)) or _BY_KEY.get(finding.column)
     if label:
@@ -152,15 +158,8 @@ def _write_finding(
         if key == "level":
             sheet.write_string(row, column_index, text, book.format(_STYLES[finding.level]))
         elif key == "cell" and text and cell:
-            write_link(sheet, row, column_index, f"{title}!{cell}", text, style=book.format("link"))
-        elif key == "variant" and text and result is not None:
-            write_link(
-                sheet,
-                row,
-                column_index,
-                f"Results!A{result + 1}",
-                shown(text, longest=_NAME),
-                style=book.format("link"),
-            )
+            write_link(sheet, row, column_index, cell, text, style=book.format("link"))
+        elif key == "variant" and text and target:
+            write_link(sheet, row, column_index, target, shown(text, longest=_NAME), style=book.format("link"))
         elif text:
             sheet.write_string(row, column_index, text, wrap)

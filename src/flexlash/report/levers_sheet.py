@@ -9,9 +9,10 @@ import polars as pl
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.extent import extent_of
+from flexlash.report.failing.failing_places import variant_targets
 from flexlash.report.layout.given_rows import GivenRows
-from flexlash.report.layout.links import result_rows, write_link
-from flexlash.report.layout.paper import SMALL, print_readably
+from flexlash.report.layout.links import write_link
+from flexlash.report.layout.paper import print_one_page
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
 from flexlash.report.report_data import ROW, ReportData
@@ -64,7 +65,7 @@ def write_levers(book: Book, outcome: Outcome, data: ReportData) -> None:
     sheet.conditional_format(FIRST_LEVER, 0, *last, new_variant)
     sheet.freeze_panes(FIRST_LEVER, 2)
     sheet.repeat_rows(_HEADER)
-    print_readably(sheet, _WIDTHS, least=SMALL)
+    print_one_page(sheet, _WIDTHS, last[0])
 
 
 def lever_places(levers: pl.DataFrame) -> dict[str, int]:
@@ -111,9 +112,8 @@ def _heights(columns: Sequence[Sequence[str | float | None]]) -> dict[int, float
 
 
 def _write_links(book: Book, sheet: Any, outcome: Outcome, data: ReportData, levers: pl.DataFrame) -> None:
-    """Let the first row of each variant lead to its row of Results."""
-    targets, labels = result_rows(outcome), _labels(levers)
+    """Let the first row of each variant lead to its page, or to Explorer."""
+    targets, labels = variant_targets(data.drawn, outcome.settings.verdict_bounds), _labels(levers)
     submitted = {variant.row["variant"]: variant.row[ROW] for variant in data.drawn}
     for name, row in lever_places(levers).items():
-        target = f"Results!A{targets[submitted[name]] + 1}"
-        write_link(sheet, row, 0, target, labels[name], style=book.format("indented link"))
+        write_link(sheet, row, 0, targets[submitted[name]], labels[name], style=book.format("indented link"))

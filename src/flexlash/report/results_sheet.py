@@ -3,32 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import polars as pl
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.extent import extent_of
+from flexlash.report.failing.failing_places import variant_targets
 from flexlash.report.layout.given_rows import GivenRows
-from flexlash.report.layout.links import (
-    FIRST_ROW,
-    finding_rows,
-    first_result,
-    mirrored,
-    name_column,
-    result_rows,
-    write_link,
-)
-from flexlash.report.layout.paper import print_readably
+from flexlash.report.layout.links import FIRST_ROW, finding_rows, first_result, result_rows, write_link
+from flexlash.report.layout.paper import print_one_page
 from flexlash.report.layout.raw_cells import write_raw
 from flexlash.report.layout.result_formats import ESTIMATED_SHARES, number_formats, usual_format
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
 from flexlash.report.report_data import Drawn
-from flexlash.schema.cell_addresses import CellAddress
+from flexlash.report.wording.verdict import UNSETTLED
 from flexlash.schema.columns import Column
 from flexlash.schema.result_columns import result_columns
-
-if TYPE_CHECKING:
-    import polars as pl
 
 __all__ = [
     "AS_SUBMITTED",
@@ -48,11 +40,32 @@ ERROR_DIGITS = 4
 SHARE_DECIMALS = 4
 """Decimals of an estimated share that the workbook holds, as many as it shows; it is good to the third."""
 
-_DETAILS = ("_low", "_high", "_shear_radius_mm", "_range", "_points")
-"""Ends of keys whose columns can be folded away, beside standard errors, radians, seconds and plain draws."""
+_FIRST = (
+    "variant",
+    "verdict",
+    "backlash_arcmin",
+    "p97_5_arcmin",
+    "p99_865_arcmin",
+    "backlash_limit_arcmin",
+    "ppm_over_limit",
+    "sd_arcmin",
+    "main_contributor",
+    "main_contributor_share",
+    "von_mises_MPa",
+    "status",
+)
+_LAST = ("notes", "findings")
+"""Columns that stand before and behind all others, which are folded away."""
 
-_FURTHER_PERCENTILES = ("p1_arcmin", "p25_arcmin", "p75_arcmin", "p99_arcmin")
-"""Percentiles for who plots or compares a distribution; those that decide are never folded."""
+_VERDICT = Column(
+    sheet="Results",
+    key="verdict",
+    label="Verdict",
+    help="By the share of units over the limit; About has the rule. A ? says that more samples may turn it.",
+    type="text",
+    role="result",
+)
+"""A column of the sheet alone: files of Results leave the rule to who reads them."""
 
 _BARS = {"probability_over_limit": "orange", "disk_share": "sky", "main_contributor_share": "sky"}
 _NUMBER, _WORDS, _PASSED = 11.0, 14.0, 16.0
@@ -63,18 +76,7 @@ _TEXTS = (16, 90)
 
 _WRAPPED = ("spread_note", "notes", "findings")
 
-_NEW_PAGE = (
-    "mean_arcmin",
-    "first_order_sd_arcmin",
-    "von_mises_MPa",
-    "p1_arcmin",
-    "interaction_share",
-    "random_mean_arcmin",
-    "elasticity_windup_rad",
-)
-"""Columns with which a printed page begins: what belongs together is on one."""
-
-_KEY_HEIGHT = 36
+_KEY_HEIGHT, _KEY_SIZE = 36, 8.0
 _REMARKS = {
     "main_contributor": "Named by its key in the template's sheet Tolerances; About lists the keys in words.",
     "probability_over_limit_sample_low": "Blank where nothing was measured; About says how it is found.",
@@ -83,27 +85,18 @@ _REMARKS = {
 """What the comments of some columns say besides."""
 
 
-def _is_detail(column: Column) -> bool:
-    """Whether a column can be folded away without loss to who only reads the result."""
-    key = column.key
-    if key.startswith(("coverage", "worst_case")) and "standard_error" not in key:
-        return False
-    if key in _FURTHER_PERCENTILES:
-        return True
-    return "standard_error" in key or key.startswith("random_") or key.endswith(("_rad", "_arcsec", *_DETAILS))
-
-
 def write_results(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
     """Write the Results sheet; columns of the submission that flexlash does not use stand at its right end."""
-    results, first, extent = outcome.results, first_result(outcome), extent_of(outcome)
+    results, first, extent = _with_verdicts(outcome), first_result(outcome), extent_of(outcome)
     sheet = book.sheet("Results", kind=GivenRows) if extent.large else book.sheet("Results")
     labels = first - FIRST_ROW
     if labels:
         sheet.write_string(0, 0, extent.note, book.format("quiet"))
-    columns = [column for column in result_columns(cross_check=True, elasticity=True) if column.key in results.columns]
+    columns = _in_order(results)
     widths = [_width(results, column) for column in columns]
+    folded = range(len(_FIRST), len(columns) - len(_LAST))
     for index, (column, width) in enumerate(zip(columns, widths, strict=True)):
-        options = {"level": 1} if _is_detail(column) else {}
+        options = {"level": 1, "hidden": True} if index in folded else {"collapsed": index == folded.stop}
         number = usual_format(column) if column.is_number else ""
         sheet.set_column(index, index, width, book.format("text", number), options)
         text = f"{column.help} {_REMARKS.get(column.key, '')}".strip()
@@ -118,9 +111,26 @@ def write_results(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
     sheet.freeze_panes(first, 1)
     sheet.autofilter(labels + 1, 0, last, right - 1)
     sheet.repeat_rows(labels, labels + 1)
-    breaks = [index for index, column in enumerate(columns) if column.key in _NEW_PAGE]
-    print_readably(sheet, [*widths, *[_PASSED] * (right - len(columns))], breaks=breaks)
+    print_one_page(sheet, widths[: len(_FIRST)], last, smallest=_KEY_SIZE)
     _write_conditions(book, sheet, columns, (first, last))
+
+
+def _with_verdicts(outcome: Outcome) -> pl.DataFrame:
+    """Return Results with the verdict on each variant in words."""
+    bounds, words = outcome.settings.verdict_bounds, []
+    for over, *ends in outcome.results.select(
+        "probability_over_limit", "probability_over_limit_low", "probability_over_limit_high"
+    ).iter_rows():
+        verdict = bounds.verdict(over)
+        words.append(f"{verdict}{UNSETTLED if bounds.straddled(*ends) else ''}" if verdict else None)
+    return outcome.results.with_columns(pl.Series(_VERDICT.key, words, dtype=pl.String))
+
+
+def _in_order(results: pl.DataFrame) -> list[Column]:
+    """Return the columns in the order in which a reader wants them; the others stand in that of the contract."""
+    known = {column.key: column for column in (_VERDICT, *result_columns(cross_check=True, elasticity=True))}
+    others = [key for key in known if key in results.columns and key not in {*_FIRST, *_LAST}]
+    return [known[key] for key in (*_FIRST, *others, *_LAST)]
 
 
 def _width(results: pl.DataFrame, column: Column) -> float:
@@ -191,18 +201,15 @@ def _styles(book: Book, results: pl.DataFrame, column: Column) -> list[Any]:
 
 
 def _write_links(book: Book, sheet: Any, outcome: Outcome, columns: Sequence[Column], drawn: Sequence[Drawn]) -> None:
-    """Lead from each variant to its row of the submission, and from its findings to the first of them.
-
-    Those of a large submission that are not repeated in the report have no link.
-    """
-    style, column, variants = book.format("link"), name_column(outcome), mirrored(outcome, drawn)
+    """Lead from each drawn variant to its page or to Explorer, and from its findings to the first of them."""
+    style, targets = book.format("link"), variant_targets(drawn, outcome.settings.verdict_bounds)
     findings = finding_rows(outcome)
     findings_index = [column.key for column in columns].index("findings")
     rows = result_rows(outcome)
     texts = outcome.results.select("variant", "findings").iter_rows()
     for (number, row), (name, listed) in zip(rows.items(), texts, strict=False):
-        if name and (place := variants.place(CellAddress(row=number, column=column))):
-            write_link(sheet, row, 0, f"Submission!{place}", name, style=style)
+        if name and number in targets:
+            write_link(sheet, row, 0, targets[number], name, style=style)
         if listed and number in findings:
             write_link(sheet, row, findings_index, f"Findings!A{findings[number] + 1}", listed, style=style)
 
@@ -227,6 +234,9 @@ def _write_conditions(book: Book, sheet: Any, columns: Sequence[Column], rows: t
     """Colour the status and draw shares as bars from 0 to 1, from the first of these rows to the last."""
     first, last = rows
     keys = [column.key for column in columns]
+    for verdict, look in (("fails", "error"), ("marginal", "warning"), ("meets", "ok")):
+        rule = {"type": "text", "criteria": "begins with", "value": verdict, "format": book.format(look)}
+        sheet.conditional_format(first, 1, last, 1, rule)
     index = keys.index("status")
     for status in ("error", "warning", "ok"):
         rule = {"type": "cell", "criteria": "==", "value": f'"{status}"', "format": book.format(status)}

@@ -13,8 +13,9 @@ from flexlash.analysis.outcome import Outcome
 from flexlash.feedback.template.template_workbook import TITLES
 from flexlash.reading.raw import RawSheet, RawValue, Submission, Unstored
 from flexlash.report.extent import extent_of
-from flexlash.report.layout.links import Mirrored, finding_list, mirrored, result_rows, write_link
-from flexlash.report.layout.paper import print_readably
+from flexlash.report.failing.failing_places import variant_targets
+from flexlash.report.layout.links import Mirrored, finding_list, mirrored, write_link
+from flexlash.report.layout.paper import print_one_page
 from flexlash.report.layout.raw_cells import raw_text, write_raw
 from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
@@ -77,8 +78,8 @@ class _Guilt:
 class _Mirror:
     """A sheet to repeat: its cells, its header row (0: none) and its guilty cells by address.
 
-    `linked` is the column whose cells lead to Results, and `targets` the row of Results, from 0, by row number. Where
-    cells are moved, `note` says at the top what is left out.
+    `linked` is the column whose cells lead where `targets` says by row number. Where cells are moved, `note` says at
+    the top what is left out.
     """
 
     raw: RawSheet
@@ -86,7 +87,7 @@ class _Mirror:
     header: int
     guilty: Mapping[CellAddress, _Guilt]
     linked: int = 0
-    targets: Mapping[int, int] = field(default_factory=dict)
+    targets: Mapping[int, str] = field(default_factory=dict)
     places: Mirrored = field(default_factory=Mirrored)
     note: str = ""
 
@@ -106,7 +107,8 @@ def write_submission(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> No
             mirror = _Mirror(raw=raw, title=title, header=headers.get(schema, 0), guilty=of_sheet)
             if schema == "Variants" and table is not None:
                 linked = table.heading.columns.get("variant", 0)
-                mirror = replace(mirror, linked=linked, targets=result_rows(outcome), places=mirrored(outcome, drawn))
+                targets = variant_targets(drawn, outcome.settings.verdict_bounds)
+                mirror = replace(mirror, linked=linked, targets=targets, places=mirrored(outcome, drawn))
                 if extent.large:
                     note = f"{extent.note or f'All {grouped(extent.total)} variants'} Worst first, as read."
                     mirror = replace(mirror, note=note)
@@ -148,7 +150,6 @@ def _write_mirror(book: Book, mirror: _Mirror) -> None:
     widths = _widths(mirror, rows, last)
     for column, width in enumerate(widths):
         sheet.set_column(column, column, width)
-    print_readably(sheet, widths)
     sheet.ignore_errors({"number_stored_as_text": f"A1:XFD{bottom}"})
     if header := mirror.header and mirror.header + places.shift:
         sheet.set_row(header - 1, 48)
@@ -170,10 +171,11 @@ def _write_mirror(book: Book, mirror: _Mirror) -> None:
             if column not in ignored and not (isinstance(value, Unstored) and row < mirror.header):
                 _write_value(book, sheet, mirror, CellAddress(row=row, column=column), value)
     _write_guilt(book, sheet, mirror)
+    print_one_page(sheet, widths, bottom - 1)
 
 
 def _write_value(book: Book, sheet: Any, mirror: _Mirror, address: CellAddress, value: RawValue) -> None:
-    """Write one cell of the submission, its variant's name with a link to Results."""
+    """Write one cell of the submission, its variant's name with a link to its page."""
     row, column = address
     place, guilt = mirror.places.place(address), mirror.guilty.get(address)
     if place is None:
@@ -182,7 +184,7 @@ def _write_value(book: Book, sheet: Any, mirror: _Mirror, address: CellAddress, 
     style = guilt.level if guilt else _style(mirror, row, column, value)
     if column == mirror.linked and row in mirror.targets and isinstance(value, str):
         link = book.format(style if guilt else "link")
-        write_link(sheet, *cell, f"Results!A{mirror.targets[row] + 1}", raw_text(value), style=link)
+        write_link(sheet, *cell, mirror.targets[row], raw_text(value), style=link)
     else:
         write_raw(book, sheet, cell, value, style)
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 import xlsxwriter
 
 from flexlash.analysis.outcome import Outcome
-from flexlash.report.about_sheet import write_about
+from flexlash.report.about_sheet import about_sheet, write_about
 from flexlash.report.allocation_sheet import write_allocation
 from flexlash.report.carried_sheet import write_carried
 from flexlash.report.compare.compare_sheet import write_compare
@@ -22,6 +22,8 @@ from flexlash.report.elasticity_sheet import write_elasticity, write_stress
 from flexlash.report.explorer.curves_sheet import CURVES_NOTE, stored_curves
 from flexlash.report.explorer.explorer_sheet import write_explorer
 from flexlash.report.extent import extent_of
+from flexlash.report.failing.failing_sheet import write_failing
+from flexlash.report.failing.stored_pages import PAGES_NOTE
 from flexlash.report.findings_sheet import write_findings
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
@@ -31,6 +33,7 @@ from flexlash.report.results_sheet import write_results
 from flexlash.report.samples_sheet import write_samples
 from flexlash.report.sections_sheet import write_sections
 from flexlash.report.sensitivity_sheet import write_sensitivity
+from flexlash.report.shown_sheets import shown_sheets
 from flexlash.report.strength_sheet import write_strength
 from flexlash.report.submission_sheets import write_submission
 from flexlash.report.summary.relative_bars import BARS_NOTE, relative_bars
@@ -55,45 +58,37 @@ _NO_DATE = datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC).replace(tzinfo=Non
 def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     """Return the report as an .xlsx file; `data` is what it draws, made here where it is None."""
     buffer = io.BytesIO()
-    book = Book(workbook := _begun(buffer, outcome))
+    workbook = _begun(buffer, outcome)
     data = report_data(outcome) if data is None else data
-    drawn, extent = data.drawn, extent_of(outcome)
-    curves = stored_curves(drawn)
+    drawn = data.drawn
+    book = Book(workbook, shown_sheets(outcome, data))
+    extent, compared, curves = extent_of(outcome), compared_variants(drawn), stored_curves(drawn)
     bars = relative_bars(drawn, outcome.settings.verdict_bounds, CHARTED)
+    swept = stored_sweeps(data.studies[:MOST_STUDIES])
     unit = write_summary(book, outcome, data, bars)
-    write_levers(book, outcome, data)
-    write_allocation(book, data.allocation, outcome.settings.target_percent)
+    pages = write_failing(book, outcome, data)
     write_results(book, outcome, drawn)
     write_explorer(book, curves, extent, outcome.settings.verdict_bounds, unit)
-    compared = compared_variants(drawn)
-    write_compare(book, outcome, drawn, compared)
-    write_ranking(book, outcome, drawn, compared)
+    write_levers(book, outcome, data)
     write_contributions(book, outcome, drawn, compared)
-    swept = stored_sweeps(data.studies[:MOST_STUDIES])
-    write_sweep(book, outcome, data.studies, swept)
-    write_trade_offs(book, outcome, drawn)
-    trace, trace_spread = trace_sheet(book), trace_spread_sheet(book)
-    write_sensitivity(book, outcome, drawn)
-    write_used(book, outcome, data)
-    write_samples(book, outcome, drawn)
-    write_sections(book, drawn, extent)
-    write_strength(book, drawn, extent)
     drives = write_drive(book, outcome, drawn)
-    if "elasticity_windup_rad" in outcome.results.columns:
-        write_elasticity(book, outcome, drawn)
-        write_stress(book, data)
+    write_sweep(book, outcome, data.studies, swept)
+    trace = trace_sheet(book)
     write_findings(book, outcome, drawn)
     write_submission(book, outcome, drawn)
+    about = about_sheet(book)
+    trace_spread = trace_spread_sheet(book)
+    _write_further(book, outcome, data, compared)
     computed = [variant.computed for variant in drawn]
     inputs = stored_inputs(computed, outcome.settings.lost_motion_percent)
     scatter, tied = stored_scatter(computed)
     noted = _noted({
-        CURVES_NOTE: curves, COMPARED_NOTE: compared, BARS_NOTE: bars if bars.rows else None,
+        CURVES_NOTE: curves, COMPARED_NOTE: compared, BARS_NOTE: bars if bars.rows else None, PAGES_NOTE: pages,
         SWEPT_NOTE: swept if swept.rows else None, DRIVES_NOTE: drives, INPUTS_NOTE: inputs,
         SCATTER_NOTE: scatter, TIED_NOTE: tied if tied.rows else None,
     })  # fmt: skip
     steps = [STEPS] * bool(inputs.rows) + [SLOPE] * bool(scatter.rows)
-    write_about(book, outcome, later=(*(stored.name for stored, _ in noted), *steps))
+    write_about(book, about, outcome, later=(*(stored.name for stored, _ in noted), *steps))
     part = f"{extent.note} " if extent.large and extent.note else ""
     for stored, note in noted:
         stored.write(book, f"{part}{note}")
@@ -107,6 +102,23 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
 def _noted(sheets: Mapping[str, Stored | None]) -> list[tuple[Stored, str]]:
     """Return the data sheets that there are, by their notes, each with its note."""
     return [(stored, note) for note, stored in sheets.items() if stored is not None]
+
+
+def _write_further(book: Book, outcome: Outcome, data: ReportData, compared: Stored) -> None:
+    """Write the sheets for who wants more of one matter than the others tell."""
+    drawn, extent = data.drawn, extent_of(outcome)
+    write_compare(book, outcome, drawn, compared)
+    write_ranking(book, outcome, drawn, compared)
+    write_sensitivity(book, outcome, drawn)
+    write_used(book, outcome, data)
+    write_samples(book, outcome, drawn)
+    write_sections(book, drawn, extent)
+    write_strength(book, drawn, extent)
+    write_allocation(book, data.allocation, outcome.settings.target_percent)
+    write_trade_offs(book, outcome, drawn)
+    if "elasticity_windup_rad" in outcome.results.columns:
+        write_elasticity(book, outcome, drawn)
+        write_stress(book, data)
 
 
 def _begun(buffer: io.BytesIO, outcome: Outcome) -> xlsxwriter.Workbook:

@@ -11,6 +11,7 @@ from flexlash.analysis.outcome import Outcome
 from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.axes import axis_over
+from flexlash.report.layout.links import write_link
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.chart_words import limits_over, medians_of, spans_of
@@ -62,7 +63,7 @@ def write_compare(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
     for row, note in enumerate((f"{which}. {_NOTES[0]}", _NOTES[1]), start=1):
         sheet.write_string(row, 0, note, book.format("quiet"))
     for column, target, text in _LINKS:
-        sheet.write_url(3, column, f"internal:{target}!A1", book.format("link"), text)
+        write_link(sheet, 3, column, f"{target}!A1", text, style=book.format("link"))
     text = f"Boxes of the backlash of {count} variants, worst first, with their limits: "
     text += f"{spans_of(drawn[:count])}. {limits_over(drawn[:count])}"
     book.insert(sheet, _TOP, 0, _boxes(book, compared, count), size=(_WIDTH, _HEIGHT), text=text)

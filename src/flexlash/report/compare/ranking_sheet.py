@@ -10,12 +10,13 @@ from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_summary import share_words
 from flexlash.report.extent import extent_of
+from flexlash.report.failing.failing_places import variant_targets
 from flexlash.report.formula.functions import IF, ISNUMBER, MAX, match_exactly
 from flexlash.report.formula.live import Live, fill, put
 from flexlash.report.formula.stored import Row, Stored
-from flexlash.report.layout.links import result_rows, write_link
+from flexlash.report.layout.links import write_link
 from flexlash.report.layout.styles import Book, decimals_of
-from flexlash.report.report_data import Drawn
+from flexlash.report.report_data import ROW, Drawn
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.verdict import COLOURS, verdict_rules, verdict_word
 from flexlash.schema.entry_words import dimension_words
@@ -84,7 +85,7 @@ def write_ranking(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
     if drawn:
         first = min(range(count), key=lambda index: drawn[index].computed.variant.row)
         base = _write_base(book, sheet, compared, first)
-        results = result_rows(outcome)
+        targets = variant_targets(drawn, outcome.settings.verdict_bounds)
         labels = distinct_labels([variant.row["variant"] for variant in drawn], _NAME)
         for rank, variant in enumerate(drawn):
             _write_words(
@@ -92,7 +93,7 @@ def write_ranking(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
                 sheet,
                 rank,
                 (variant, verdict_word(variant.row, bounds)),
-                (labels[rank], results[variant.computed.variant.row]),
+                (labels[rank], targets[variant.row[ROW]]),
             )
             _write_figures(book, sheet, rank, variant, compared)
             _write_differences(book, sheet, rank, (variant, compared), base)
@@ -156,12 +157,12 @@ def _write_base(book: Book, sheet: Any, compared: Stored, first: int) -> dict[st
     return {heading: write(heading, column_of(heading), number) for heading, number in figures.items()}
 
 
-def _write_words(book: Book, sheet: Any, rank: int, of: tuple[Drawn, str], link: tuple[str, int]) -> None:
-    """Write what is said of a variant in words, with its verdict; its label leads to its row of Results."""
+def _write_words(book: Book, sheet: Any, rank: int, of: tuple[Drawn, str], link: tuple[str, str]) -> None:
+    """Write what is said of a variant in words, with its verdict; its label leads to its page or to Explorer."""
     (variant, verdict), row = of, FIRST_ROW + rank
     sheet.write_number(row, 0, rank + 1, book.format("small figure", "0"))
-    label, result = link
-    write_link(sheet, row, 1, f"Results!A{result + 1}", label, style=book.format("link"))
+    label, target = link
+    write_link(sheet, row, 1, target, label, style=book.format("link"))
     sheet.write_string(row, 2, verdict, book.format(COLOURS[verdict]))
     if variant.row["probability_over_limit"] is not None:
         sheet.write_string(row, 3, share_words(variant.row), book.format("indented"))

@@ -14,7 +14,7 @@ from flexlash.report.drive.sources_table import Chain, write_sources
 from flexlash.report.drive.stored_drives import drive_ratio, stored_drives
 from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
-from flexlash.report.layout.paper import SMALL, print_readably
+from flexlash.report.layout.paper import print_one_page
 from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.drive_sentences import drives_over_limit
@@ -75,8 +75,7 @@ def write_drive(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> Stored 
     after = write_catalogue(page, max(below, top + _CHART_ROWS) + 1, drive_ratio(sources))
     last = _write_all(page, after + 1, drawn, extent_of(outcome).note)
     sheet.freeze_panes(_PINNED, 1)
-    print_readably(sheet, [width for _, width in COLUMNS], least=SMALL)
-    sheet.print_area(0, 0, last, len(COLUMNS) - 1)
+    print_one_page(sheet, [width for _, width in COLUMNS], last)
     return page.stored
 
 

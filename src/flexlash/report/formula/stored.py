@@ -55,6 +55,11 @@ class Stored:
         last = FIRST_ROW + (len(self.rows) if count is None else count) - 1
         return [self.name, FIRST_ROW, column, last, column]
 
+    def across(self, place: int, first: str, last: str) -> list[Any]:
+        """Return the cells of one variant, counted from 0, between two headings as charts want them."""
+        row = FIRST_ROW + place
+        return [self.name, row, self._columns[first], row, self._columns[last]]
+
     def pick(self, number: Live, heading: str, times: Live | None = None) -> Live:
         """Return what a column holds for the variant of a number, from 1, times a factor; a blank is an empty text."""
         cells = self.cells(heading)

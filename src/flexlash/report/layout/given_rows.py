@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from xlsxwriter.worksheet import Worksheet
-
+from flexlash.report.layout.report_worksheet import ReportWorksheet
 from flexlash.schema.cell_addresses import column_letters
 
 __all__ = ["GivenRows"]
@@ -20,7 +19,7 @@ _PIECE = 500
 """Rows whose text is held at a time."""
 
 
-class GivenRows(Worksheet):  # type: ignore[misc]  # XlsxWriter has no types
+class GivenRows(ReportWorksheet):
     """A worksheet whose lower rows are given at once.
 
     It writes them as XlsxWriter would, without a record of each cell in between. What it uses of XlsxWriter for that
@@ -45,6 +44,7 @@ class GivenRows(Worksheet):  # type: ignore[misc]  # XlsxWriter has no types
         itself stands instead of the one given.
         """
         self._first, self._columns, self._heights = first, columns, heights or {}
+        self.heights |= self._heights
         self.dim_rowmax = max(self.dim_rowmax or 0, first + len(columns[0][0]) - 1)
         for values, _ in columns:
             for text in dict.fromkeys(value for value in values if isinstance(value, str)):

@@ -47,11 +47,15 @@ _LEVELS = ("error", "warning", "info")
 
 
 def write_link(sheet: Any, row: int, column: int, target: str, text: str, *, style: Any) -> None:
-    """Write a text that leads to a cell of the report, given as `Results!A3`; a plain text when links are used up."""
-    if sheet.hlink_count >= MOST_LINKS:
-        sheet.write_string(row, column, text, style)
-        return
+    """Write a text that leads to a cell of the report, given as `Results!A3`.
+
+    It is a plain text where that sheet cannot be seen, to which no program follows a link, and when links are used up.
+    """
     title, _, cell = target.rpartition("!")
+    title = title.strip("'")
+    if sheet.hlink_count >= MOST_LINKS or not sheet.book.shows(title):
+        sheet.write_string(row, column, text, sheet.book.unlinked(style))
+        return
     url = Url(f"internal:{quote_sheetname(title)}!{cell}")
     url.text = text
     sheet.write_url(row, column, url, style)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from typing import Any
 
 import xlsxwriter
-from xlsxwriter.worksheet import Worksheet
 
+from flexlash.report.layout.report_worksheet import ReportWorksheet
 from flexlash.schema.number_words import places
 
 __all__ = ["GRID", "LINES", "OUTLINE", "PALETTE", "Book", "decimals_of", "number_code", "percent_of"]
@@ -129,6 +130,9 @@ _FORMATS |= {f"big {level}": _FORMATS["big"] | _FORMATS[level] for level in ("er
 _CELLS = ("text", "indented", "indented wrap")
 _FORMATS |= {f"{name} ok": _FORMATS[name] | _FORMATS["ok"] for name in _CELLS}
 _FORMATS |= {f"{name} grey": _FORMATS[name] | {"font_color": "#6B6B6B"} for name in _CELLS}
+_ON_PAGES = ("text", "label", "topic", "said", "quiet", "figure", "header", "link")
+_FORMATS |= {f"page {name}": _FORMATS[name] | {"font_size": 10} for name in _ON_PAGES}
+"""The smaller print of the pages of single variants."""
 
 
 _MOST_DECIMALS = 8
@@ -161,12 +165,28 @@ def percent_of(error: float | None) -> str:
     return decimals if decimals == "share" else f"{decimals}%"
 
 
-class Book:
-    """An XlsxWriter workbook with the report's formats and sheets."""
+_UNLINKED = {"link": "text", "indented link": "indented", "topic link": "topic"}
+"""What a text looks like that leads nowhere, by what it looks like where it does."""
 
-    def __init__(self, workbook: xlsxwriter.Workbook) -> None:
+
+class Book:
+    """An XlsxWriter workbook with the report's formats and sheets; only those in `shown` can be seen, None for all."""
+
+    def __init__(self, workbook: xlsxwriter.Workbook, shown: Container[str] | None = None) -> None:
         self.workbook = workbook
+        self._shown = shown
         self._formats: dict[str, Any] = {}
+
+    def shows(self, title: str) -> bool:
+        """Return whether a sheet of this title can be seen, so that a link may lead there."""
+        return self._shown is None or title in self._shown
+
+    def unlinked(self, style: Any) -> Any:
+        """Return what a text looks like that leads nowhere, in place of the format of a link."""
+        for name, plain in _UNLINKED.items():
+            if style is self._formats.get(f"{name} "):
+                return self.format(plain)
+        return style
 
     def format(self, name: str, number: str = "") -> Any:
         """Return a format by name, optionally with a number format by name or in Excel's letters."""
@@ -190,10 +210,13 @@ class Book:
         landscape: bool = True,
         pages_tall: int = 0,
         tab: str = "",
-        kind: type[Worksheet] = Worksheet,
+        kind: type[ReportWorksheet] = ReportWorksheet,
     ) -> Any:
         """Return a new sheet set up to print one page wide; `tab` says what is special: `entry` or `stored`."""
         sheet = self.workbook.add_worksheet(name, kind)
+        sheet.book = self
+        if not self.shows(name):
+            sheet.hide()
         if tab:
             sheet.set_tab_color(_TABS[tab])
         if landscape:
@@ -213,7 +236,9 @@ class Book:
         return chart
 
     @staticmethod
-    def insert(sheet: Any, row: int, column: int, chart: Any, *, size: tuple[int, int], text: str) -> None:
-        """Put a chart of this size [px] on a sheet, with its alternative text."""
+    def insert(
+        sheet: Any, row: int, column: int, chart: Any, *, size: tuple[int, int], text: str, right: int = 0
+    ) -> None:
+        """Put a chart of this size on a sheet, so far right of the column's edge [px], with its alternative text."""
         chart.set_size({"width": size[0], "height": size[1]})
-        sheet.insert_chart(row, column, chart, {"description": text, "object_position": 2})
+        sheet.insert_chart(row, column, chart, {"description": text, "object_position": 2, "x_offset": right})

@@ -42,7 +42,7 @@ from flexlash.schema.variant import Limits
 from flexlash.tolerance.dimension_limits import distribution_of
 from flexlash.tolerance.distribution_curves import HISTOGRAM_BINS
 
-__all__ = ["density_of", "segments_of", "shares_of", "variant_pages"]
+__all__ = ["density_of", "segments_of", "shares_of", "used_limits", "variant_pages"]
 
 _FINDINGS = 5
 """Most findings of a variant that are told."""
@@ -95,7 +95,7 @@ def variant_pages(
             density=density_of(variant),
             shares=list(shares_of(variant)),
             segments=list(segments_of(variant)),
-            limits=list(_limits(variant)),
+            limits=[limits for _, limits in used_limits(variant)],
             sketch=sketch_facts(variant.computed.variant, name),
             levers=lever_table(facts.levers, row["variant"]),
             numbers=own,
@@ -168,13 +168,13 @@ def segments_of(variant: Drawn) -> Iterator[Segment]:
             )
 
 
-def _limits(variant: Drawn) -> Iterator[UsedLimits]:
-    """Yield the dimensions as they were used, in the order of the template."""
+def used_limits(variant: Drawn) -> Iterator[tuple[str, UsedLimits]]:
+    """Yield the dimensions with how they were used, in the order of the template."""
     entered, limits = variant.computed.variant.dimensions, variant.computed.limits
     for name, column in DIMENSIONS.items():
         is_unused = column.sheet == "Settings" and entered.get(name) == column.default
         if name in entered and not is_unused:
-            yield _used(column, entered[name], limits.get(name))
+            yield name, _used(column, entered[name], limits.get(name))
 
 
 def _used(column: Column, nominal: float, limits: Limits | None) -> UsedLimits:

@@ -12,13 +12,14 @@ from flexlash.analysis.run_summary import counted, points_words
 from flexlash.report.allocation_sheet import ALLOCATED
 from flexlash.report.drive.drive_page import SHEET as DRIVE_SHEET
 from flexlash.report.extent import extent_of
+from flexlash.report.failing.failing_places import variant_targets
 from flexlash.report.formula.live import Live, fill
 from flexlash.report.formula.stored import Stored
-from flexlash.report.layout.links import result_rows, write_link
+from flexlash.report.layout.links import write_link
 from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, fitted, lines_of, merged_width
 from flexlash.report.levers_sheet import LEVERS, lever_places
-from flexlash.report.report_data import Drawn, ReportData
+from flexlash.report.report_data import ROW, Drawn, ReportData
 from flexlash.report.summary.relative_bars import scale_end
 from flexlash.report.summary.summary_chart import CHARTED, chart_words, variants_chart
 from flexlash.report.summary.summary_table import WIDTHS, SummaryTable
@@ -190,18 +191,18 @@ class _Page:
         return cell
 
     def table(self, drawn: Sequence[Drawn], unit: Live) -> None:
-        """Write as many of the worst variants as the page has room for, each leading to its row of Results."""
+        """Write as many of the worst variants as the page has room for, each leading to its page or to Explorer."""
         self._end_row(8)
         table = SummaryTable(self.book, self.sheet, self.outcome.settings.verdict_bounds, unit)
         table.write_headings(self.row)
         self._end_row(4 * LINE_HEIGHT + 2)
-        targets = result_rows(self.outcome)
+        targets = variant_targets(drawn, self.outcome.settings.verdict_bounds)
         labels = labels_of(self.outcome, [variant.row["variant"] for variant in drawn])
         room = _PAGE - self.height - _USUAL_CHART - (_LINES + 5) * LINE_HEIGHT
         listed, first = drawn[: max(_LISTED[0], min(_LISTED[1], int(room / LINE_HEIGHT)))], self.row
         for variant in listed:
             name = _fitted(labels[variant.row["variant"]], merged_width(WIDTHS[:1]))
-            target = f"Results!A{targets[variant.computed.variant.row] + 1}"
+            target = targets[variant.row[ROW]]
             self._end_row(LINE_HEIGHT * table.write(self.row, variant.row, name, target))
         table.finish(first, self.row - 1)
         self._notes(len(listed), len(drawn))
@@ -227,7 +228,8 @@ class _Page:
         link = self.book.format("link")
         self.sheet.write_string(self.row, 0, "Pick a variant in", self.book.format("figure"))
         write_link(self.sheet, self.row, 1, "Explorer!A1", "Explorer", style=link)
-        write_link(self.sheet, self.row, 2, "Trace!A1", "or Trace", style=link)
+        if self.book.shows("Trace"):
+            write_link(self.sheet, self.row, 2, "Trace!A1", "or Trace", style=link)
         self.sheet.write_string(self.row, 3, "to look into it further.", self.book.format("text"))
         self._end_row()
 

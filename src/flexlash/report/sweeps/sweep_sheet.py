@@ -9,6 +9,7 @@ from typing import Any
 from flexlash.analysis.outcome import Outcome
 from flexlash.decisions.sweep import Study
 from flexlash.report.formula.stored import Stored
+from flexlash.report.layout.paper import print_one_page
 from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of, merged_width
 from flexlash.report.sweeps.point_table import LAST_COLUMN, SHARE, STRESS, VALUE_WIDTH, WIDTH, write_points
@@ -60,7 +61,7 @@ def write_sweep(book: Book, outcome: Outcome, studies: Sequence[Study], stored: 
     for number, study in enumerate(studies[:MOST_STUDIES]):
         breaks.append(row)
         row = blocks.write(row, study, number) + 2
-    sheet.set_h_pagebreaks(breaks[1:])
+    print_one_page(sheet, [VALUE_WIDTH, *[WIDTH] * LAST_COLUMN], row - 2, ends=[one - 2 for one in breaks[1:]])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,7 +13,7 @@ from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.trace.inputs import PROGRAM
 
-__all__ = ["CHANGE", "HEADER", "LEFT_OUT", "SHEET", "SUBMITTED", "VALUE", "Lines", "Page", "Words"]
+__all__ = ["CHANGE", "HEADER", "LEFT_OUT", "SHEET", "SUBMITTED", "VALUE", "WIDTHS", "Lines", "Page", "Words"]
 
 SHEET = "Trace"
 LEFT_OUT = "none"
@@ -32,6 +32,7 @@ _COLUMNS = (
     ("As submitted, or the program's value", 15),
     ("Your change, or the difference", 15),
 )
+WIDTHS = tuple(width for _, width in _COLUMNS)
 _LOOKS = {
     "size": 'General;-General;"none"',
     "plain": "General",
@@ -87,6 +88,7 @@ class Page(Lines):
         self.stored = stored
         self.row = HEADER
         self.rows: dict[str, int] = {}
+        self.sections: list[int] = []
         self.entries: dict[str, tuple[Live, Live]] = {}
         self._is_part: Live | None = None
         self.differences: list[Value] = []
@@ -114,6 +116,7 @@ class Page(Lines):
     def section(self, title: str) -> None:
         """Begin a section."""
         self.row += 2
+        self.sections.append(self.row)
         for column in range(len(_COLUMNS)):
             self.sheet.write_blank(self.row, column, None, self.book.format("section"))
         self.sheet.write_string(self.row, _NAME, title, self.book.format("section"))

@@ -14,10 +14,11 @@ from xlsxwriter.utility import xl_rowcol_to_cell
 from flexlash.report.formula.functions import CONCATENATE, COUNTA, FIXED, IF, MAX, MIN, OR, PI, match_exactly
 from flexlash.report.formula.live import Live, Range, fill, put
 from flexlash.report.formula.stored import Stored
+from flexlash.report.layout.paper import print_one_page
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.trace.trace_inputs import write_inputs
 from flexlash.report.trace.trace_mechanics import write_integrals, write_shape, write_sums, write_windups
-from flexlash.report.trace.trace_page import CHANGE, HEADER, LEFT_OUT, SHEET, SUBMITTED, VALUE, Page
+from flexlash.report.trace.trace_page import CHANGE, HEADER, LEFT_OUT, SHEET, SUBMITTED, VALUE, WIDTHS, Page
 from flexlash.report.trace.trace_steps import Steps
 from flexlash.report.trace.trace_strength import write_buckling, write_stresses
 from flexlash.schema.number_words import grouped
@@ -74,7 +75,8 @@ def write_trace(book: Book, sheet: Any, inputs: Stored, total: int, picked: int 
     _write_headline(page, fault, _write_verdict(page, changes))
     sheet.freeze_panes(HEADER + 1, 0)
     sheet.repeat_rows(HEADER)
-    sheet.print_area(0, 0, page.row, CHANGE)
+    ends = [row - 2 for row in page.sections[1:]]
+    print_one_page(sheet, WIDTHS, page.row, upright=True, ends=ends)
     return page.lines
 
 

@@ -52,8 +52,8 @@ def _changed(lever: Lever) -> str:
 
 
 LEVER_COLUMNS = (
-    LeverColumn(heading="Variant", value=lambda lever: lever["variant"], width=24.0, is_in_words=True),
-    LeverColumn(heading="Change", value=_changed, width=46.0, wraps=True),
+    LeverColumn(heading="Variant", value=lambda lever: lever["variant"], width=22.0, is_in_words=True),
+    LeverColumn(heading="Change", value=_changed, width=40.0, wraps=True),
     LeverColumn(heading="Drawn value", value=lambda lever: shown_value(lever, "drawing_value"), is_in_words=True),
     LeverColumn(heading="Exact value", value=lambda lever: shown_value(lever, "to_value")),
     LeverColumn(heading="Unit", value=lambda lever: shown_unit(lever).strip() or None, width=6.0, is_in_words=True),
@@ -94,7 +94,7 @@ LEVER_COLUMNS = (
     LeverColumn(
         heading="Why not, or what to mind",
         value=lambda lever: lever["reason"] or lever["range_note"],
-        width=70.0,
+        width=41.0,
         wraps=True,
     ),
 )

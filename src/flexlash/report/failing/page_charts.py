@@ -1,0 +1,155 @@
+"""The charts of a failing variant's page: density with limit, nominal and mean, tornado, one bar of segments."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flexlash.report.explorer.curves_sheet import SEGMENTS
+from flexlash.report.failing.stored_pages import LINES, cause_count, is_drawn
+from flexlash.report.formula.stored import Stored
+from flexlash.report.layout.axes import axis_over
+from flexlash.report.layout.styles import GRID, PALETTE, Book
+from flexlash.report.report_data import Drawn
+from flexlash.schema.number_words import angle_words
+from flexlash.schema.units import ARCMIN
+from flexlash.tolerance.distribution_curves import HISTOGRAM_BINS
+
+__all__ = ["density_chart", "density_words", "segments_chart", "segments_words", "tornado_chart", "tornado_words"]
+
+_LETTERS = {"size": 10, "bold": False, "color": "#404040"}
+_TITLE = {"size": 12, "color": PALETTE["ink"]}
+_PLOT = 0.92
+"""Part of the width of the density that its bins and lines have."""
+
+_POINT = 0.75
+"""Points in a pixel."""
+
+_DASHES = {
+    "Limit": ("black", "solid", 2.25),
+    "Nominal": ("ink", "dash", 1.5),
+    "Mean": ("green", "round_dot", 1.75),
+}
+_BLACK = "#000000"
+_COLOURS = ("ink", "grey", "blue", "sky", "orange", "red")
+
+
+def density_chart(book: Book, variant: Drawn, pages: Stored, place: int, width: int) -> Any:
+    """Return the histogram of a variant, units over the limit in red, on a chart so many pixels wide.
+
+    Bins are the error bars of points, so that they and the lines share an axis of numbers.
+    """
+    chart = _chart(book, "scatter", "Share of units by backlash [arcmin]", subtype="straight")
+    lines = [line for line in LINES if is_drawn(variant, line)]
+    low, high = (float(edge) / ARCMIN for edge in (variant.curve.edges[0], variant.curve.edges[-1]))
+    axis = axis_over([low, high, *(variant.row[LINES[line]] for line in lines)])
+    bar = _PLOT * width * _POINT * (high - low) / HISTOGRAM_BINS / (axis.high - axis.low)
+    middles = pages.across(place, "Middle 1", f"Middle {HISTOGRAM_BINS}")
+    for name, heading, colour in (("within the limit", "Within", "blue"), ("over the limit", "Over", "red")):
+        chart.add_series({
+            "name": name,
+            "categories": middles,
+            "values": pages.across(place, f"{heading} 1", f"{heading} {HISTOGRAM_BINS}"),
+            "line": {"none": True},
+            "marker": {"type": "none"},
+            "y_error_bars": {
+                "type": "percentage",
+                "value": 100,
+                "direction": "minus",
+                "end_style": 0,
+                "line": {"color": PALETTE[colour], "width": round(max(0.75, bar), 2)},
+            },
+        })  # fmt: skip
+    for line in lines:
+        colour, dash, weight = _DASHES[line]
+        chart.add_series({
+            "name": f"{line} {_line_words(variant, line)}",
+            "categories": pages.across(place, f"{line} from", f"{line} to"),
+            "values": pages.across(place, f"{line} bottom", f"{line} top"),
+            "line": {"color": PALETTE.get(colour, _BLACK), "width": weight, "dash_type": dash},
+            "marker": {"type": "none"},
+        })  # fmt: skip
+    chart.set_x_axis({**axis.options(), "major_gridlines": {"visible": False}, "num_font": _LETTERS})
+    chart.set_y_axis({"visible": False, "min": 0, "major_gridlines": {"visible": False}})
+    chart.set_legend({"position": "bottom", "font": _LETTERS, "delete_series": [0, 1]})
+    return chart
+
+
+def density_words(variant: Drawn) -> str:
+    """Return the alternative text of the histogram."""
+    told = ", ".join(f"{line.lower()} {_line_words(variant, line)}" for line in LINES)
+    return f"Histogram of the backlash of all units, the part over the limit in red; {told}"
+
+
+def tornado_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any:
+    """Return what each dimension does between its limits, the greatest share of the variance on top."""
+    chart = _chart(book, "bar", "What causes the spread [arcmin]")
+    last = max(1, cause_count(variant))
+    for heading, colour in (("At lower limit", "sky"), ("At upper limit", "blue")):
+        chart.add_series({
+            "name": heading.lower(),
+            "categories": pages.across(place, "Cause 1", f"Cause {last}"),
+            "values": pages.across(place, f"{heading} 1", f"{heading} {last}"),
+            "fill": {"color": PALETTE[colour]},
+            "overlap": 100,
+            "gap": 40,
+        })  # fmt: skip
+    chart.set_x_axis({"num_format": "0.000", "major_gridlines": GRID, "num_font": _LETTERS})
+    chart.set_y_axis({"reverse": True, "label_position": "low", "num_font": _LETTERS, "crossing": "max"})
+    chart.set_legend({"position": "bottom", "font": _LETTERS})
+    return chart
+
+
+def tornado_words() -> str:
+    """Return the alternative text of the tornado."""
+    return "Tornado: change of the backlash between the limits of each dimension, the main cause on top"
+
+
+def segments_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any:
+    """Return one bar of the segments from the open end to the hub."""
+    chart = _chart(book, "bar", "Where the nominal backlash arises, from the open end to the hub", subtype="stacked")
+    for (name, share), colour in zip(_segments(variant).items(), _colours(variant), strict=True):
+        chart.add_series({
+            "name": f"{name} {100 * share:.1f} %",
+            "categories": pages.across(place, "Variant", "Variant"),
+            "values": pages.across(place, name, name),
+            "fill": {"color": PALETTE[colour]},
+            "border": {"color": "#FFFFFF", "width": 0.5},
+            "gap": 10,
+        })  # fmt: skip
+    whole = variant.row["backlash_arcmin"]
+    chart.set_x_axis({"min": 0, "max": whole, "visible": False, "major_gridlines": {"visible": False}})
+    chart.set_y_axis({"visible": False})
+    chart.set_legend({"position": "bottom", "font": _LETTERS})
+    return chart
+
+
+def segments_words(variant: Drawn) -> str:
+    """Return the alternative text of the bar of segments."""
+    told = ", ".join(f"{name} {100 * share:.1f} %" for name, share in _segments(variant).items())
+    return f"Segments of the part by their share of the nominal backlash: {told}"
+
+
+def _chart(book: Book, kind: str, title: str, **options: Any) -> Any:
+    chart = book.chart(kind, title, **options)
+    chart.set_title({"name": title, "name_font": _TITLE, "overlay": False})
+    chart.set_chartarea({"border": {"color": PALETTE["pale"]}})
+    return chart
+
+
+def _segments(variant: Drawn) -> dict[str, float]:
+    """Return the share of the nominal backlash that each segment has, those without any left out."""
+    nominal = variant.computed.nominal
+    angles = {name: getattr(nominal, f"{segment}_windup") for segment, name in SEGMENTS.items()}
+    return {name: angle / nominal.windup for name, angle in angles.items() if isinstance(angle, float) and angle > 0}
+
+
+def _colours(variant: Drawn) -> list[str]:
+    """Return the colour of each segment that the bar has, the same on every page."""
+    own = _segments(variant)
+    return [colour for name, colour in zip(SEGMENTS.values(), _COLOURS, strict=True) if name in own]
+
+
+def _line_words(variant: Drawn, line: str) -> str:
+    """Return where a line stands."""
+    value = variant.row[LINES[line]]
+    return "none" if value is None else f"{value:g}′" if line == "Limit" else angle_words(value)

@@ -1,0 +1,47 @@
+"""Which sheets a reader sees; the others stay hidden, are not printed, and no link leads to them."""
+
+from __future__ import annotations
+
+from flexlash.analysis.outcome import Outcome
+from flexlash.report.drive.drive_page import SHEET as DRIVE
+from flexlash.report.failing.failing_places import FAILING, failing_variants
+from flexlash.report.levers_sheet import LEVERS
+from flexlash.report.report_data import ReportData
+from flexlash.report.submission_sheets import SUBMISSION, titles_of
+from flexlash.report.sweeps.sweep_sheet import SHEET as SWEEP
+
+__all__ = ["ALWAYS", "MOST_SHOWN", "ROOM", "shown_sheets"]
+
+ALWAYS = ("Summary", "Results", "Explorer", "Contributions", "Findings", "About")
+"""Sheets that every reader sees."""
+
+ROOM = 8
+"""Sheets of one printed page that are seen; beside them that with a page for each failing variant.
+
+Only Drive and Sweep are seen beyond, since somebody asked for them on a sheet of their own.
+"""
+
+MOST_SHOWN = 10
+
+
+def shown_sheets(outcome: Outcome, data: ReportData) -> frozenset[str]:
+    """Return the sheets of a report that can be seen, ten at most: those that every reader needs, then by rank."""
+    failing = failing_variants(data.drawn, outcome.settings.verdict_bounds)
+    asked = [DRIVE] * _has_drive(outcome) + [SWEEP] * bool(data.studies)
+    shown = [*ALWAYS, *([LEVERS] if data.levers.height else []), *asked]
+    further = [SUBMISSION] * _has_guilty_variants(outcome) + ["Trace"]
+    shown += further[: max(0, ROOM - len(shown))]
+    return frozenset([*shown, *([FAILING] if failing else [])])
+
+
+def _has_drive(outcome: Outcome) -> bool:
+    return outcome.validated is not None and bool(outcome.validated.other_sources)
+
+
+def _has_guilty_variants(outcome: Outcome) -> bool:
+    """Return whether a cell of Variants has an error or a warning, to which its finding leads."""
+    titles = titles_of(outcome.submission)
+    return any(
+        finding.level != "info" and finding.address is not None and titles.get(finding.sheet) == SUBMISSION
+        for finding in outcome.findings
+    )
