@@ -16,6 +16,9 @@ from here import WHERE, WORKERS, answer_here, workers_here
 from flexlash.cli import batches
 from flexlash.reading import limited_process as isolated
 
+VECTORS = "ignore:wmf image format is not supported:UserWarning"
+"""openpyxl, which only tests read reports with, leaves out the drawings of parts and says so."""
+
 _APART = {WHERE: isolated._answer, WORKERS: batches.workers}
 _HERE = {WHERE: answer_here, WORKERS: workers_here}
 
@@ -29,6 +32,11 @@ def pytest_cmdline_main(config):
     whole = config.args_source != pytest.Config.ArgsSource.ARGS and not hasattr(config, "workerinput")
     if whole and config.option.numprocesses is None and not config.option.usepdb:
         config.option.numprocesses = "auto"
+
+
+def pytest_configure(config):
+    """Let tests open a report whose pages of failing variants show their parts."""
+    config.addinivalue_line("filterwarnings", VECTORS)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import io
-import re
-import zipfile
 
 import openpyxl
 import pytest
 import xlsxwriter
-from finding_examples import SUBMISSIONS
 
 from flexlash.pipeline import run
 from flexlash.report.layout import links
@@ -22,6 +19,7 @@ from flexlash.report.layout.links import (
     rules_of,
     write_link,
 )
+from flexlash.report.layout.styles import Book
 
 
 @pytest.fixture
@@ -65,11 +63,11 @@ def test_links_end_where_excel_ends_them(monkeypatch):
     """Beyond the links that Excel keeps a cell is a plain text, without a warning; a link's text stands once."""
     monkeypatch.setattr(links, "MOST_LINKS", 2)
     buffer = io.BytesIO()
-    book = xlsxwriter.Workbook(buffer)
-    sheet = book.add_worksheet("Results")
+    workbook = xlsxwriter.Workbook(buffer)
+    sheet = Book(workbook).sheet("Results")
     for row in range(3):
         write_link(sheet, row, 0, f"Results!B{row + 1}", "http://a", style=None)
-    book.close()
+    workbook.close()
     cells = [cell for (cell,) in openpyxl.load_workbook(buffer)["Results"].iter_rows()]
     assert [cell.value for cell in cells] == ["http://a"] * 3
     assert [cell.hyperlink and cell.hyperlink.location for cell in cells] == ["Results!B1", "Results!B2", None]
@@ -78,16 +76,22 @@ def test_links_end_where_excel_ends_them(monkeypatch):
     )
 
 
-@pytest.mark.slow
-def test_names_of_sheets_with_spaces_are_quoted(tmp_path):
-    """A link to a mirrored sheet such as Levers entered names it as Excel follows it: between quotes."""
-    path, options = SUBMISSIONS["decided"](tmp_path)
-    run(path, tmp_path / "report.xlsx", samples=16, method="random", **options)
-    with zipfile.ZipFile(tmp_path / "report.xlsx") as archive:
-        sheets = [archive.read(name).decode() for name in archive.namelist() if name.startswith("xl/worksheets/sheet")]
-    places = {place for sheet in sheets for place in re.findall(r'<hyperlink [^>]*location="([^"]*)"', sheet)}
-    assert {"'Levers entered'!B2", "'Sweep entered'!D4", "'Other sources'!E4"} <= places
-    titles = {place.rpartition("!")[0] for place in places}
-    assert [title for title in titles if " " in title and not (title[0] == title[-1] == "'")] == []
-    names = {title.strip("'") for title in titles}
-    assert names <= {*openpyxl.load_workbook(tmp_path / "report.xlsx").sheetnames}
+def test_no_link_leads_to_a_hidden_sheet():
+    """A text whose sheet cannot be seen is plain, in look and in effect; the name of one with spaces is quoted."""
+    buffer = io.BytesIO()
+    workbook = xlsxwriter.Workbook(buffer)
+    book = Book(workbook, {"Summary", "Seen too"})
+    sheet = book.sheet("Summary")
+    for title in ("Seen too", "Hidden one"):
+        book.sheet(title)
+        write_link(sheet, sheet.hlink_count, 0, f"{title}!A1", title, style=book.format("link"))
+    workbook.close()
+    read = openpyxl.load_workbook(buffer)
+    assert {name: read[name].sheet_state for name in read.sheetnames} == {
+        "Summary": "visible", "Seen too": "visible", "Hidden one": "hidden",
+    }  # fmt: skip
+    seen, hidden = read["Summary"]["A1"], read["Summary"]["A2"]
+    assert seen.hyperlink.location == "'Seen too'!A1"
+    assert seen.font.underline
+    assert hidden.hyperlink is None
+    assert not hidden.font.underline

@@ -7,13 +7,22 @@ import io
 import openpyxl
 import pytest
 from filled import SOUND, filled
+from openpyxl.utils import get_column_letter
 
 from flexlash.pipeline import run
 from flexlash.report.layout.links import finding_list, finding_rows
 from flexlash.report.results_sheet import AS_SUBMITTED, FIRST_ROW
 from flexlash.schema.result_columns import RESULTS
 
-COLUMNS = {column.key: number for number, column in enumerate(RESULTS, start=1)}
+FIRST = (
+    "variant", "verdict", "backlash_arcmin", "p97_5_arcmin", "p99_865_arcmin", "backlash_limit_arcmin",
+    "ppm_over_limit", "sd_arcmin", "main_contributor", "main_contributor_share", "von_mises_MPa", "status",
+)  # fmt: skip
+"""What a reader wants first, in this order."""
+
+LAST = ("notes", "findings")
+FOLDED = [column.key for column in RESULTS if column.key not in {*FIRST, *LAST}]
+COLUMNS = {key: number for number, key in enumerate((*FIRST, *FOLDED, *LAST), start=1)}
 """The column of the sheet, from 1, by its key."""
 
 
@@ -59,16 +68,24 @@ def test_other_columns_of_the_submission_pass_through(report):
     assert book["Results"].auto_filter.ref.endswith(f"{rows[0][1].column_letter}5")
 
 
-def test_each_variant_leads_to_its_row_of_the_submission_and_back(report):
-    """A name of Results leads to the same name on Submission, which leads back to it."""
+def test_each_variant_leads_to_its_page_or_to_explorer(report):
+    """A name leads to the printed page of a variant that misses its limit, that of another to Explorer's list."""
     outcome, book = report
-    results, submission = book["Results"], book["Submission"]
+    results, pages = book["Results"], book["Failing variants"]
+    lead = []
     for row in range(FIRST_ROW + 1, FIRST_ROW + 1 + outcome.results.height):
         cell = results.cell(row, 1)
+        if cell.hyperlink is None:
+            assert results.cell(row, COLUMNS["status"]).value == "error"
+            continue
         sheet, _, address = cell.hyperlink.location.partition("!")
-        assert sheet == "Submission"
-        assert submission[address].value == cell.value
-        assert submission[address].hyperlink.location == f"Results!A{row}"
+        lead.append(sheet)
+        if sheet == "Explorer":
+            assert address == "B4"
+        else:
+            assert pages[address].value == cell.value
+        assert (sheet == "Explorer") == (results.cell(row, COLUMNS["verdict"]).value in {"meets", "–"})
+    assert "Explorer" in lead
 
 
 def test_findings_of_a_row_lead_to_the_first_of_them(report):
@@ -85,36 +102,16 @@ def test_findings_of_a_row_lead_to_the_first_of_them(report):
     assert len(finding_list(outcome)) >= 2
 
 
-FOLDED = {
-    "p97_5_standard_error_arcmin": True,
-    "skewness_standard_error": True,
-    "windup_rad": True,
-    "backlash_arcsec": True,
-    "probability_over_limit_low": True,
-    "buckling_range": True,
-    "spread_points": True,
-    "backlash_arcmin": False,
-    "p97_5_arcmin": False,
-    "p1_arcmin": True,
-    "p75_arcmin": True,
-    "coverage_low_arcmin": False,
-    "worst_case_high_arcmin": False,
-    "coverage_low_standard_error_arcmin": True,
-    "probability_over_limit": False,
-    "ppk": False,
-    "findings": False,
-}
-
-
-def test_details_can_be_folded_away(report):
-    """Standard errors, radians and bounds stand in column groups that are open; what is read first is not in one."""
+def test_what_few_need_is_folded_away(report):
+    """Verdict, backlash, spread and limit come first; notes, findings and own columns last; all else is folded away."""
     sheet = report[1]["Results"]
-    levels = {}
+    assert [cell.value for cell in sheet[2]][: len(FIRST)] == list(FIRST)
+    folded = set()
     for dimension in sheet.column_dimensions.values():
-        assert not dimension.hidden
-        assert not dimension.collapsed
-        levels |= dict.fromkeys(range(dimension.min, dimension.max + 1), dimension.outlineLevel)
-    assert {key: levels[COLUMNS[key]] == 1 for key in FOLDED} == FOLDED
+        assert dimension.hidden == (dimension.outlineLevel == 1)
+        folded |= set(range(dimension.min, dimension.max + 1)) if dimension.hidden else set()
+    assert folded == {COLUMNS[key] for key in FOLDED}
+    assert sheet.column_dimensions[get_column_letter(COLUMNS["notes"])].collapsed
 
 
 def test_errors_are_rounded_and_values_are_not(report):
@@ -130,12 +127,12 @@ def test_errors_are_rounded_and_values_are_not(report):
 
 
 def test_shares_are_drawn_as_bars(report):
-    """Three columns of shares have bars from 0 to 1, the status its three colours."""
+    """Three columns of shares have bars from 0 to 1, verdict and status their three colours."""
     formats = {str(area.sqref): [rule.type for rule in rules]
                for area, rules in report[1]["Results"].conditional_formatting._cf_rules.items()}  # fmt: skip
     bars = [area for area, kinds in formats.items() if kinds == ["dataBar"]]
     assert len(bars) == 3
-    assert [kinds for kinds in formats.values() if len(kinds) == 3] == [["cellIs"] * 3]
+    assert [kinds for kinds in formats.values() if len(kinds) == 3] == [["beginsWith"] * 3, ["cellIs"] * 3]
 
 
 @pytest.mark.slow
@@ -150,14 +147,12 @@ def test_the_limit_is_as_entered(table, sound, tmp_path):
     assert set(near) == {3.8}
 
 
-def test_a_printed_page_begins_where_another_matter_does(report):
-    """Results are printed over several pages, each with the variants' names and columns that belong together."""
+def test_one_page_is_printed(report):
+    """What comes first is printed, on one page."""
     sheet = report[1]["Results"]
-    begun = [sheet.cell(2, one.id + 1).value for one in sheet.col_breaks.brk]
-    assert begun[:2] == ["mean_arcmin", "first_order_sd_arcmin"]
-    assert sheet.print_title_cols == "$A:$A"
+    assert [one or 1 for one in (sheet.page_setup.fitToWidth, sheet.page_setup.fitToHeight)] == [1, 1]
+    assert sheet.sheet_properties.pageSetUpPr.fitToPage
     assert sheet.print_title_rows == "$1:$2"
-    assert sheet.page_setup.scale == 65
 
 
 @pytest.mark.slow

@@ -36,14 +36,14 @@ _WIDTHS = {
     "cell": 8,
     "variant": 20,
     "column": 20,
-    "value": 16,
-    "message": 54,
+    "value": 21,
+    "message": 49,
     "fix": 42,
     "suggestion": 14,
 }
 _STYLES = {"error": "error", "warning": "warning", "info": "text"}
 _NAME = 30
-_PER_LINE = {"message": 56, "fix": 44, "value": 16, "suggestion": 14}
+_PER_LINE = {"message": 51, "fix": 44, "value": 21, "suggestion": 14}
 """Characters of a column's text on one line."""
 
 _MEND_PER_LINE = 105

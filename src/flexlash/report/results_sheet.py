@@ -18,7 +18,7 @@ from flexlash.report.layout.result_formats import ESTIMATED_SHARES, number_forma
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
 from flexlash.report.report_data import Drawn
-from flexlash.report.wording.verdict import UNSETTLED
+from flexlash.report.wording.verdict import NO_VERDICT, UNSETTLED
 from flexlash.schema.columns import Column
 from flexlash.schema.result_columns import result_columns
 
@@ -122,7 +122,7 @@ def _with_verdicts(outcome: Outcome) -> pl.DataFrame:
         "probability_over_limit", "probability_over_limit_low", "probability_over_limit_high"
     ).iter_rows():
         verdict = bounds.verdict(over)
-        words.append(f"{verdict}{UNSETTLED if bounds.straddled(*ends) else ''}" if verdict else None)
+        words.append(f"{verdict}{UNSETTLED if bounds.straddled(*ends) else ''}" if verdict else NO_VERDICT)
     return outcome.results.with_columns(pl.Series(_VERDICT.key, words, dtype=pl.String))
 
 

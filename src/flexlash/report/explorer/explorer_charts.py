@@ -102,8 +102,8 @@ def _density(book: Book, sheet: Any, choice: Choice, limit: Live) -> Any:
             "border": {"none": True},
             "gap": 4,
         })  # fmt: skip
-    chart.set_x_axis({"num_font": {"rotation": -45, "size": 8}, "interval_unit": _BINS_PER_LABEL})
-    chart.set_y_axis({"num_format": "0%", "major_gridlines": GRID, "num_font": {"size": 8}})
+    chart.set_x_axis({"num_font": {"rotation": -45, "size": 10}, "interval_unit": _BINS_PER_LABEL})
+    chart.set_y_axis({"num_format": "0%", "major_gridlines": GRID, "num_font": {"size": 10}})
     return chart
 
 
@@ -133,8 +133,8 @@ def _cumulative(book: Book, sheet: Any, working: Working, limit: Live) -> Any:
             "values": ["Explorer", rows[0], columns[1], rows[1], columns[1]],
             "line": line,
         })  # fmt: skip
-    chart.set_x_axis({"num_format": "General", "major_gridlines": {"visible": False}, "num_font": {"size": 8}})
-    chart.set_y_axis({"min": 0, "max": 1, "num_format": "0%", "major_gridlines": GRID, "num_font": {"size": 8}})
+    chart.set_x_axis({"num_format": "General", "major_gridlines": {"visible": False}, "num_font": {"size": 10}})
+    chart.set_y_axis({"min": 0, "max": 1, "num_format": "0%", "major_gridlines": GRID, "num_font": {"size": 10}})
     return chart
 
 
@@ -167,8 +167,8 @@ def _tornado(book: Book, sheet: Any, choice: Choice) -> Any:
             "overlap": 100,
             "gap": 40,
         })  # fmt: skip
-    chart.set_x_axis({"num_format": "0.000", "major_gridlines": GRID, "num_font": {"size": 8}})
-    chart.set_y_axis({"reverse": True, "label_position": "low", "num_font": {"size": 8}})
+    chart.set_x_axis({"num_format": "0.000", "major_gridlines": GRID, "num_font": {"size": 10}})
+    chart.set_y_axis({"reverse": True, "label_position": "low", "num_font": {"size": 10}})
     return chart
 
 
@@ -188,6 +188,6 @@ def _segments(book: Book, sheet: Any, choice: Choice) -> Any:
             "border": OUTLINE,
             "gap": 60,
         })  # fmt: skip
-    chart.set_x_axis({"num_format": "0.0", "major_gridlines": GRID, "num_font": {"size": 8}})
+    chart.set_x_axis({"num_format": "0.0", "major_gridlines": GRID, "num_font": {"size": 10}})
     chart.set_y_axis({"visible": False})
     return chart

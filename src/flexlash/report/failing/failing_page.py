@@ -31,7 +31,7 @@ from flexlash.report.wording.lever_sentences import CHANGE, what_to_change
 from flexlash.report.wording.lever_words import Lever, change_words, followers_words, sentence_start
 from flexlash.report.wording.sentences import cause_of
 from flexlash.report.wording.summary_facts import SummaryFacts
-from flexlash.report.wording.verdict import COLOURS, light
+from flexlash.report.wording.verdict import COLOURS, UNSETTLED, firm, verdict_word
 from flexlash.report.wording.verdict_sentences import judged
 from flexlash.schema.findings import shown
 
@@ -117,11 +117,10 @@ class FailingPage:
     def _heading(self, label: str, count: int) -> None:
         """Write name and verdict, and below them what is compared."""
         row, bounds = self.variant.row, self.facts.bounds
-        colour = light(row, bounds)
-        verdict = bounds.verdict(row["probability_over_limit"]) or ""
-        doubt = "" if colour in {"red", "amber", "green"} else ", not settled"
+        verdict = verdict_word(row, bounds)
+        doubt = ", not settled" if verdict.endswith(UNSETTLED) else ""
         self.sheet.write_string(self.row, 0, label, self.book.format("title"))
-        self._across(_RIGHT[0], _LAST, f"{verdict}{doubt}", self.book.format(f"big {COLOURS[colour]}"))
+        self._across(_RIGHT[0], _LAST, f"{firm(verdict)}{doubt}", self.book.format(f"big {COLOURS[verdict]}"))
         self._end_row(28)
         one = self.variant.computed.variant
         facts = (

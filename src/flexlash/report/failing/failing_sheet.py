@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from flexlash.analysis.outcome import Outcome
+from flexlash.report.failing.failing_page import COLUMN_WIDTHS, PAGE_SCALE, FailingPage
 from flexlash.report.failing.failing_places import FAILING, PAGE_ROWS, failing_variants
 from flexlash.report.failing.stored_pages import stored_pages
-from flexlash.report.failing.failing_page import COLUMN_WIDTHS, PAGE_SCALE, FailingPage
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import ReportData

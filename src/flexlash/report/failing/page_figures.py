@@ -12,6 +12,8 @@ from flexlash.schema.number_words import INTERVAL, angle_words, brief_share
 __all__ = ["page_figures"]
 
 _DIGITS = 3
+_TOLD = 1e-5
+"""Least interval that is told [arcmin]."""
 
 
 def page_figures(variant: Drawn, bounds: VerdictBounds) -> Iterator[tuple[str, str]]:
@@ -33,7 +35,8 @@ def page_figures(variant: Drawn, bounds: VerdictBounds) -> Iterator[tuple[str, s
         ("Calculation error", "p99_865_standard_error_arcmin"),
     ):
         if row[key] is not None:
-            yield name, f"± {INTERVAL * row[key]:.2g}′"
+            reach = INTERVAL * row[key]
+            yield name, f"± {reach:.2g}′" if reach >= _TOLD else f"below {_TOLD:.5f}′"
     low, high = row["worst_case_low_arcmin"], row["worst_case_high_arcmin"]
     if low is not None:
         yield "Worst case", f"{angle_words(low)} to {angle_words(high)}"

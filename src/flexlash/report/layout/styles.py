@@ -121,7 +121,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
         "border_color": "#8EA9C1",
         "bg_color": PALETTE["pale"],
     },
-    "small figure": {"font_size": 9, "align": "center"},
+    "small figure": {"font_size": 10, "align": "center"},
     "error": {"bg_color": "#F8CBAD"},
     "warning": {"bg_color": "#FFE699"},
     "ok": {"bg_color": "#C6E5D8"},
