@@ -11,8 +11,9 @@ from flexlash.analysis.run_summary import share_words
 from flexlash.pipeline import run
 from flexlash.report.compare.compared import COMPARED_NOTE, compared_variants
 from flexlash.report.compare.ranking_sheet import BASE_ROW, DIFFERENCES, FIRST_ROW, HEADER, write_ranking
+from flexlash.report.failing.failing_places import variant_targets
 from flexlash.report.layout.styles import Book
-from flexlash.report.report_data import drawn_variants
+from flexlash.report.report_data import ROW, drawn_variants
 from flexlash.report.wording.verdict import verdict_word
 from flexlash.schema.entry_words import dimension_words
 
@@ -58,13 +59,17 @@ def test_rows_repeat_results_worst_first(study):
     outcome, path = study
     sheet = _sheet(path, data_only=True)
     places, _ = _places(sheet)
-    results = outcome.results["variant"].to_list()
-    for rank, one in enumerate(drawn_variants(outcome), start=1):
+    drawn = drawn_variants(outcome)
+    targets = {
+        row: f"'{target.partition('!')[0]}'!{target.partition('!')[2]}" if " " in target else target
+        for row, target in variant_targets(drawn, outcome.settings.verdict_bounds).items()
+    }
+    for rank, one in enumerate(drawn, start=1):
         row = one.row
         cells = {heading: sheet.cell(FIRST_ROW + rank, place) for heading, place in places.items()}
         assert cells["Rank"].value == rank
         assert cells["Variant"].value == row["variant"]
-        assert cells["Variant"].hyperlink.location == f"Results!A{results.index(row['variant']) + 3}"
+        assert cells["Variant"].hyperlink.location == targets[row[ROW]]
         assert cells["Verdict"].value == verdict_word(row, outcome.settings.verdict_bounds)
         assert cells["Units over the limit"].value == share_words(row)
         assert cells["Main contributor"].value == dimension_words(row["main_contributor"])

@@ -8,7 +8,7 @@ from flexlash.report.explorer.curves_sheet import SEGMENTS
 from flexlash.report.failing.stored_pages import LINES, cause_count, is_drawn
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.axes import axis_over
-from flexlash.report.layout.styles import GRID, PALETTE, Book
+from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
 from flexlash.report.report_data import Drawn
 from flexlash.schema.number_words import angle_words
 from flexlash.schema.units import ARCMIN
@@ -90,6 +90,7 @@ def tornado_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any:
             "categories": pages.across(place, "Cause 1", f"Cause {last}"),
             "values": pages.across(place, f"{heading} 1", f"{heading} {last}"),
             "fill": {"color": PALETTE[colour]},
+            "border": OUTLINE,
             "overlap": 100,
             "gap": 40,
         })  # fmt: skip
@@ -113,7 +114,7 @@ def segments_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any
             "categories": pages.across(place, "Variant", "Variant"),
             "values": pages.across(place, name, name),
             "fill": {"color": PALETTE[colour]},
-            "border": {"color": "#FFFFFF", "width": 0.5},
+            "border": OUTLINE,
             "gap": 10,
         })  # fmt: skip
     whole = variant.row["backlash_arcmin"]
