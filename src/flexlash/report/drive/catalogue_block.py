@@ -26,7 +26,7 @@ _HEADS = ("Torque", "Whole drive [rad]", "Torque [N·m]", "Whole drive [arcmin]"
 _RADIANS, _TORQUE, _DRIVE, _OWN = range(1, 5)
 _WHOLE = "#,##0"
 _HIGH = 48
-_CHART, _CHART_ROWS = (530, 330), 14
+_CHART, _CHART_ROWS = (475, 330), 14
 _FOUND, _BEYOND = "of the catalogue", "none: beyond its sizes"
 
 

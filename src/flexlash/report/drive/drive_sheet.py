@@ -48,7 +48,7 @@ _ALL = (
     ("system_p99_865_standard_error_arcmin", "Its standard error"),
     ("system_limit_arcmin", "System limit [arcmin]"),
 )
-_CHART, _CHART_ROWS = (530, 330), 13
+_CHART, _CHART_ROWS = (475, 330), 13
 """Size of a chart [px], and the rows that it takes beside a table with high headings."""
 
 
