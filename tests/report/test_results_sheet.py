@@ -85,7 +85,7 @@ def test_each_variant_leads_to_its_page_or_to_explorer(report):
         else:
             assert pages[address].value == cell.value
         assert (sheet == "Explorer") == (results.cell(row, COLUMNS["verdict"]).value in {"meets", "–"})
-    assert "Explorer" in lead
+    assert "'Failing variants'" in lead
 
 
 def test_findings_of_a_row_lead_to_the_first_of_them(report):

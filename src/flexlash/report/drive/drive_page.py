@@ -17,7 +17,7 @@ SHEET = "Drive"
 
 COLUMNS = (
     ("Source", 21),
-    ("Enter as", 14),
+    ("Enter as", 13),
     ("Value", 8),
     ("Lower deviation", 9),
     ("Upper deviation", 9),
