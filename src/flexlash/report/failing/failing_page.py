@@ -201,7 +201,9 @@ class FailingPage:
         tornado = tornado_chart(self.book, self.variant, self.pages, self.place)
         size = half, height
         self.book.insert(self.sheet, self.row, 0, density, size=size, text=density_words(self.variant))
-        self.book.insert(self.sheet, self.row, 0, tornado, size=size, text=tornado_words(), right=whole - half)
+        self.book.insert(
+            self.sheet, self.row, 0, tornado, size=size, text=tornado_words(self.variant), right=whole - half
+        )
         for _ in range(rows):
             self._end_row()
         self._gap()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from flexlash.report.explorer.curves_sheet import SEGMENTS
-from flexlash.report.failing.stored_pages import LINES, cause_count, is_drawn
+from flexlash.report.failing.stored_pages import LINES, causes_of_page, is_drawn
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
@@ -83,7 +83,7 @@ def density_words(variant: Drawn) -> str:
 def tornado_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any:
     """Return what each dimension does between its limits, the greatest share of the variance on top."""
     chart = _chart(book, "bar", "What causes the spread [arcmin]")
-    last = max(1, cause_count(variant))
+    last = max(1, len(causes_of_page(variant)))
     for heading, colour in (("At lower limit", "sky"), ("At upper limit", "blue")):
         chart.add_series({
             "name": heading.lower(),
@@ -100,9 +100,10 @@ def tornado_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any:
     return chart
 
 
-def tornado_words() -> str:
+def tornado_words(variant: Drawn) -> str:
     """Return the alternative text of the tornado."""
-    return "Tornado: change of the backlash between the limits of each dimension, the main cause on top"
+    told = "; ".join(f"{name}: {abs(half):.3g}′ to either side" for name, _, half in causes_of_page(variant))
+    return f"Tornado: change of the backlash between the limits of each dimension. {told or 'Nothing scatters'}"
 
 
 def segments_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any:

@@ -12,7 +12,7 @@ from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.distribution_curves import HISTOGRAM_BINS
 
-__all__ = ["LINES", "PAGES_NOTE", "cause_count", "is_drawn", "stored_pages"]
+__all__ = ["LINES", "PAGES_NOTE", "causes_of_page", "is_drawn", "stored_pages"]
 
 PAGES_NOTE = (
     "Stored figures behind the charts of Failing variants [arcmin]: middle and share of each bin, within the limit and "
@@ -43,11 +43,6 @@ def is_drawn(variant: Drawn, line: str) -> bool:
     return value is not None and low - _FAR * (high - low) <= value <= high + _FAR * (high - low)
 
 
-def cause_count(variant: Drawn) -> int:
-    """Return how many causes the page of a variant shows."""
-    return len(_causes(variant))
-
-
 def _ends(variant: Drawn) -> tuple[float, float]:
     """Return the ends of the histogram [arcmin]."""
     edges = variant.curve.edges
@@ -72,7 +67,7 @@ def _entries(variant: Drawn) -> Iterator[tuple[str, str | float | None]]:
         yield f"{line} to", row[key]
         yield f"{line} bottom", 0.0
         yield f"{line} top", float(f"{_TOPS[line] * max(heights):.6g}")
-    causes = _causes(variant)
+    causes = causes_of_page(variant)
     for heading, place in (("Cause", 0), ("At lower limit", 1), ("At upper limit", 2)):
         for number in range(CAUSES):
             yield f"{heading} {number + 1}", causes[number][place] if number < len(causes) else None
@@ -81,7 +76,7 @@ def _entries(variant: Drawn) -> Iterator[tuple[str, str | float | None]]:
         yield name, 2 * angle / ARCMIN if isinstance(angle, float) else 0.0
 
 
-def _causes(variant: Drawn) -> list[tuple[str, float, float]]:
+def causes_of_page(variant: Drawn) -> list[tuple[str, float, float]]:
     """Return name with share, and what the dimension does at its lower and upper limit, the greatest share first."""
     spread = variant.computed.spread
     if spread is None:
