@@ -29,7 +29,7 @@ def shown_sheets(outcome: Outcome, data: ReportData) -> frozenset[str]:
     failing = failing_variants(data.drawn, outcome.settings.verdict_bounds)
     asked = [DRIVE] * _has_drive(outcome) + [SWEEP] * bool(data.studies)
     shown = [*ALWAYS, *([LEVERS] if data.levers.height else []), *asked]
-    further = [SUBMISSION] * _has_guilty_variants(outcome) + ["Trace"]
+    further = [*_guilty(outcome), "Trace"]
     shown += further[: max(0, ROOM - len(shown))]
     return frozenset([*shown, *([FAILING] if failing else [])])
 
@@ -38,10 +38,12 @@ def _has_drive(outcome: Outcome) -> bool:
     return outcome.validated is not None and bool(outcome.validated.other_sources)
 
 
-def _has_guilty_variants(outcome: Outcome) -> bool:
-    """Return whether a cell of Variants has an error or a warning, to which its finding leads."""
+def _guilty(outcome: Outcome) -> list[str]:
+    """Return the sheets as read of which a cell has an error or a warning, to which its finding leads."""
     titles = titles_of(outcome.submission)
-    return any(
-        finding.level != "info" and finding.address is not None and titles.get(finding.sheet) == SUBMISSION
+    guilty = {
+        titles[finding.sheet]
         for finding in outcome.findings
-    )
+        if finding.level != "info" and finding.address is not None and finding.sheet in titles
+    }
+    return sorted(guilty, key=lambda title: (title != SUBMISSION, title))

@@ -87,4 +87,4 @@ def print_one_page(
     sheet.fit_to_pages(1, 1)
     sheet.print_area(0, 0, end, columns - 1)
     if end < last:
-        sheet.set_header("&R&10Printed: the beginning of this sheet")
+        sheet.set_header("&R&12Printed: the beginning of this sheet")
