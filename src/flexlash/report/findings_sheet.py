@@ -153,6 +153,7 @@ def _write_finding(book: Book, sheet: Any, row: int, finding: Finding, *, title:
         texts["column"] = f"{label}\n{finding.column}"
     lines = [1 + len(texts[key]) // width for key, width in _PER_LINE.items()]
     sheet.set_row(row, _LINE * max(2 if label else 1, *lines))
+    texts["variant"] = shown(texts["variant"], longest=_NAME)
     wrap = book.format("wrap")
     for column_index, (key, text) in enumerate(texts.items()):
         if key == "level":
@@ -160,6 +161,6 @@ def _write_finding(book: Book, sheet: Any, row: int, finding: Finding, *, title:
         elif key == "cell" and text and cell:
             write_link(sheet, row, column_index, cell, text, style=book.format("link"))
         elif key == "variant" and text and target:
-            write_link(sheet, row, column_index, target, shown(text, longest=_NAME), style=book.format("link"))
+            write_link(sheet, row, column_index, target, text, style=book.format("link"))
         elif text:
             sheet.write_string(row, column_index, text, wrap)
