@@ -69,7 +69,7 @@ def test_a_refusal_is_an_outcome_that_names_the_file(what, tmp_path):
         ("a PDF", "PDF"),
         ("a letter in RTF", "RTF"),
         ("a web page", "web page"),
-        ("a sentence", "no table"),
+        ("a sentence", "not a table"),
         ("random bytes", "neither a workbook nor a table"),
     ],
 )

@@ -79,7 +79,7 @@ class CatalogueCurve(NamedTuple):
 
 
 def catalogue_curve(mean_radius: float, ratio: float | None = None) -> CatalogueCurve | None:
-    """Return the slopes of the nearest drive of a maker's catalogue; None beyond its sizes.
+    """Slopes of the nearest drive of a maker's catalogue [N·m, N·m/rad], None beyond its sizes.
 
     Equation: size = 2 r_m / 2.54 mm; of the listed ratios the greatest up to that of the drive, or else the least
     Arguments: mean_radius r_m of the wall [m]; ratio of the drive, None where it is not known: then the least stiff.

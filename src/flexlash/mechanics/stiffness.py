@@ -162,7 +162,16 @@ def drive_lost_motion(mean_radius: float, torque: float) -> float | None:
 
 
 def nearest_size(mean_radius: float, listed: Iterable[int]) -> int | None:
-    """Return the size nearest to a mean radius [m] of those listed, which rise; the smaller of two, None beyond all."""
+    """Size of a catalogue that is nearest to a mean radius [-], the smaller of two, None beyond all.
+
+    Equation: size = 2 r_m / 2.54 mm
+    Arguments: mean_radius r_m of the wall [m]; listed, the sizes there are, rising.
+    Valid: from the smallest size to the greatest.
+    Source: pitch diameters of makers' catalogues.
+
+    >>> nearest_size(0.0406, [25, 32, 40]), nearest_size(0.2, [25, 32, 40])
+    (32, None)
+    """
     size, sizes = 2 * mean_radius / _METRES_PER_SIZE, list(listed)
     if not sizes[0] - _SLACK <= size <= sizes[-1] + _SLACK:
         return None
