@@ -77,7 +77,7 @@ def density_chart(book: Book, variant: Drawn, pages: Stored, place: int, width: 
 def density_words(variant: Drawn) -> str:
     """Return the alternative text of the histogram."""
     told = ", ".join(f"{line.lower()} {_line_words(variant, line)}" for line in LINES)
-    return f"Histogram of the backlash of all units, the part over the limit in red; {told}"
+    return f"{_name(variant)}: histogram of the backlash of all units, the part over the limit in red; {told}"
 
 
 def tornado_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any:
@@ -103,7 +103,8 @@ def tornado_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any:
 def tornado_words(variant: Drawn) -> str:
     """Return the alternative text of the tornado."""
     told = "; ".join(f"{name}: {abs(half):.3g}′ to either side" for name, _, half in causes_of_page(variant))
-    return f"Tornado: change of the backlash between the limits of each dimension. {told or 'Nothing scatters'}"
+    told = told or "nothing scatters"
+    return f"{_name(variant)}: change of the backlash between the limits of each dimension. {told}"
 
 
 def segments_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any:
@@ -128,7 +129,11 @@ def segments_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any
 def segments_words(variant: Drawn) -> str:
     """Return the alternative text of the bar of segments."""
     told = ", ".join(f"{name} {100 * share:.1f} %" for name, share in _segments(variant).items())
-    return f"Segments of the part by their share of the nominal backlash: {told}"
+    return f"{_name(variant)}: segments of the part by their share of the nominal backlash: {told}"
+
+
+def _name(variant: Drawn) -> str:
+    return str(variant.row["variant"])
 
 
 def _chart(book: Book, kind: str, title: str, **options: Any) -> Any:
