@@ -16,7 +16,7 @@ from click.testing import CliRunner
 
 from flexlash import __version__
 from flexlash.cli import cli, main
-from flexlash.schema.columns import ENTRY_SHEETS
+from flexlash.schema.columns import ENTRY_SHEETS, OPTIONAL_SHEETS
 from flexlash.schema.finding_catalogue import CATALOGUE
 from flexlash.validation.template_versions import TEMPLATE_VERSION
 
@@ -408,7 +408,7 @@ def test_template_upgrade_usage(main_in):
         (["--with", "measurements"], ["Measurements"]),
         (["--with", " Correlations ,measurements"], ["Measurements", "Correlations"]),
         (["--with", "measurements", "--with", "correlations"], ["Measurements", "Correlations"]),
-        (["--with", "all", "--example"], ["Measurements", "Correlations"]),
+        (["--with", "all", "--example"], [*OPTIONAL_SHEETS]),
         (["--example"], []),
     ],
 )
@@ -416,7 +416,7 @@ def test_template_with_optional_sheets(tmp_path, main_in, named, sheets):
     """--with adds the sheets that it names, with commas or one by one; all adds each that there is."""
     assert main_in("template", "-o", tmp_path / "new.xlsx", *named) == 0
     written = openpyxl.load_workbook(tmp_path / "new.xlsx").sheetnames
-    assert written == ["Variants", "Materials", "Tolerances", "Settings", *sheets, "Dictionary", "Lists"]
+    assert written == ["Variants", "Sketch", "Materials", "Tolerances", "Settings", *sheets, "Dictionary", "Lists"]
 
 
 @pytest.mark.slow
