@@ -92,7 +92,7 @@ def test_retry_has_a_submission_computed_anew_while_the_server_works(store):
     """The server finds it among what waits; one that has not ended is left as it is."""
     assert said("retry", "1111", "--store", store.folder) == "no.csv is computed anew.\n"
     assert store.submission("1" * 32).state == "waiting"
-    assert "has not ended yet" in said("retry", "1111", "--store", store.folder)
+    assert "has not finished yet" in said("retry", "1111", "--store", store.folder)
     store.close()
     assert "as soon as flexlash serve or watch runs" in said("retry", "0000", "--store", store.folder)
 
@@ -103,7 +103,7 @@ def test_an_unknown_id_is_a_usage_error(store):
     for command in ("status", "retry"):
         assert "There is no submission abcd" in said(command, "abcd", "--store", store.folder, code=2)
         assert "There is no submission 0;" in said(command, "0", "--store", store.folder, code=2)
-        assert "is forgotten" in said(command, "f" * 32, "--store", store.folder, code=2)
+        assert "has been deleted" in said(command, "f" * 32, "--store", store.folder, code=2)
 
 
 def test_hostile_names_stay_on_their_line(store):

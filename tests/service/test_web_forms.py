@@ -67,7 +67,7 @@ def test_tokens_of_others_are_not_taken(tmp_path, token):
         for action in ("run", "check"):
             answer = visitor.hand_in(token=token, action=action)
             assert answer.status_code == 400
-            assert "not one of ours" in answer.text
+            assert "did not come from this page" in answer.text
             assert 'name="token"' in answer.text
         assert not one.store.history()
 
@@ -153,7 +153,7 @@ def test_what_waits_has_a_limit(tmp_path):
             assert visitor.hand_in(name="2.csv", content=b"0123456789").status_code == 303
             answer = visitor.hand_in(name="3.csv")
             assert (answer.status_code, answer.headers["retry-after"]) == (503, "120")
-            assert "wait" in answer.text
+            assert "The queue is full" in answer.text
             assert visitor.hand_in(token=token, content=b"0123456789").status_code == 303
             assert len(one.store.history()) == 2
 
@@ -278,7 +278,7 @@ def test_retry_and_forget(tmp_path):
         for what in ("retry", "forget"):
             answer = visitor.post(f"{where}/{what}", data={"token": visitor.token()})
             assert answer.status_code == 409
-            assert "has not ended" in answer.text
+            assert "has not finished" in answer.text
         one.store.end(one.store.take().id, Ending(state="done", exit_code=0, words="fine"))
         assert visitor.post(f"{where}/forget", data={}).status_code == 400
         assert visitor.post(f"{where}/forget", data={"token": "x"}).status_code == 400
@@ -319,8 +319,8 @@ class Checking(Idle):
 @pytest.mark.parametrize(
     ("said", "status", "words"),
     [
-        (TooManyQuestionsError("x"), 503, "Others are having files looked through"),
-        (None, 503, "hand it in, and it gets its turn"),
+        (TooManyQuestionsError("x"), 503, "Other files are being checked just now"),
+        (None, 503, "hand it in, and it waits its turn"),
         ("cancelled", 503, "is being stopped"),
         (Answer(exit_code=ExitCode.INTERNAL), 500, "fault of flexlash"),
         (RuntimeError("secret"), 500, "fault of flexlash"),
