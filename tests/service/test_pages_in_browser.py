@@ -113,7 +113,14 @@ def test_a_sound_file_comes_back_with_its_report(tab, tmp_path):
     assert page.get_by_role("img", name=re.compile("Backlash of 11 variants")).count() == 1
     page.get_by_role("link", name="B3-160 case 3", exact=True).click()
     assert page.locator("h1").inner_text().split() == ["B3-160", "case", "3", "fails"]
-    assert page.get_by_role("img").count() == 3
+    assert page.get_by_role("img").count() == 4
+    for name in (
+        "Half-section of B3-160 case 3",
+        "How the backlash is spread",
+        "What causes the spread",
+        "Where the wind-up arises",
+    ):
+        assert page.get_by_role("img", name=name).count() == 1
     page.get_by_role("link", name="B3-160 case 4 r_m 80").click()
     page.get_by_role("link", name="All variants").click()
     assert page.url.startswith(address)
