@@ -141,12 +141,19 @@ def test_results_hold_the_columns_in_order(table, sound):
         assert results.schema[column.key] == (pl.Float64 if column.is_number else pl.String)
 
 
-def test_every_column_of_a_computed_row_is_filled(table, sound):
+def test_every_column_of_a_computed_row_is_filled(table, sound, tmp_path):
     """A row with everything given has something in every column of Results but notes and what measured parts leave."""
     detail = {"hub_fillet_radius_mm": 3.5, "junction_fillet_radius_mm": 2.0, "rim_length_mm": 20.0}
     row = {**sound, **detail, "rim_thickness_mm": 3.2, "rated_torque_Nm": 1000.0, "notes": "drawing 7"}
-    row |= {"load_inertia_kg_m2": 1.0, "tooth_face_width_mm": 20.0, "radial_deflection_mm": 0.5}
-    results = run(table([row]), samples=SAMPLES, cross_check=True).results
+    row |= {
+        "load_inertia_kg_m2": 1.0,
+        "tooth_face_width_mm": 20.0,
+        "radial_deflection_mm": 0.5,
+        "system_limit_arcmin": 9.0,
+    }
+    sources = tmp_path / "sources.csv"
+    sources.write_text("Source,Value,Lower deviation,Upper deviation\ncoupling,1,-0.5,0.5\n")
+    results = run(table([row]), samples=SAMPLES, cross_check=True, other_sources=sources).results
     assert results.columns == [column.key for column in (*RESULTS, *CROSS_CHECK)]
     empty = [key for key, value in results.row(0, named=True).items() if value is None]
     assert [key for key in empty if "_sample_" not in key] == ["spread_note", "findings"]
