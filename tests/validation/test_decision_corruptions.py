@@ -18,7 +18,7 @@ from flexlash.schema.columns import columns_of
 
 pytestmark = pytest.mark.slow
 
-CORRUPTIONS, MOST_AT_ONCE, RIGHT = 200, 3, 0.99
+CORRUPTIONS, MOST_AT_ONCE, RIGHT = 60, 3, 0.99
 ROWS = {"Other sources": SOURCES, "Levers": LEVERS, "Sweep": SWEEPS}
 _TEXTS = {"E202": ("E202", "E220", "E221")}
 """A text in the place of a number is told by what it is: a number stored as text, a word for no value, another text."""

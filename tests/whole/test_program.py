@@ -25,7 +25,7 @@ from service_process import children_of
 PROGRAM = os.environ.get("FLEXLASH_PROGRAM", "")
 
 pytestmark = [
-    pytest.mark.slow,
+    pytest.mark.long,
     pytest.mark.skipif(not PROGRAM, reason="FLEXLASH_PROGRAM names no program; .ci/build-program makes one"),
     pytest.mark.skipif(sys.platform == "win32", reason="signals and limits are those of POSIX"),
 ]
