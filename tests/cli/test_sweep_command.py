@@ -128,7 +128,7 @@ def test_the_sheet_says_what_is_swept(submission, tmp_path):
     assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "b.xlsx").read_bytes()
     complaint = _complaint(submission)
     assert (
-        complaint == "Error: Nothing to sweep: its sheet Sweep has no row; say what to sweep: --vary KEY=FROM:TO:STEP."
+        complaint == "Error: Nothing is swept: its sheet Sweep has no row; say what to sweep: --vary KEY=FROM:TO:STEP."
     )
 
 
@@ -159,13 +159,13 @@ def test_what_cannot_be_meant_is_a_usage_error(tmp_path):
 def test_what_no_variant_can_be_swept_over(submission):
     """An unknown variant is told with the nearest, a dimension that it lacks with the rule; so are too many points."""
     assert _complaint(submission, "--variant", "B3-160 case 33", "--vary", "torque=1,2") == (
-        f"Error: Nothing to sweep: there is no variant B3-160 case 33; did you mean {THIRD}?"
+        f"Error: Nothing is swept: there is no variant B3-160 case 33; did you mean {THIRD}?"
     )
     assert _complaint(submission, "--variant", "B3-160 cylinder", "--vary", "disk_thickness=1,2").startswith(
-        "Error: Nothing to sweep: no value makes a part: B3-160 cylinder: "
+        "Error: Nothing is swept: no value makes a part: B3-160 cylinder: "
     )
     assert _complaint(submission, "--vary", "torque=1:1000:1") == (
-        "Error: Nothing to sweep: that is 3,000 points of 3 variants; at most 2,000 are computed at once. Take larger "
+        "Error: Nothing is swept: that is 3,000 points of 3 variants; at most 2,000 are computed at once. Take larger "
         "steps, or name one with --variant."
     )
     assert _complaint(submission, "--variant", THIRD).startswith("Error: --variant needs --vary")
@@ -203,7 +203,9 @@ def test_of_a_large_table_one_variant_is_swept(tmp_path, monkeypatch):
         assert done.exit_code == 0, done.output
     tables = [pl.read_parquet(path.with_suffix(".parquet")) for path in (large, small)]
     assert tables[0].equals(tables[1], null_equal=True)
-    assert _complaint(large, "--vary", "torque=1,2").endswith("name the variant that is swept: --variant.")
+    assert _complaint(large, "--vary", "torque=1,2").endswith(
+        "Of a table of more than 50 rows, name the variant to sweep: --variant."
+    )
     assert _complaint(large, "--variant", "v99", "--vary", "torque=1,2").endswith("there is no variant v99.")
 
 
