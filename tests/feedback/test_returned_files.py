@@ -126,7 +126,7 @@ def test_certain_repairs_are_made_and_listed(workbook, sound, tmp_path):
     before = path.read_bytes()
     outcome, fixes = mend(path, tmp_path / "new.xlsx")
     assert path.read_bytes() == before
-    assert [(one.place, one.value) for one in fixes] == [("Variants!H5", 1.6), ("Variants!Z6", "standard")]
+    assert [(one.place, one.value) for one in fixes] == [("Variants!H5", 1.6), ("Variants!AA6", "standard")]
     assert [(found.code, found.cell) for found in outcome.findings] == [("E202", "D7")]
     assert outcome.outputs == (tmp_path / "new.xlsx",)
     counts = check(tmp_path / "new.xlsx").counts
