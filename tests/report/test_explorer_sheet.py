@@ -404,5 +404,6 @@ def test_charts_hold_their_points_and_say_what_they_are(study):
         assert "arcmin" not in text
         assert text.count("<c:numCache>") == text.count("<c:numRef>") > 0
         assert '<c:ptCount val="0"/>' not in text
-    for words in ("Histogram of the picked", "Cumulative curve of the picked", "Tornado of the picked", "each segment"):
-        assert words in drawings
+    told = ("Histogram", "Share of units below each backlash", "Tornado", "Nominal backlash by segment")
+    for words in told:
+        assert drawings.count(f'"{words} of the picked variant (when the report was written, ') == 1

@@ -16,13 +16,14 @@ from flexlash.schema.result_columns import FINDINGS
 
 @pytest.fixture
 def report(table, sound, tmp_path):
-    """Return the outcome and the Findings sheet of rows with one rule broken twice, one once, and a long name."""
+    """Return outcome and Findings sheet of rows with one rule broken twice, one once, a long name, and a warning."""
     long = "sleeve with a name that is much longer than any column of a table"
     rows = [
         sound,
         {**sound, "variant": "a", "torque_Nm": ""},
         {**sound, "variant": long, "torque_Nm": ""},
         {**sound, "variant": "c", "wall_thickness_mm": "1,6 mm"},
+        {**sound, "variant": "strained", "torque_Nm": 12000},
     ]
     outcome = run(table(rows), tmp_path / "report.xlsx", samples=256)
     return outcome, openpyxl.load_workbook(tmp_path / "report.xlsx")["Findings"]
@@ -58,20 +59,25 @@ def test_the_list_is_complete_and_can_be_filtered(report):
 
 @pytest.mark.slow
 def test_a_finding_names_its_column_and_leads_to_cell_and_result(report):
-    """The column is named by label above key; the cell leads to Submission, a drawn variant to its page."""
+    """The column is named by label above key; cells lead to Submission, a variant where its name in Results does."""
     outcome, sheet = report
+    results, linked = sheet.parent["Results"], []
     start = FIRST_FINDING + len(rules_of(outcome)) + 1
     for row, found in enumerate(finding_list(outcome), start=start):
         cells = {column.key: sheet.cell(row, place) for place, column in enumerate(FINDINGS, start=1)}
         if not found.cell or found.level == "info":
             continue
         assert cells["cell"].hyperlink.location == f"Submission!{found.cell}"
-        link = cells["variant"].hyperlink
-        assert link is None or link.location.partition("!")[0] in {"'Failing variants'", "Explorer"}
+        name = results.cell(int(found.cell[1:]) + 1, 1)
+        assert name.value == found.variant
+        links = [cell.hyperlink and cell.hyperlink.location for cell in (cells["variant"], name)]
+        assert links[0] == links[1]
+        linked.append(links[0])
         assert len(cells["variant"].value) <= 30
         label, key = cells["column"].value.split("\n")
         assert key == found.column
-        assert label in {"Torque T [N·m]", "Wall thickness Δ [mm]"}
+        assert label in {"Torque T [N·m]", "Wall thickness Δ [mm]", "Backlash limit [arcmin]"}
+    assert linked == [None] * 3 + ["'Failing variants'!A1"] * 2
 
 
 @pytest.mark.slow

@@ -30,7 +30,7 @@ COLUMNS = {key: number for number, key in enumerate((*FIRST, *FOLDED, *LAST), st
 def report(tmp_path_factory):
     """Return the outcome and the report of a workbook with three rows, two extra columns and a percentage."""
     rows = [
-        {**SOUND, "notes": "first"},
+        {**SOUND, "notes": "first", "backlash_limit_arcmin": 30.0},
         {**SOUND, "variant": "strained", "torque_Nm": 12000.0},
         {**SOUND, "variant": "empty", "torque_Nm": None},
     ]
@@ -58,7 +58,7 @@ def report(tmp_path_factory):
 def test_other_columns_of_the_submission_pass_through(report):
     """Columns that flexlash does not know stand at the right end, as they were read, and not in the frame."""
     outcome, book = report
-    rows = list(book["Results"].iter_rows(min_col=len(RESULTS) + 1))
+    rows = list(book["Results"].iter_rows(min_col=len(COLUMNS) + 1))
     assert [cell.value for cell in rows[0]] == ["Order no.", "Scrap"]
     assert [cell.value for cell in rows[1]] == [AS_SUBMITTED, AS_SUBMITTED]
     assert [[cell.value for cell in row] for row in rows[2:]] == [[4711, 0.05], ["=A1", "low"], [None, 3]]
@@ -85,7 +85,8 @@ def test_each_variant_leads_to_its_page_or_to_explorer(report):
         else:
             assert pages[address].value == cell.value
         assert (sheet == "Explorer") == (results.cell(row, COLUMNS["verdict"]).value in {"meets", "–"})
-    assert "'Failing variants'" in lead
+    assert lead == ["Explorer", "'Failing variants'"]
+    assert book["Explorer"]["B4"].value in outcome.results["variant"].to_list()
 
 
 def test_findings_of_a_row_lead_to_the_first_of_them(report):

@@ -18,6 +18,7 @@ from report_entries import opened
 from said import said_of
 
 from flexlash.pipeline import run
+from flexlash.report.failing.failing_places import FAILING
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
 from flexlash.report.report_data import drawn_variants, report_data
@@ -140,28 +141,37 @@ def test_one_cell_turns_angles_into_arc_seconds(study):
 
 @pytest.mark.slow
 def test_links_lead_to_their_variants(table, sound, tmp_path):
-    """Each name leads to the cell of Results that holds it, also behind rows with errors; Findings to its sheet."""
-    rows = [{**sound, "variant": "bad", "torque_Nm": ""}]
-    rows += [{**sound, "variant": name, "torque_Nm": 700 + place} for place, name in enumerate(("=1+1", "x" * 90, "c"))]
+    """A name leads to the page that bears it, that of one that meets its limit to Explorer; Findings to its sheet."""
+    rows = [{**sound, "variant": "bad", "torque_Nm": ""}, {**sound, "variant": "good"}]
+    failing = {**sound, "backlash_limit_arcmin": 2.0}
+    called = ("=1+1", "x" * 90, "c")
+    rows += [{**failing, "variant": name, "torque_Nm": 700 + place} for place, name in enumerate(called)]
     outcome = run(table(rows), tmp_path / "report.xlsx", samples=64)
     book = opened(tmp_path / "report.xlsx")
     sheet = book["Summary"]
-    first = _row(sheet, "Variant") + 1
+    first, met = _row(sheet, "Variant") + 1, []
     for row, one in enumerate(drawn_variants(outcome), start=first):
-        link = sheet.cell(row, 1).hyperlink
+        link, names = sheet.cell(row, 1).hyperlink, [sheet.cell(row, 1).value]
         assert link.target is None
-        title, cell = link.location.split("!")
-        assert book[title][cell].value == one.row["variant"]
-        start, _, end = sheet.cell(row, 1).value.partition("…")
-        assert one.row["variant"].startswith(start)
-        assert one.row["variant"].endswith(end)
+        if sheet.cell(row, 2).value.startswith("meets"):
+            met.append(one.row["variant"])
+            assert link.location == "Explorer!B4"
+        else:
+            title, cell = link.location.split("!")
+            assert title == f"'{FAILING}'"
+            names.append(book[FAILING][cell].value)
+        for name in names:
+            start, _, end = name.partition("…")
+            assert one.row["variant"].startswith(start)
+            assert one.row["variant"].endswith(end)
         assert sheet.cell(row, 1).data_type == "s"
+    assert met == ["good"]
     title = sheet.cell(_row(sheet, "Findings"), 1).hyperlink.location.split("!")[0]
     assert title in book.sheetnames
 
 
 @pytest.mark.slow
-def test_verdicts_of_few_points_have_a_mark(folder):
+def test_verdicts_of_few_points_have_a_mark(folder, table, sound):
     """By 64 draws eight variants meet with a ? in cell and key figure, in the same colour, and shares an ≈."""
     study = regenerate.ROOT / "data" / "b3-160-study.xlsx"
     run(study, folder / "few.xlsx", method="random", samples=64)
@@ -172,7 +182,11 @@ def test_verdicts_of_few_points_have_a_mark(folder):
     rows = _listed(sheet)
     cells = [sheet.cell(row, 2) for row in rows]
     assert [cell.value for cell in cells] == ["fails"] * 3 + ["meets?"] * (len(rows) - 3)
-    assert {cell.fill.fgColor.rgb for cell in cells[3:]} == {FILLS["meets"]}
+    assert {cell.fill.fgColor.rgb for cell in cells[3:]} <= {FILLS["meets"]}
+    run(table([{**sound, "backlash_limit_arcmin": 30.0}]), folder / "one of few.xlsx", method="random", samples=64)
+    alone = opened(folder / "one of few.xlsx")["Summary"]
+    cell = alone.cell(_listed(alone)[0], 2)
+    assert (cell.value, cell.fill.fgColor.rgb) == ("meets?", FILLS["meets"])
     assert sheet.cell(rows[0], 12).value == "Young's modulus (≈68 %)"
 
 
@@ -192,9 +206,8 @@ def test_numbers_have_no_separators(study, folder, table, sound):
     """However many lines or points there are, thousands are written in one way on the whole page."""
     run(table([sound]), folder / "many points.xlsx", method="sobol")
     for path in (study[1], folder / "many points.xlsx"):
-        texts = [
-            cell.value for row in opened(path)["Summary"].iter_rows() for cell in row if isinstance(cell.value, str)
-        ]
+        rows = opened(path, data_only=True)["Summary"].iter_rows(values_only=True)
+        texts = [value for row in rows for value in row if isinstance(value, str)]
         assert not any(re.search(r"\d,\d", text) for text in texts)
     assert any("32768 points per variant" in text for text in texts)
 

@@ -33,10 +33,10 @@ MAPPED = 27
 """Most variants that the heat map can hold and still be read."""
 
 _LABEL_WIDTH = 160
-_RIGHT_WIDTHS = (65, 70, 170, 90)
+_RIGHT_WIDTHS = (65, 70, 156, 90)
 """Widths [px] of the dimensions' names and of the columns over all variants."""
 
-_NARROW, _WIDE = 34, 70
+_NARROW, _WIDE = 32, 70
 """Least and greatest width [px] of a variant's column."""
 
 _SPARE = 64

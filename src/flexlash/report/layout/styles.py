@@ -17,6 +17,7 @@ PALETTE = {
     "blue": "#0072B2",
     "sky": "#8CBFE0",
     "orange": "#E69F00",
+    "amber": "#C28500",
     "red": "#D55E00",
     "green": "#009E73",
     "grey": "#6B6B6B",

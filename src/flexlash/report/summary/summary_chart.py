@@ -19,7 +19,9 @@ __all__ = ["CHARTED", "chart_axis", "chart_title", "chart_words", "variants_char
 CHARTED = 60
 """Most variants whose names can be read below a chart."""
 
-_COLOURS = {"fails": "red", "marginal": "orange", "meets": "blue", NO_VERDICT: "grey"}
+_COLOURS = {"fails": "dark red", "marginal": "amber", "meets": "blue", NO_VERDICT: "grey"}
+"""Bars have no outline, so that each colour stands out from white by itself."""
+
 _FONT = 11
 """Size of letters [pt]: more than 7 when the page is printed."""
 
@@ -108,7 +110,7 @@ def chart_words(drawn: Sequence[Drawn]) -> str:
         f"Backlash of {len(charted)} variants, worst first: {spans_of(charted)}. {limits_over(charted)} "
         f"Drawn in per cent of the {base}, which is the line at zero: a bar goes from the backlash that 2.5 % of units "
         "stay below to that which 97.5 % stay below, the median as a diamond, P99.865 as a dash. Bars of variants that "
-        "fail are dark orange, of marginal ones orange, of those that meet it blue; a triangle with its figure stands "
+        "fail are dark red, of marginal ones orange, of those that meet it blue; a triangle with its figure stands "
         "for one beyond the scale."
     )
 
