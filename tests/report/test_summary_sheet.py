@@ -142,7 +142,7 @@ def test_one_cell_turns_angles_into_arc_seconds(study):
 @pytest.mark.slow
 def test_links_lead_to_their_variants(table, sound, tmp_path):
     """A name leads to the page that bears it, that of one that meets its limit to Explorer; Findings to its sheet."""
-    rows = [{**sound, "variant": "bad", "torque_Nm": ""}, {**sound, "variant": "good"}]
+    rows = [{**sound, "variant": "bad", "torque_Nm": ""}, {**sound, "variant": "good", "backlash_limit_arcmin": 30.0}]
     failing = {**sound, "backlash_limit_arcmin": 2.0}
     called = ("=1+1", "x" * 90, "c")
     rows += [{**failing, "variant": name, "torque_Nm": 700 + place} for place, name in enumerate(called)]
