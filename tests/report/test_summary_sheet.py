@@ -275,7 +275,7 @@ def test_the_chart_shows_a_narrow_spread_beside_the_limit(study):
             assert told[verdict] - told["down"] == pytest.approx(max(low, -10))
             assert told[verdict] + told["up"] == pytest.approx(min(high, 10))
             assert told["P99.865"] == pytest.approx(top)
-    for verdict, colour in (("fails", "red"), ("meets", "blue")):
+    for verdict, colour in (("fails", "dark red"), ("meets", "blue")):
         series = next(
             one for one in re.findall(r"<c:ser>.*?</c:ser>", text, re.DOTALL) if f"<c:v>{verdict}</c:v>" in one
         )

@@ -78,7 +78,7 @@ class ReportData:
 def report_data(outcome: Outcome) -> ReportData:
     """Return what the report draws beside an outcome."""
     worst = ranked(outcome)
-    drawn = _drawn(outcome, worst)
+    drawn = _drawn(outcome, worst, DRAWN)
     return ReportData(
         drawn=drawn,
         pictured=_pictured(outcome, worst),
@@ -95,12 +95,12 @@ def ranked(outcome: Outcome) -> pl.DataFrame:
     return worst_rows(outcome.results.with_columns(rows.alias(ROW)))
 
 
-def drawn_variants(outcome: Outcome, most: int = DRAWN) -> list[Drawn]:
-    """Return the variants that the report shows, worst first, with their whole distributions."""
-    return _drawn(outcome, ranked(outcome), most)
+def drawn_variants(outcome: Outcome, most: int | None = None) -> list[Drawn]:
+    """Return the variants that the report shows, or so many, worst first, with their whole distributions."""
+    return _drawn(outcome, ranked(outcome), DRAWN if most is None else most)
 
 
-def _drawn(outcome: Outcome, worst: pl.DataFrame, most: int = DRAWN) -> list[Drawn]:
+def _drawn(outcome: Outcome, worst: pl.DataFrame, most: int) -> list[Drawn]:
     """Return the first of the ranked variants with their whole distributions."""
     rows = worst.head(most).to_dicts()
     computed = [outcome.computed[row[ROW]] for row in rows]
