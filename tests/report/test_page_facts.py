@@ -35,11 +35,12 @@ def worst(study):
 
 
 def test_the_sentences_are_those_of_the_summary(facts, study):
-    """Topic and sentence of each row of the Summary sheet stand on the page in the same order, and no others."""
+    """Topic and sentence of each row of the Summary sheet stand on the page in the same order, on one line each."""
     sheet = opened(study[1])["Summary"]
     first = next(row for row in range(1, 20) if sheet.cell(row, 1).value == "Computed")
     count = next(row for row in range(first, 60) if not sheet.cell(row, 1).value) - first
     said = [(sheet.cell(row, 1).value, sheet.cell(row, 2).value) for row in range(first, first + count)]
+    said = [(topic, " ".join(text.split("\n"))) for topic, text in said]
     assert [(one["topic"], one["text"]) for one in facts["sentences"]] == said
     assert {one["kind"] for one in facts["sentences"]} >= {"computed", "verdict", "cause", "advice", "findings"}
 

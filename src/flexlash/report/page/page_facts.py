@@ -149,7 +149,7 @@ def _add_variants(facts: PageFacts, outcome: Outcome, data: ReportData) -> None:
     names = shown_names(rows)
     drawn = data.drawn[:PAGED]
     facts["sentences"] = [
-        Sentence(topic=topic, text=text, kind=_KINDS.get(topic, "note"))  # type: ignore[typeddict-item]
+        Sentence(topic=topic, text=" ".join(text.split("\n")), kind=_KINDS.get(topic, "note"))  # type: ignore[typeddict-item]
         for topic, text in sentences(outcome, data.levers, data.allocation)
     ]
     facts["chart"] = chart_of(summary, rows, names, len(drawn))
