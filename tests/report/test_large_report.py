@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from dataclasses import replace
 
 import pytest
@@ -18,6 +19,7 @@ from flexlash.pipeline import run
 from flexlash.reading.read import Source, report_of
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.report.extent import MOST_FINDINGS, extent_of
+from flexlash.report.failing.failing_places import MOST_PAGES
 from flexlash.report.layout.links import FIRST_ROW, finding_list
 from flexlash.report.report_data import ROW, ranked
 from flexlash.report.wording.lever_sentences import CHANGE
@@ -77,7 +79,7 @@ def test_a_row_more_than_a_small_submission_has_makes_it_large(large):
 
 @pytest.mark.slow
 def test_results_hold_every_row(large):
-    """Results holds all rows in submitted order, its links lead to the rows that are repeated, the others have none."""
+    """All rows stand in submitted order; names that are drawn lead to pages or to Explorer, others nowhere."""
     outcome, path = large
     book = opened(path)
     sheet, names = book["Results"], outcome.results["variant"].to_list()
@@ -88,13 +90,25 @@ def test_results_hold_every_row(large):
         place, values = keys.index(key), outcome.results[key].to_list()
         expected = [pytest.approx(value, rel=1e-15) if isinstance(value, float) else value for value in values]
         assert [row[place] for row in written] == expected
-    drawn = set(ranked(outcome).head(DRAWN)["variant"])
+    drawn, leads = set(ranked(outcome).head(DRAWN)["variant"]), defaultdict(list)
     for row, name in enumerate(names, start=FIRST_ROW + 1):
         link = sheet.cell(row, 1).hyperlink
         assert (link is not None) == (name in drawn)
         if link:
             title, _, cell = link.location.partition("!")
-            assert title == "Explorer" or book[title.strip("'")][cell].value == name
+            leads[title].append(name)
+            assert book[title.strip("'")][cell].value == name if title != "Explorer" else cell == "B4"
+    assert len(leads["'Failing variants'"]) == MOST_PAGES
+    assert set(leads["Explorer"]) <= set(_picked(book))
+    assert len(leads["Explorer"]) == DRAWN - MOST_PAGES
+
+
+def _picked(book):
+    """Return the names of the list of which Explorer's variant is picked."""
+    rules = book["Explorer"].data_validations.dataValidation
+    source = next(rule.formula1 for rule in rules if "B4" in rule.sqref)
+    title, _, area = source.lstrip("=").partition("!")
+    return [row[0].value for row in book[title.strip("'")][area.replace("$", "")]]
 
 
 @pytest.mark.slow
