@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
@@ -14,7 +15,18 @@ from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.schema import argument_checks
 from flexlash.schema.findings import shown
 
-__all__ = ["JSON", "LIMITS", "QUIET", "RECURSIVE", "SUBMISSION", "SUBMISSIONS", "VERBOSE", "option", "planned"]
+__all__ = [
+    "JSON",
+    "LIMITS",
+    "QUIET",
+    "RECURSIVE",
+    "SUBMISSION",
+    "SUBMISSIONS",
+    "VERBOSE",
+    "option",
+    "planned",
+    "spread_options",
+]
 
 Command = Callable[..., None]
 Planned = TypeVar("Planned")
@@ -87,3 +99,20 @@ LIMITS = click.option(
     "--limit", "limits", multiple=True, metavar="NAME=NUMBER", envvar="FLEXLASH_LIMIT", callback=_limits,
     help=_DECLARED["limits"].metadata["help"],
 )  # fmt: skip
+
+
+def spread_options(command: Command) -> Command:
+    """Return a command of one submission with the options of its spread, its reading and its tables."""
+    jobs = option("jobs", default=os.cpu_count() or 1, show_default="all cores")
+    tables = map(option, ("tolerances", "materials", "measurements", "correlations", "other_sources"))
+    every: list[Callable[[Command], Command]] = [
+        *map(option, ("seed", "method", "samples")),
+        jobs,
+        LIMITS,
+        JSON,
+        QUIET,
+        *tables,
+    ]
+    for one in reversed(every):
+        command = one(command)
+    return command

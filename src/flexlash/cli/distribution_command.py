@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 import click
 
 from flexlash.analysis.options import TABLES
-from flexlash.cli.click_types import JSON, LIMITS, QUIET, SUBMISSION, option, planned
+from flexlash.cli.click_types import SUBMISSION, planned, spread_options
 from flexlash.cli.submissions import Submissions
 from flexlash.cli.terminal import progress
 from flexlash.outputs.naming import table_output
@@ -27,18 +26,7 @@ __all__ = ["distribution"]
 )  # fmt: skip
 @click.option("--units", type=click.IntRange(1, 1_000_000), default=10_000, show_default=True,
               help="Random units of each variant, in .parquet.")  # fmt: skip
-@option("seed")
-@option("method")
-@option("samples")
-@option("jobs", default=os.cpu_count() or 1, show_default="all cores")
-@LIMITS
-@JSON
-@QUIET
-@option("tolerances")
-@option("materials")
-@option("measurements")
-@option("correlations")
-@option("other_sources")
+@spread_options
 def distribution(submission: Path, output: Path, *, units: int, as_json: bool, quiet: bool, **options: Any) -> None:
     """Write how the backlash of each variant is spread, for simulations and other programs.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import sys
 from collections.abc import Iterator
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexlash.analysis.options import TABLES
-from flexlash.cli.click_types import JSON, LIMITS, QUIET, SUBMISSION, option, planned
+from flexlash.cli.click_types import SUBMISSION, planned, spread_options
 from flexlash.cli.submissions import Submissions
 from flexlash.cli.terminal import progress
 from flexlash.outputs.naming import table_output
@@ -34,18 +33,7 @@ _NARROWEST = 60
     "-o", "--output", type=click.Path(path_type=Path), metavar="OUT",
     help="The table as .csv, .parquet or .json. Without it the table is printed.",
 )  # fmt: skip
-@option("seed")
-@option("method")
-@option("samples")
-@option("jobs", default=os.cpu_count() or 1, show_default="all cores")
-@LIMITS
-@JSON
-@QUIET
-@option("tolerances")
-@option("materials")
-@option("measurements")
-@option("correlations")
-@option("other_sources")
+@spread_options
 def levers(submission: Path, output: Path | None, *, as_json: bool, quiet: bool, **options: Any) -> None:
     """Say which single change brings each variant within its backlash limit, and how far those of a sound one may go.
 

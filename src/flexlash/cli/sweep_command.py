@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexlash.analysis.options import TABLES
-from flexlash.cli.click_types import JSON, LIMITS, QUIET, SUBMISSION, option, planned
+from flexlash.cli.click_types import SUBMISSION, planned, spread_options
 from flexlash.cli.submissions import Attempt, Submissions
 from flexlash.cli.terminal import progress
 from flexlash.cli.vary_texts import sentence, varied
@@ -47,18 +46,7 @@ _SHOWN = 5
     help="Report with a sheet Sweep (.xlsx), the points alone (.csv, .parquet, .json), or a folder. "
     "Default: <name>-sweep.xlsx beside the submission.",
 )  # fmt: skip
-@option("seed")
-@option("method")
-@option("samples")
-@option("jobs", default=os.cpu_count() or 1, show_default="all cores")
-@LIMITS
-@JSON
-@QUIET
-@option("tolerances")
-@option("materials")
-@option("measurements")
-@option("correlations")
-@option("other_sources")
+@spread_options
 def sweep(
     submission: Path,
     vary: tuple[str, ...],
