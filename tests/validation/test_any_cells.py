@@ -35,7 +35,7 @@ FILES = 12
 _FAST = {"derandomize": True, "deadline": None, "suppress_health_check": list(HealthCheck)}
 _MOST_WORDS = 60
 _HOSTILE = (
-    "=1+1", "+1+1", "-1+1", "@SUM(A1)", "=cmd|' /C calc'!A0", '=HYPERLINK("http://example.org","x")', "{=1+1}",
+    "=1+1", "+1+1", "-1+1", "@SUM(A1)", "=cmd|' /C calc'!A0", '=HYPERLINK("http://example.org","x")', "{=1+1}", "B3!A1",
     "\t=1+1", "'=1",
     "http://example.org/x", "file:///etc/passwd", "mailto:a@example.org", "internal:'Findings'!A1", "external:x.xlsx",
     "{", "}", "{0}", "{place}", "{value!r:>{width}}", "%s", "%(x)s", "%n%n", "$(id)", "`id`", "\\",

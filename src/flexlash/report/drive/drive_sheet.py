@@ -15,7 +15,7 @@ from flexlash.report.drive.stored_drives import drive_ratio, stored_drives
 from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.paper import print_one_page
-from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
+from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book, literal
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.drive_sentences import drives_over_limit
 from flexlash.report.wording.labels import distinct_labels
@@ -84,7 +84,7 @@ def _contributions(book: Book, chain: Chain, names: Sequence[str]) -> Any:
     chart = book.chart("bar", "Contributions to the whole drive", subtype="percent_stacked")
     for place, (name, row) in enumerate(zip(names, range(chain.first_row, chain.last_row + 1), strict=True)):
         chart.add_series({
-            "name": shown(name, longest=_NAME),
+            "name": literal(shown(name, longest=_NAME)),
             "categories": [SHEET, *chain.series(chain.first_row - 1)],
             "values": [SHEET, *chain.series(row)],
             "fill": {"color": PALETTE[_COLOURS[place % len(_COLOURS)]]},

@@ -10,7 +10,7 @@ import xlsxwriter
 from flexlash.report.layout.report_worksheet import ReportWorksheet
 from flexlash.schema.number_words import places
 
-__all__ = ["GRID", "LINES", "OUTLINE", "PALETTE", "Book", "decimals_of", "number_code", "percent_of"]
+__all__ = ["GRID", "LINES", "OUTLINE", "PALETTE", "Book", "decimals_of", "literal", "number_code", "percent_of"]
 
 PALETTE = {
     "ink": "#1F3A5F",
@@ -170,6 +170,17 @@ _UNLINKED = {"link": "text", "indented link": "indented", "topic link": "topic"}
 """What a text looks like that leads nowhere, by what it looks like where it does."""
 
 
+def literal(text: str) -> str:
+    """Return a text of a submission as a chart shows it: none is taken for the address of a cell.
+
+    A mark without width behind each exclamation mark keeps them apart, since XlsxWriter knows addresses by it alone.
+
+    >>> literal("B3-160"), len(literal("B3!A1"))
+    ('B3-160', 6)
+    """
+    return text.replace("!", "!\u2060")
+
+
 class Book:
     """An XlsxWriter workbook with the report's formats and sheets; only those in `shown` can be seen, None for all."""
 
@@ -232,7 +243,7 @@ class Book:
     def chart(self, kind: str, title: str, **options: Any) -> Any:
         """Return a chart with the report's fonts."""
         chart = self.workbook.add_chart({"type": kind, **options})
-        chart.set_title({"name": title, "name_font": {"size": 12, "color": PALETTE["ink"]}, "overlay": False})
+        chart.set_title({"name": literal(title), "name_font": {"size": 12, "color": PALETTE["ink"]}, "overlay": False})
         chart.set_legend({"position": "bottom"})
         return chart
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from flexlash.report.layout.axes import axis_over
-from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
+from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book, literal
 from flexlash.report.tradeoffs.front_table import Figure, FrontTable
 from flexlash.report.wording.verdict import NO_VERDICT
 from flexlash.schema.units import ARCMIN
@@ -52,7 +52,10 @@ def front_chart(book: Book, table: FrontTable, figure: Figure) -> Any:
 
 def _labels(table: FrontTable, front: Sequence[int], most: int) -> list[dict[str, Any]]:
     """Return the names beside the points of a front, of so many of them at most."""
-    return [{"value": table.labels[place]} if number < most else {"delete": True} for number, place in enumerate(front)]
+    return [
+        {"value": literal(table.labels[place])} if number < most else {"delete": True}
+        for number, place in enumerate(front)
+    ]
 
 
 def _set_axes(chart: Any, table: FrontTable, figure: Figure) -> None:
