@@ -46,7 +46,9 @@ def verdict_rules(bounds: VerdictBounds) -> dict[str, str]:
     within, target = f"{100 - 100 * bounds.marginal:.10g}", bounds.target_words
     return {
         "fails": f"fewer than {within} % of units within the limit",
-        "marginal": f"{within} to {target} of units within the limit" if bounds.any_marginal else f"none by {target}",
+        "marginal": f"{within} to {target} of units within the limit"
+        if bounds.any_marginal
+        else f"none where the target is {target}",
         "meets": f"at least {target} of units within the limit",
     }
 
