@@ -13,6 +13,7 @@ from xml.etree import ElementTree as ET
 import pytest
 from here import WHERE, answer_here
 from measured_parts import scattered
+from report_entries import sheet_part
 from small_workbook import MAIN, archive_of
 
 from flexlash.feedback.template.entry_rules import FIRST_ROW, HEADER_ROW
@@ -35,7 +36,6 @@ LETTERS = {
 }
 """Column letters of each entry sheet of the template by key."""
 
-_PARTS = {sheet: f"xl/worksheets/sheet{place}.xml" for place, sheet in enumerate(LETTERS, start=1)}
 _STYLES = "xl/styles.xml"
 _DATE_FORMAT = 14
 _ADDRESS = re.compile(r"([A-Z]+)(\d+)")
@@ -152,6 +152,13 @@ def parts() -> dict[str, bytes]:
         return {name: archive.read(name) for name in archive.namelist()}
 
 
+@cache
+def _part(sheet: str) -> str:
+    """Return the part of the small template that holds a sheet."""
+    with zipfile.ZipFile(io.BytesIO(small_template())) as archive:
+        return sheet_part(archive, sheet)
+
+
 def records(sheet: str) -> dict[int, dict[str, object]]:
     """Return what the small template's rows hold by key, by row number."""
     return dict(enumerate(map(dict, twelve().entries(sheet).rows), start=FIRST))
@@ -184,7 +191,8 @@ def edited(
     hidden, merged = list(hidden), list(merged)
     touched = {sheet for sheet, _ in cells} | {sheet for sheet, _ in hidden} | {sheet for sheet, _ in merged}
     for sheet in touched:
-        root = ET.fromstring(changed[_PARTS[sheet]])  # noqa: S314
+        part = _part(sheet)
+        root = ET.fromstring(changed[part])  # noqa: S314
         for (name, address), (kind, text) in cells.items():
             if name == sheet:
                 _put(root, address, kind, text)
@@ -192,7 +200,7 @@ def edited(
             if name == sheet:
                 _row(root, number).set("hidden", "1")
         _merge(root, [area for name, area in merged if name == sheet])
-        changed[_PARTS[sheet]] = ET.tostring(root, "utf-8", xml_declaration=True)
+        changed[part] = ET.tostring(root, "utf-8", xml_declaration=True)
     return archive_of(changed)
 
 
