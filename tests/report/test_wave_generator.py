@@ -122,7 +122,7 @@ def test_the_summary_names_what_bends_most(bent, straight):
         f"The wave generator bends “v2” most: {rows['v2']['alternating_stress_MPa']:.3g} MPa alternating, "
         f"{rows['v2']['combined_stress_MPa']:.3g} MPa with torsion; all other stresses are of torsion only."
     ) in said
-    assert "Bending may tire the part: “v2” (W460)." in said
+    assert "Bending fatigue: “v2” (W460)." in said
     assert "bend" not in said_of(straight[0])["Strength"].lower()
 
 
