@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import io
 import re
 import zipfile
 
 import openpyxl
 import pytest
+import xlsxwriter
 from filled import SOUND, filled
 from report_entries import opened
 
+from flexlash.analysis import tolerance_spread
 from flexlash.pipeline import run
 from flexlash.report.failing.failing_places import FAILING, MOST_PAGES, PAGE_ROWS, failing_variants, variant_targets
-from flexlash.report.report_data import ROW, drawn_variants
+from flexlash.report.failing.failing_sheet import write_failing
+from flexlash.report.layout.styles import Book
+from flexlash.report.report_data import ROW, drawn_variants, report_data
 from flexlash.schema.units import ARCMIN
 
 
@@ -106,6 +111,54 @@ def test_the_density_has_limit_nominal_and_mean(pages, study):
         assert sum(within + over for _, within, over in bins) == pytest.approx(1, abs=0.01)
         assert all(over == 0 for middle, _, over in bins if middle <= one.row["backlash_limit_arcmin"])
         assert bins[0][0] >= one.curve.edges[0] / ARCMIN
+
+
+def test_a_line_beyond_the_axis_is_told(pages, study):
+    """A limit too far from the distribution to be drawn beside it stands in legend and alternative text with its side.
+
+    The axis stays that of the distribution; a line that is drawn says nothing of a side.
+    """
+    _, path = study
+    _, variants, _ = pages
+    told = []
+    with zipfile.ZipFile(path) as archive:
+        names = [name for name in archive.namelist() if name.startswith("xl/charts/chart")]
+        charts = [text for text in (archive.read(name).decode() for name in names) if "Share of units by" in text]
+        drawings = "".join(archive.read(name).decode() for name in archive.namelist() if "drawings/drawing" in name)
+    for one in variants:
+        name, limit = one.row["variant"], one.row["backlash_limit_arcmin"]
+        high, low = (float(one.curve.edges[place]) / ARCMIN for place in (-1, 0))
+        is_far = not low - 3 * (high - low) <= limit <= high + 3 * (high - low)
+        words = f"Limit {limit:g}′{', off to the left' * is_far}"
+        (chart,) = [text for text in charts if f"Pages!$B${3 + len(told)}:" in text]
+        assert f"{words}</c:v>" in chart
+        assert re.search(rf'descr="{re.escape(name)}: histogram [^"]*; {words.lower()},', drawings)
+        least = float(re.search(r'<c:min val="([\d.]+)"/>', chart)[1])
+        assert (least <= limit) == (not is_far)
+        told.append(is_far)
+    assert set(told) == {True, False}
+
+
+def _failing_parts(outcome):
+    """Return every part of a workbook that has the pages of failing variants alone, by name."""
+    buffer = io.BytesIO()
+    with xlsxwriter.Workbook(buffer) as workbook:
+        book = Book(workbook)
+        write_failing(book, outcome, report_data(outcome)).write(book, "")
+    with zipfile.ZipFile(buffer) as archive:
+        return {name: archive.read(name) for name in archive.namelist() if not name.startswith("docProps")}
+
+
+def test_the_pages_are_the_same_whatever_computes_them(tmp_path, monkeypatch):
+    """Computed here at once, or by two worker processes row by row, the pages have the same bytes, drawings too."""
+    rows = [{**SOUND, "variant": f"v{n}", "torque_Nm": 810.0 + 5 * n, "backlash_limit_arcmin": 3.7} for n in range(2)]
+    path = tmp_path / "two.xlsx"
+    path.write_bytes(filled(rows))
+    here = _failing_parts(run(path, jobs=1))
+    assert sum(name.endswith(".emf") for name in here) == len(rows)
+    monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 1)
+    monkeypatch.setattr("flexlash.tolerance.row_batches._ROWS_PER_BATCH", 1)
+    assert _failing_parts(run(path, jobs=2)) == here
 
 
 @pytest.mark.slow

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from flexlash.report.explorer.curves_sheet import SEGMENTS
-from flexlash.report.failing.stored_pages import LINES, causes_of_page, is_drawn
+from flexlash.report.failing.stored_pages import LINES, causes_of_page, ends_of_histogram, is_drawn
 from flexlash.report.formula.stored import Stored
-from flexlash.report.layout.axes import axis_over
+from flexlash.report.layout.axes import axis_around, axis_over
 from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
 from flexlash.report.report_data import Drawn
 from flexlash.schema.number_words import angle_words
-from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.distribution_curves import HISTOGRAM_BINS
 
 __all__ = ["density_chart", "density_words", "segments_chart", "segments_words", "tornado_chart", "tornado_words"]
@@ -36,12 +35,12 @@ _COLOURS = ("ink", "grey", "blue", "sky", "orange", "red")
 def density_chart(book: Book, variant: Drawn, pages: Stored, place: int, width: int) -> Any:
     """Return the histogram of a variant, units over the limit in red, on a chart so many pixels wide.
 
-    Bins are the error bars of points, so that they and the lines share an axis of numbers.
+    Bins are the error bars of points, so that they and the lines share an axis of numbers. A line that lies beyond that
+    axis has its words in the legend alone.
     """
     chart = _chart(book, "scatter", "Share of units by backlash [arcmin]", subtype="straight")
-    lines = [line for line in LINES if is_drawn(variant, line)]
-    low, high = (float(edge) / ARCMIN for edge in (variant.curve.edges[0], variant.curve.edges[-1]))
-    axis = axis_over([low, high, *(variant.row[LINES[line]] for line in lines)])
+    low, high = ends_of_histogram(variant)
+    axis = axis_over([low, high, *(variant.row[key] for line, key in LINES.items() if is_drawn(variant, line))])
     bar = _PLOT * width * _POINT * (high - low) / HISTOGRAM_BINS / (axis.high - axis.low)
     middles = pages.across(place, "Middle 1", f"Middle {HISTOGRAM_BINS}")
     for name, heading, colour in (("within the limit", "Within", "blue"), ("over the limit", "Over", "red")):
@@ -59,7 +58,7 @@ def density_chart(book: Book, variant: Drawn, pages: Stored, place: int, width: 
                 "line": {"color": PALETTE[colour], "width": round(max(0.75, bar), 2)},
             },
         })  # fmt: skip
-    for line in lines:
+    for line in (line for line, key in LINES.items() if variant.row[key] is not None):
         colour, dash, weight = _DASHES[line]
         chart.add_series({
             "name": f"{line} {_line_words(variant, line)}",
@@ -94,7 +93,8 @@ def tornado_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any:
             "overlap": 100,
             "gap": 40,
         })  # fmt: skip
-    chart.set_x_axis({"num_format": "0.000", "major_gridlines": GRID, "num_font": _LETTERS})
+    axis = axis_around([half for _, _, half in causes_of_page(variant)])
+    chart.set_x_axis({**axis.options(), "crossing": 0, "major_gridlines": GRID, "num_font": _LETTERS})
     chart.set_y_axis({"reverse": True, "label_position": "low", "num_font": _LETTERS, "crossing": "max"})
     chart.set_legend({"position": "bottom", "font": _LETTERS})
     return chart
@@ -157,6 +157,11 @@ def _colours(variant: Drawn) -> list[str]:
 
 
 def _line_words(variant: Drawn, line: str) -> str:
-    """Return where a line stands."""
+    """Return where a line stands, and on which side of the picture where it is not drawn."""
     value = variant.row[LINES[line]]
-    return "none" if value is None else f"{value:g}′" if line == "Limit" else angle_words(value)
+    if value is None:
+        return "none"
+    words = f"{value:g}′" if line == "Limit" else angle_words(value)
+    if is_drawn(variant, line):
+        return words
+    return f"{words}, off to the {'left' if value < ends_of_histogram(variant)[0] else 'right'}"

@@ -12,7 +12,7 @@ from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.distribution_curves import HISTOGRAM_BINS
 
-__all__ = ["LINES", "PAGES_NOTE", "causes_of_page", "is_drawn", "stored_pages"]
+__all__ = ["LINES", "PAGES_NOTE", "causes_of_page", "ends_of_histogram", "is_drawn", "stored_pages"]
 
 PAGES_NOTE = (
     "Stored figures behind the charts of Failing variants [arcmin]: middle and share of each bin, within the limit and "
@@ -38,12 +38,12 @@ def stored_pages(variants: Sequence[Drawn]) -> Stored:
 
 def is_drawn(variant: Drawn, line: str) -> bool:
     """Return whether a line lies near enough to the distribution to be drawn beside it."""
-    low, high = _ends(variant)
+    low, high = ends_of_histogram(variant)
     value = variant.row[LINES[line]]
     return value is not None and low - _FAR * (high - low) <= value <= high + _FAR * (high - low)
 
 
-def _ends(variant: Drawn) -> tuple[float, float]:
+def ends_of_histogram(variant: Drawn) -> tuple[float, float]:
     """Return the ends of the histogram [arcmin]."""
     edges = variant.curve.edges
     return float(edges[0]) / ARCMIN, float(edges[-1]) / ARCMIN
@@ -52,7 +52,7 @@ def _ends(variant: Drawn) -> tuple[float, float]:
 def _entries(variant: Drawn) -> Iterator[tuple[str, str | float | None]]:
     """Yield a variant's headings and values in order."""
     row, heights = variant.row, variant.curve.heights.tolist()
-    low, high = _ends(variant)
+    low, high = ends_of_histogram(variant)
     width = (high - low) / HISTOGRAM_BINS
     middles = [float(f"{low + (place + 0.5) * width:.9g}") for place in range(HISTOGRAM_BINS)]
     limit = row[LINES["Limit"]]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["Axis", "axis_over"]
+__all__ = ["Axis", "axis_around", "axis_over"]
 
 _TICKS = 6
 _CLEAR = 0.1
@@ -31,6 +31,20 @@ class Axis:
         number = "0." + "0" * decimals if decimals else "0"
         ends = {"min": self.low, "max": self.high, "major_unit": self.step}
         return {**ends, "num_format": f"{number}%" if per_cent else number, "crossing": "min"}
+
+
+def axis_around(values: Sequence[float]) -> Axis:
+    """Return an axis with 0 in its middle and two or three round steps to either side, around values of any sign.
+
+    >>> axis_around([0.121, -0.05]), axis_around([0.079])
+    (Axis(low=-0.15, high=0.15, step=0.05), Axis(low=-0.1, high=0.1, step=0.05))
+    """
+    most = max((abs(value) for value in values), default=0.0) or 1.0
+    power = 10.0 ** math.floor(math.log10(most / 3))
+    steps = ((factor * power, count) for factor in (1, 2, 5, 10) for count in (2, 3))
+    step, count = next((step, count) for step, count in steps if step * count >= most * (1 - 1e-9))
+    end = float(f"{count * step:.9g}")
+    return Axis(low=-end, high=end, step=float(f"{step:.9g}"))
 
 
 def axis_over(values: Sequence[float]) -> Axis:
