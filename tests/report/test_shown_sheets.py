@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from decided_drives import drive
 from finding_examples import SUBMISSIONS
 from report_entries import opened
 
+from flexlash.feedback.template.template_workbook import template_bytes
 from flexlash.pipeline import run
 from flexlash.report.shown_sheets import ALWAYS, MOST_SHOWN
 
@@ -43,8 +45,17 @@ def test_ten_tabs_at_most_and_no_link_to_a_hidden_sheet(study):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["decided", "whole drives"])
 def test_what_was_asked_for_is_seen(name, tmp_path):
-    """Drive and Sweep, which somebody asked for, are seen; ten tabs are never exceeded."""
+    """Drive and Sweep, which somebody asked for, are seen; no tab is one too many."""
     path, options = SUBMISSIONS[name](tmp_path)
     run(path, tmp_path / "report.xlsx", samples=16, method="random", **options)
     seen = _check(tmp_path / "report.xlsx")
     assert {"Drive", "Sweep"} & set(opened(tmp_path / "report.xlsx").sheetnames) <= set(seen)
+
+
+def test_levers_yield_to_both_drive_and_sweep(tmp_path):
+    """With both Drive and Sweep the pack is no page longer: Levers are hidden, and no link leads there."""
+    (tmp_path / "a.xlsx").write_bytes(template_bytes(drive()))
+    run(tmp_path / "a.xlsx", tmp_path / "report.xlsx", samples=16, method="random")
+    seen = _check(tmp_path / "report.xlsx")
+    assert set(seen) == {*ALWAYS, "Drive", "Sweep", "Failing variants"}
+    assert "Levers" in opened(tmp_path / "report.xlsx").sheetnames

@@ -16,22 +16,20 @@ ALWAYS = ("Summary", "Results", "Explorer", "Contributions", "Findings", "About"
 """Sheets that every reader sees."""
 
 ROOM = 8
-"""Sheets of one printed page that are seen; beside them that with a page for each failing variant.
+"""Most sheets of one printed page that are seen; beside them that with a page for each failing variant."""
 
-Only Drive and Sweep are seen beyond, since somebody asked for them on a sheet of their own.
-"""
-
-MOST_SHOWN = 10
+MOST_SHOWN = ROOM + 1
 
 
 def shown_sheets(outcome: Outcome, data: ReportData) -> frozenset[str]:
-    """Return the sheets of a report that can be seen, ten at most: those that every reader needs, then by rank."""
+    """Return the sheets of a report that can be seen: those that every reader needs, then by rank.
+
+    Drive and Sweep, which somebody asked for, come first; the cheapest changes of Levers are on Failing variants, too.
+    """
     failing = failing_variants(data.drawn, outcome.settings.verdict_bounds)
     asked = [DRIVE] * _has_drive(outcome) + [SWEEP] * bool(data.studies)
-    shown = [*ALWAYS, *([LEVERS] if data.levers.height else []), *asked]
-    further = [*_guilty(outcome), "Trace"]
-    shown += further[: max(0, ROOM - len(shown))]
-    return frozenset([*shown, *([FAILING] if failing else [])])
+    ranked = [*ALWAYS, *asked, *[LEVERS] * bool(data.levers.height), *_guilty(outcome), "Trace"]
+    return frozenset([*ranked[:ROOM], *[FAILING] * bool(failing)])
 
 
 def _has_drive(outcome: Outcome) -> bool:
