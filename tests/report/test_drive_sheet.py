@@ -70,7 +70,7 @@ def _assert_agrees(values, outcome, name):
     """Assert that the rules, shares and angles of the picked variant are the program's."""
     rows = _rows(values)
     result = outcome.results.filter(outcome.results["variant"] == name).row(0, named=True)
-    names = ("Average, the systematic sum", "Root of the sum of squares", "Bender, 1.5 times that", "Mean shift",
+    names = ("Average (systematic)", "Root sum of squares", "Bender, 1.5 times that", "Mean shift",
              "Worst case", "Monte Carlo, P99.865")  # fmt: skip
     for rule, words in zip(RULES, names, strict=True):
         high = result[f"system_{rule}_arcmin"]
@@ -116,7 +116,7 @@ def test_every_variant_and_a_reader_s_changes(drive, tmp_path):
     rows = _rows(values_of(moved, "Drive"))
     clearance = 0.02 / 80 / ARCMIN
     assert rows["tooth clearance"]["M"] == rows["tooth clearance"]["N"] == pytest.approx(clearance, rel=1e-12)
-    assert rows["Mean shift"]["G"] == pytest.approx(rows["Root of the sum of squares"]["G"], rel=1e-12)
+    assert rows["Mean shift"]["G"] == pytest.approx(rows["Root sum of squares"]["G"], rel=1e-12)
 
 
 def test_without_other_sources_there_is_no_drive(tmp_path):

@@ -9,15 +9,18 @@ from collections import Counter
 
 import pytest
 import regenerate
+from decided_drives import drive
 from libreoffice import convert_all, needs_pages
 from report_entries import opened
 
+from flexlash.feedback.template.template_workbook import Filling, study, template_bytes
 from flexlash.pipeline import run
 from flexlash.report.failing.failing_places import FAILING, MOST_PAGES
 from flexlash.report.shown_sheets import ROOM
 
 PAPERS = {"A4": (9, 595, 842), "Letter": (1, 612, 792)}
-EXAMPLES = ("b3-160-study", "needs-fixing", "catalogue-sizes")
+PRINTED = [("study", "A4"), ("study", "Letter"), ("faulty", "A4"), ("long names", "A4"), ("long names", "Letter"),
+           ("drive and sweep", "Letter")]  # fmt: skip
 LEAST = 6.9
 """Points of the smallest letters, with room for rounding."""
 
@@ -41,14 +44,29 @@ def _on_paper(report, target, code):
 @pytest.fixture(scope="module")
 def printed(tmp_path_factory):
     """Return the report on each example and its pages on each paper, by example and paper."""
-    folder, asked = tmp_path_factory.mktemp("pages"), {}
-    for name in EXAMPLES:
-        report = folder / f"{name}.xlsx"
-        run(regenerate.ROOT / "data" / f"{name}.xlsx", report)
-        for paper, (code, *_) in PAPERS.items():
-            asked[name, paper] = report, _on_paper(report, folder / f"{name}-{paper}.xlsx", code)
-    documents = convert_all([path for _, path in asked.values()], "pdf", folder)
-    return {key: (report, pdf) for (key, (report, _)), pdf in zip(asked.items(), documents, strict=True)}
+    folder, reports, asked = tmp_path_factory.mktemp("pages"), {}, {}
+    for name in dict(PRINTED):
+        source, reports[name] = folder / f"{name}.xlsx", folder / f"{name}-report.xlsx"
+        source.write_bytes(template_bytes(_example(name)))
+        run(source, reports[name])
+    for name, paper in PRINTED:
+        asked[name, paper] = _on_paper(reports[name], folder / f"{name}-{paper}.xlsx", PAPERS[paper][0])
+    documents = convert_all(list(asked.values()), "pdf", folder)
+    return {(name, paper): (reports[name], pdf) for (name, paper), pdf in zip(asked, documents, strict=True)}
+
+
+def _example(name):
+    """Return what stands in the submission of a name."""
+    if name == "long names":
+        rows = regenerate.catalogue_sizes().variants
+        long = [f"{row['variant']} {'of a very long name ' * 3}"[:60] for row in rows]
+        return Filling(
+            variants=[
+                {**row, "variant": words, "backlash_limit_arcmin": (0.3, 2.6, None)[place % 3], "notes": "remark " * 12}
+                for place, (row, words) in enumerate(zip(rows, long, strict=True))
+            ]
+        )
+    return {"study": study, "faulty": regenerate.needs_fixing, "drive and sweep": drive}[name]()
 
 
 def _greys(path):
@@ -73,8 +91,7 @@ def _footers(pdf, sizes):
 
 @pytest.mark.slow
 @needs_pages
-@pytest.mark.parametrize("paper", PAPERS)
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize(("name", "paper"), PRINTED)
 def test_every_page_is_whole(printed, tmp_path, name, paper):
     """On either paper each sheet that can be seen takes one page, each failing variant one, whole and not empty.
 
@@ -114,8 +131,7 @@ _HIGH = 1.22
 
 @pytest.mark.slow
 @needs_pages
-@pytest.mark.parametrize("paper", PAPERS)
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize(("name", "paper"), PRINTED)
 def test_no_letter_is_smaller_than_seven_points(printed, name, paper):
     """Whatever is scaled to a page has letters of 7 points at least, in cells, charts and drawings."""
     _, pdf = printed[name, paper]

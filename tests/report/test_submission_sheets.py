@@ -115,6 +115,27 @@ def test_nothing_is_cut(workbook, sound, tmp_path):
 
 
 @pytest.mark.slow
+def test_columns_without_an_entry_are_folded_away(workbook, sound, tmp_path):
+    """Columns in which no row has an entry or a finding are hidden, so that the page has room for the others."""
+    rows = [{**sound, "rim_thickness_mm": 2.0}, {**sound, "variant": "b", "notes": "n"}]
+    outcome, book = _report(workbook(rows), tmp_path)
+    sheet, header = book["Submission"], outcome.validated.header_rows["Variants"]
+    hidden = {
+        column
+        for one in sheet.column_dimensions.values()
+        for column in range(one.min, one.max + 1)
+        if one.hidden and one.outlineLevel == 1
+    }
+    entered = {cell.column for row in sheet.iter_rows(min_row=header + 1) for cell in row if cell.value is not None}
+    told = {found.address.column for found in outcome.findings if found.sheet == "Variants" and found.address}
+    assert told - entered
+    assert hidden == set(range(1, sheet.max_column + 1)) - entered - told
+    left = sheet.print_area.replace("$", "").rpartition(":")[2].rstrip("0123456789")
+    assert sheet.column_dimensions[left].index == left
+    assert not sheet.oddHeader.right.text
+
+
+@pytest.mark.slow
 def test_titles_of_our_template_look_like_titles(workbook, table, sound, tmp_path):
     """The first cell of a sheet of our template is a title; that of a table is a header."""
     _, book = _report(workbook([sound]), tmp_path)

@@ -9,7 +9,7 @@ from flexlash.analysis.outcome import Outcome
 from flexlash.report.allocation_sheet import ALLOCATED
 from flexlash.report.extent import MOST_FINDINGS, Extent, extent_of
 from flexlash.report.layout.links import write_link
-from flexlash.report.layout.paper import print_one_page
+from flexlash.report.layout.paper import Listed, print_one_page
 from flexlash.report.layout.styles import Book
 from flexlash.report.results_sheet import AS_SUBMITTED, ERROR_DIGITS, SHARE_DECIMALS
 from flexlash.report.wording.correlation_words import correlation_sentences, first_order_sentence, share_sentence
@@ -337,7 +337,7 @@ def write_about(book: Book, sheet: Any, outcome: Outcome, later: Sequence[str] =
     for title, entries in sections:
         row = _write_section(book, sheet, row, title, entries)
         ends.append(row - 2)
-    print_one_page(sheet, _LINES[:2], ends[-1], upright=True, ends=ends)
+    print_one_page(sheet, _LINES[:2], ends[-1], upright=True, ends=ends[:-1], listed=Listed(noun="sections"))
 
 
 def _hidden(book: Book, present: Sequence[str], sheets: Mapping[str, str]) -> list[tuple[str, str]]:

@@ -18,8 +18,9 @@ from flexlash.report.layout.links import (
     rules_of,
     write_link,
 )
-from flexlash.report.layout.paper import print_one_page
+from flexlash.report.layout.paper import Listed, print_one_page
 from flexlash.report.layout.styles import Book
+from flexlash.report.layout.wrapping import fitted
 from flexlash.report.report_data import ROW, Drawn
 from flexlash.report.submission_sheets import SUBMISSION, mirrored_schema, titles_of
 from flexlash.schema.columns import ENTRY_SHEETS
@@ -42,7 +43,6 @@ _WIDTHS = {
     "suggestion": 14,
 }
 _STYLES = {"error": "error", "warning": "warning", "info": "text"}
-_NAME = 30
 _PER_LINE = {"message": 51, "fix": 44, "value": 21, "suggestion": 14}
 """Characters of a column's text on one line."""
 
@@ -85,7 +85,8 @@ def write_findings(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None
         _write_finding(book, sheet, row, finding, title=title, links=(f"{title}!{cell}" if cell else "", target))
     sheet.autofilter(header, 0, header + len(findings), len(FINDINGS) - 1)
     sheet.freeze_panes(0, 2)
-    print_one_page(sheet, [_WIDTHS.get(column.key, 11) for column in FINDINGS], header + len(findings))
+    listed = Listed(noun="findings", first=header + 1, columns=[column.label for column in FINDINGS])
+    print_one_page(sheet, [_WIDTHS.get(column.key, 11) for column in FINDINGS], header + len(findings), listed=listed)
 
 
 def _counts(outcome: Outcome, listed: int) -> str:
@@ -153,7 +154,7 @@ def _write_finding(book: Book, sheet: Any, row: int, finding: Finding, *, title:
         texts["column"] = f"{label}\n{finding.column}"
     lines = [1 + len(texts[key]) // width for key, width in _PER_LINE.items()]
     sheet.set_row(row, _LINE * max(2 if label else 1, *lines))
-    texts["variant"] = shown(texts["variant"], longest=_NAME)
+    texts["variant"] = fitted(shown(texts["variant"]), _WIDTHS["variant"])
     wrap = book.format("wrap")
     for column_index, (key, text) in enumerate(texts.items()):
         if key == "level":

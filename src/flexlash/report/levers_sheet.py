@@ -12,7 +12,7 @@ from flexlash.report.extent import extent_of
 from flexlash.report.failing.failing_places import variant_targets
 from flexlash.report.layout.given_rows import GivenRows
 from flexlash.report.layout.links import write_link
-from flexlash.report.layout.paper import print_one_page
+from flexlash.report.layout.paper import Listed, print_one_page
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
 from flexlash.report.report_data import ROW, ReportData
@@ -35,7 +35,7 @@ _HEADER = len(_NOTES) + 2
 FIRST_LEVER = _HEADER + 1
 """Row of Levers, from 0, of the first change."""
 
-_NAME = 30
+_NAME = 22
 _WIDTHS = [column.width for column in LEVER_COLUMNS]
 
 
@@ -65,7 +65,8 @@ def write_levers(book: Book, outcome: Outcome, data: ReportData) -> None:
     sheet.conditional_format(FIRST_LEVER, 0, *last, new_variant)
     sheet.freeze_panes(FIRST_LEVER, 2)
     sheet.repeat_rows(_HEADER)
-    print_one_page(sheet, _WIDTHS, last[0])
+    listed = Listed(noun="changes", first=FIRST_LEVER, columns=[column.heading for column in LEVER_COLUMNS])
+    print_one_page(sheet, _WIDTHS, last[0], listed=listed)
 
 
 def lever_places(levers: pl.DataFrame) -> dict[str, int]:

@@ -12,7 +12,7 @@ from flexlash.report.extent import extent_of
 from flexlash.report.failing.failing_places import variant_targets
 from flexlash.report.layout.given_rows import GivenRows
 from flexlash.report.layout.links import FIRST_ROW, finding_rows, first_result, result_rows, write_link
-from flexlash.report.layout.paper import print_one_page
+from flexlash.report.layout.paper import Listed, print_one_page
 from flexlash.report.layout.raw_cells import write_raw
 from flexlash.report.layout.result_formats import ESTIMATED_SHARES, number_formats, usual_format
 from flexlash.report.layout.styles import PALETTE, Book
@@ -70,13 +70,13 @@ _VERDICT = Column(
 _BARS = {"probability_over_limit": "orange", "disk_share": "sky", "main_contributor_share": "sky"}
 _NUMBER, _WORDS, _PASSED = 11.0, 14.0, 16.0
 _WIDTHS = {"status": 11.0, "main_contributor": 20.0, "first_order_valid": 11.0}
-_NAMES = (16, 32)
+_NAMES = (16, 60)
 _TEXTS = (16, 90)
 """Least and greatest width of the variants' names, and of columns whose longer texts are wrapped."""
 
 _WRAPPED = ("spread_note", "notes", "findings")
 
-_KEY_HEIGHT, _KEY_SIZE = 36, 8.0
+_KEY_HEIGHT = 3 * LINE_HEIGHT
 _REMARKS = {
     "main_contributor": "Named by its key in the template's sheet Tolerances; About lists the keys in words.",
     "probability_over_limit_sample_low": "Blank where nothing was measured; About says how it is found.",
@@ -103,16 +103,24 @@ def write_results(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
         _write_heading(book, sheet, (labels, index), (column.label, column.key, text))
     _write_cells(book, sheet, results, columns, first)
     _write_links(book, sheet, outcome, columns, drawn)
-    right = _write_passed(book, sheet, outcome, len(columns))
+    own = _write_passed(book, sheet, outcome, len(columns))
     last = first + max(results.height, 1) - 1
     lines = max(lines_of(column.label, width) for column, width in zip(columns, widths, strict=True))
     sheet.set_row(labels, LINE_HEIGHT * lines)
     sheet.set_row(labels + 1, _KEY_HEIGHT)
     sheet.freeze_panes(first, 1)
-    sheet.autofilter(labels + 1, 0, last, right - 1)
+    sheet.autofilter(labels + 1, 0, last, len(columns) + len(own) - 1)
     sheet.repeat_rows(labels, labels + 1)
-    print_one_page(sheet, widths[: len(_FIRST)], last, smallest=_KEY_SIZE)
+    names = ["" if index in folded else _printed_name(results, column) for index, column in enumerate(columns)]
+    seen = [0.0 if index in folded else width for index, width in enumerate(widths)]
+    listed = Listed(noun="variants", first=first, columns=[*names, *own])
+    print_one_page(sheet, [*seen, *[_PASSED] * len(own)], last, listed=listed)
     _write_conditions(book, sheet, columns, (first, last))
+
+
+def _printed_name(results: pl.DataFrame, column: Column) -> str:
+    """Return what the head of the page names a column, a blank for one that nobody misses."""
+    return column.label if results[column.key].is_not_null().any() else ""
 
 
 def _with_verdicts(outcome: Outcome) -> pl.DataFrame:
@@ -139,7 +147,7 @@ def _width(results: pl.DataFrame, column: Column) -> float:
         return _WIDTHS.get(column.key, _NUMBER if column.is_number else _WORDS)
     least, most = _TEXTS if column.key in _WRAPPED else _NAMES
     longest = results[column.key].str.len_chars().max()
-    return min(max(int(str(longest or 0)) + 2, least), most)
+    return float(min(max(int(str(longest or 0)) + 2, least), most))
 
 
 def _write_heading(book: Book, sheet: Any, cell: tuple[int, int], texts: tuple[str, str, str]) -> None:
@@ -154,7 +162,7 @@ def _write_cells(book: Book, sheet: Any, results: pl.DataFrame, columns: Sequenc
     """Write the table: all rows of a large one at once, else row by row, in which order XlsxWriter is quickest."""
     lists = [stored_values(results, column) for column in columns]
     styles = [_styles(book, results, column) for column in columns]
-    heights = _heights(results, columns, first)
+    heights = _heights(results, first)
     if isinstance(sheet, GivenRows):
         sheet.give(first, list(zip(lists, styles, strict=True)), heights)
         return
@@ -173,13 +181,14 @@ def _write_cells(book: Book, sheet: Any, results: pl.DataFrame, columns: Sequenc
                 write_number(row, index, value, formats[index])
 
 
-def _heights(results: pl.DataFrame, columns: Sequence[Column], first: int) -> dict[int, float]:
+def _heights(results: pl.DataFrame, first: int) -> dict[int, float]:
     """Return the heights of rows with a text that is longer than its column is wide."""
     lines: dict[int, int] = {}
-    for column in columns:
-        for row, text in enumerate(results[column.key].to_list() if column.key in _WRAPPED else ()):
-            if text is not None and len(text) > _TEXTS[1] - 2:
-                lines[row] = max(lines.get(row, 1), lines_of(text, _TEXTS[1]))
+    for key in ("variant", *_WRAPPED):
+        most = _TEXTS[1] if key in _WRAPPED else _NAMES[1]
+        for row, text in enumerate(results[key].to_list()):
+            if text is not None and len(text) > most - 2:
+                lines[row] = max(lines.get(row, 1), lines_of(text, most - 1))
     return {first + row: LINE_HEIGHT * count for row, count in lines.items()}
 
 
@@ -197,12 +206,13 @@ def _styles(book: Book, results: pl.DataFrame, column: Column) -> list[Any]:
     """Return a format for each cell of a column."""
     if column.is_number:
         return number_formats(book, results, column)
-    return [book.format("indented wrap" if column.key in _WRAPPED else "indented")] * results.height
+    wraps = column.key in ("variant", *_WRAPPED)
+    return [book.format("indented wrap" if wraps else "indented")] * results.height
 
 
 def _write_links(book: Book, sheet: Any, outcome: Outcome, columns: Sequence[Column], drawn: Sequence[Drawn]) -> None:
     """Lead from each drawn variant to its page or to Explorer, and from its findings to the first of them."""
-    style, targets = book.format("link"), variant_targets(drawn, outcome.settings.verdict_bounds)
+    style, targets = book.format("wrap link"), variant_targets(drawn, outcome.settings.verdict_bounds)
     findings = finding_rows(outcome)
     findings_index = [column.key for column in columns].index("findings")
     rows = result_rows(outcome)
@@ -214,11 +224,12 @@ def _write_links(book: Book, sheet: Any, outcome: Outcome, columns: Sequence[Col
             write_link(sheet, row, findings_index, f"Findings!A{findings[number] + 1}", listed, style=style)
 
 
-def _write_passed(book: Book, sheet: Any, outcome: Outcome, index: int) -> int:
-    """Write the columns of the submission that flexlash does not use; return the place after the last."""
+def _write_passed(book: Book, sheet: Any, outcome: Outcome, first: int) -> list[str]:
+    """Write the columns of the submission that flexlash does not use from a column on; return their headers."""
     table = outcome.validated.table if outcome.validated else None
     rows = result_rows(outcome)
-    for column, header in sorted(table.heading.extra.items()) if table is not None else ():
+    own = sorted(table.heading.extra.items()) if table is not None else []
+    for index, (column, header) in enumerate(own, start=first):
         sheet.set_column(index, index, _PASSED)
         text = f"Column {header} of the submission as read; nothing is computed from it."
         _write_heading(book, sheet, (first_result(outcome) - FIRST_ROW, index), (header, AS_SUBMITTED, text))
@@ -226,8 +237,7 @@ def _write_passed(book: Book, sheet: Any, outcome: Outcome, index: int) -> int:
             value = table.cells[number].get(column) if table is not None else None
             if value is not None:
                 write_raw(book, sheet, (row, index), value)
-        index += 1
-    return index
+    return [header for _, header in own]
 
 
 def _write_conditions(book: Book, sheet: Any, columns: Sequence[Column], rows: tuple[int, int]) -> None:

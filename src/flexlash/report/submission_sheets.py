@@ -5,6 +5,7 @@ Of a large submission the drawn variants alone stand here, worst first, each beh
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeGuard
@@ -15,12 +16,12 @@ from flexlash.reading.raw import RawSheet, RawValue, Submission, Unstored
 from flexlash.report.extent import extent_of
 from flexlash.report.failing.failing_places import variant_targets
 from flexlash.report.layout.links import Mirrored, finding_list, mirrored, write_link
-from flexlash.report.layout.paper import print_one_page
+from flexlash.report.layout.paper import Listed, print_one_page
 from flexlash.report.layout.raw_cells import raw_text, write_raw
 from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
 from flexlash.report.report_data import Drawn
-from flexlash.schema.cell_addresses import CellAddress
+from flexlash.schema.cell_addresses import CellAddress, column_letters
 from flexlash.schema.columns import ENTRY_SHEETS
 from flexlash.schema.number_words import grouped
 from flexlash.validation.entry_sheets import sheet_names
@@ -34,8 +35,15 @@ MOST_COMMENTS = 2000
 
 _COMMENT_WIDTH, _COMMENT_LINE, _PER_LINE = 320, 18, 48
 _MOST_LINES = 14
-_NAME, _LEAST, _MOST = 16.0, 11.0, 90.0
+_NAME, _LEAST, _MOST = 16.0, 9.0, 90.0
 """Least widths of the first column and the others, and the greatest; longer texts are wrapped."""
+
+_FOLDED = {"level": 1, "hidden": True}
+_HEADER_LINES = 3
+"""Least lines of the header row."""
+
+_BOLD = 1.05
+"""How much wider bold letters are."""
 
 _ROW_HEADER = "Row"
 """Heading of the row numbers before variants that do not stand in their own rows."""
@@ -78,14 +86,15 @@ class _Guilt:
 class _Mirror:
     """A sheet to repeat: its cells, its header row (0: none) and its guilty cells by address.
 
-    `linked` is the column whose cells lead where `targets` says by row number. Where cells are moved, `note` says at
-    the top what is left out.
+    `linked` is the column whose cells lead where `targets` says by row number; `told` are columns with a cell that has
+    findings. Where cells are moved, `note` says at the top what is left out.
     """
 
     raw: RawSheet
     title: str
     header: int
     guilty: Mapping[CellAddress, _Guilt]
+    told: frozenset[int] = frozenset()
     linked: int = 0
     targets: Mapping[int, str] = field(default_factory=dict)
     places: Mirrored = field(default_factory=Mirrored)
@@ -94,7 +103,7 @@ class _Mirror:
 
 def write_submission(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> None:
     """Write each entry sheet of the submission as read, guilty cells coloured, or the built-in table used instead."""
-    guilty = _guilty(outcome)
+    guilty, told = _guilty(outcome), _told(outcome)
     extent = extent_of(outcome)
     validated = outcome.validated
     headers = validated.header_rows if validated else {}
@@ -104,7 +113,8 @@ def write_submission(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> No
         raw = by_title.get(title)
         if raw:
             of_sheet = {address: guilt for (name, address), guilt in guilty.items() if name == raw.name}
-            mirror = _Mirror(raw=raw, title=title, header=headers.get(schema, 0), guilty=of_sheet)
+            header, of_columns = headers.get(schema, 0), frozenset(told[raw.name])
+            mirror = _Mirror(raw=raw, title=title, header=header, guilty=of_sheet, told=of_columns)
             if schema == "Variants" and table is not None:
                 linked = table.heading.columns.get("variant", 0)
                 targets = variant_targets(drawn, outcome.settings.verdict_bounds)
@@ -129,6 +139,15 @@ def _guilty(outcome: Outcome) -> dict[tuple[str, CellAddress], _Guilt]:
     return guilty
 
 
+def _told(outcome: Outcome) -> Mapping[str, set[int]]:
+    """Return the columns with a cell that has findings, by sheet: links lead there."""
+    told: dict[str, set[int]] = defaultdict(set)
+    for finding in outcome.findings:
+        if address := finding.address:
+            told[finding.sheet].add(address.column)
+    return told
+
+
 def _write_mirror(book: Book, mirror: _Mirror) -> None:
     """Write a sheet's cells in their places, its header row as such."""
     raw, places = mirror.raw, mirror.places
@@ -147,12 +166,14 @@ def _write_mirror(book: Book, mirror: _Mirror) -> None:
     ]
     bottom = max((row for row, _ in addresses), default=1)
     last = max((column for _, column in addresses), default=1)
-    widths = _widths(mirror, rows, last)
-    for column, width in enumerate(widths):
-        sheet.set_column(column, column, width)
+    widths, headings = _widths(mirror, rows, last), _headings(mirror, rows, last)
+    _set_columns(sheet, widths, headings)
     sheet.ignore_errors({"number_stored_as_text": f"A1:XFD{bottom}"})
     if header := mirror.header and mirror.header + places.shift:
-        sheet.set_row(header - 1, 48)
+        texts = raw.rows.get(mirror.header, {})
+        below = enumerate(widths[places.shift :], start=1)
+        lines = max(lines_of(str(texts.get(column, "")), width / _BOLD) for column, width in below)
+        sheet.set_row(header - 1, LINE_HEIGHT * max(lines, _HEADER_LINES) + 3)
         sheet.freeze_panes(header, 1 + places.shift)
         sheet.repeat_rows(header - 1)
         sheet.autofilter(header - 1, 0, bottom - 1, last - 1)
@@ -171,7 +192,15 @@ def _write_mirror(book: Book, mirror: _Mirror) -> None:
             if column not in ignored and not (isinstance(value, Unstored) and row < mirror.header):
                 _write_value(book, sheet, mirror, CellAddress(row=row, column=column), value)
     _write_guilt(book, sheet, mirror)
-    print_one_page(sheet, widths, bottom - 1)
+    seen = [width if heading else 0.0 for width, heading in zip(widths, headings, strict=True)]
+    print_one_page(sheet, seen, bottom - 1, listed=Listed(noun="rows", first=header, columns=headings))
+
+
+def _set_columns(sheet: Any, widths: Sequence[float], headings: Sequence[str]) -> None:
+    """Set the widths of columns, those without a heading folded away."""
+    for column, width in enumerate(widths):
+        options = {"collapsed": column > 0 and not headings[column - 1]} if headings[column] else _FOLDED
+        sheet.set_column(column, column, width, None, options)
 
 
 def _write_value(book: Book, sheet: Any, mirror: _Mirror, address: CellAddress, value: RawValue) -> None:
@@ -183,22 +212,35 @@ def _write_value(book: Book, sheet: Any, mirror: _Mirror, address: CellAddress, 
     cell = (place.row - 1, place.column - 1)
     style = guilt.level if guilt else _style(mirror, row, column, value)
     if column == mirror.linked and row in mirror.targets and isinstance(value, str):
-        link = book.format(style if guilt else "link")
+        link = book.format(style if guilt else "wrap link")
         write_link(sheet, *cell, mirror.targets[row], raw_text(value), style=link)
     else:
         write_raw(book, sheet, cell, value, style)
 
 
+def _headings(mirror: _Mirror, rows: Mapping[int, Mapping[int, RawValue]], last: int) -> list[str]:
+    """Return the headings of so many columns, blank for one in which no row below has an entry or a finding."""
+    shift, header = mirror.places.shift, mirror.header
+    used = mirror.told.union(*(cells for row, cells in rows.items() if row > header))
+    texts = mirror.raw.rows.get(header, {})
+    return [_ROW_HEADER] * shift + [
+        str(texts.get(column) or column_letters(column)) if column in used or not header else ""
+        for column in range(1, last + 1 - shift)
+    ]
+
+
 def _widths(mirror: _Mirror, rows: Mapping[int, Mapping[int, RawValue]], last: int) -> list[float]:
-    """Return the widths of so many columns, each as wide as its longest text below the header."""
+    """Return the widths of so many columns, each as wide as its longest entry and the longest word of its header."""
     shift = mirror.places.shift
     widths = [*[_LEAST] * shift, _NAME, *[_LEAST] * (last - 1 - shift)]
     for row, cells in rows.items():
-        if row > mirror.header:
-            for column, value in cells.items():
-                if isinstance(value, str) and column + shift <= last:
-                    place = column + shift - 1
-                    widths[place] = min(max(widths[place], len(value) + 2.0), _MOST)
+        for column, value in cells.items() if row >= mirror.header else ():
+            if column + shift <= last:
+                text = raw_text(value)
+                words = text.split() if row == mirror.header else [text]
+                long = max(map(len, words), default=0) * (_BOLD if row == mirror.header else 1.0) + 2.0
+                place = column + shift - 1
+                widths[place] = min(max(widths[place], long), _MOST)
     return widths
 
 

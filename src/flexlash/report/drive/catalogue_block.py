@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from flexlash.mechanics.catalogue_curve import first_slope, later_slope
-from flexlash.report.drive.drive_page import BESIDE, SHEET, DrivePage, result_label
+from flexlash.report.drive.drive_page import BESIDE, LETTERS, SHEET, DrivePage, result_label
 from flexlash.report.formula.closed_forms import worked
 from flexlash.report.formula.functions import AND, IF, MIN, NOT, OR, PI
 from flexlash.report.formula.live import Live, put
@@ -26,7 +26,7 @@ _HEADS = ("Torque", "Whole drive [rad]", "Torque [N·m]", "Whole drive [arcmin]"
 _RADIANS, _TORQUE, _DRIVE, _OWN = range(1, 5)
 _WHOLE = "#,##0"
 _HIGH = 48
-_CHART, _CHART_ROWS = (475, 330), 14
+_CHART, _CHART_ROWS = (460, 330), 14
 _FOUND, _BEYOND = "of the catalogue", "none: beyond its sizes"
 
 
@@ -131,6 +131,8 @@ def _chart(book: Book, begin: int) -> Any:
             "line": {"color": PALETTE[colour], "width": 2},
             "marker": {"type": "circle", "size": 5, "fill": {"color": PALETTE[colour]}},
         })  # fmt: skip
-    chart.set_x_axis({"name": "Torque [N·m]", "min": 0, "major_gridlines": GRID})
-    chart.set_y_axis({"name": "Angle [arcmin]", "min": 0, "major_gridlines": GRID})
+    look = {"min": 0, "major_gridlines": GRID, "num_font": LETTERS, "name_font": LETTERS | {"bold": False}}
+    chart.set_x_axis({"name": "Torque [N·m]", **look})
+    chart.set_y_axis({"name": "Angle [arcmin]", **look})
+    chart.set_legend({"position": "bottom", "font": LETTERS})
     return chart

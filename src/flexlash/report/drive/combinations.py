@@ -37,8 +37,8 @@ def write_combinations(page: DrivePage, top: int, chain: Chain) -> int:
     sheet.set_row(top, 48)
     root = SQRT(chain.square)
     rules = (
-        ("Average, the systematic sum", "Σ averages", live(0.0), "system_mean_arcmin"),
-        ("Root of the sum of squares", "average + √Σ (c T)²", root, "system_rss_high_arcmin"),
+        ("Average (systematic)", "Σ averages", live(0.0), "system_mean_arcmin"),
+        ("Root sum of squares", "average + √Σ (c T)²", root, "system_rss_high_arcmin"),
         (
             f"Bender, {BENDER:g} times that",
             f"average + min({BENDER:g} √Σ (c T)², Σ T)",

@@ -11,36 +11,39 @@ from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of, merged_width
 from flexlash.schema.result_columns import result_columns
 
-__all__ = ["BESIDE", "COLUMNS", "SHEET", "TABLE", "DrivePage", "result_label"]
+__all__ = ["BESIDE", "COLUMNS", "LETTERS", "SHEET", "TABLE", "DrivePage", "result_label"]
 
 SHEET = "Drive"
 
 COLUMNS = (
-    ("Source", 21),
-    ("Enter as", 13),
-    ("Value", 8),
+    ("Source", 22),
+    ("Enter as", 14.5),
+    ("Value", 7),
     ("Lower deviation", 9),
     ("Upper deviation", 9),
     ("Radius [mm]", 8),
     ("Pressure angle [°]", 9),
     ("Ratio", 8),
-    ("Kind", 11),
-    ("Distribution", 14),
+    ("Kind", 10.5),
+    ("Distribution", 16),
     ("Limits at ± sigma", 8),
     ("At the output", 11),
     ("Average [arcmin]", 8),
     ("T [arcmin]", 8),
     ("c", 6),
-    ("(c T)²", 8),
-    ("((1 − η) c T)²", 8),
+    ("(c T)²", 7),
+    ("((1 − η) c T)²", 7.5),
     ("Of the average", 8),
-    ("Of the variance", 9),
-    ("Of the worst case", 8),
+    ("Of the variance", 8.5),
+    ("Of the worst case", 7.5),
 )
 """Headings and widths of the table of sources, whose columns are those of the sheet."""
 
 BESIDE = 12
 """Column from which on charts stand beside tables and notes."""
+
+LETTERS = {"size": 11}
+"""Font of charts, which is that of cells when the page is printed."""
 
 TABLE = 5
 """Row, from 0, of the headings of the first table; above it stand title, hint, variant and η."""

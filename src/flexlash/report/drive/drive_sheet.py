@@ -9,12 +9,12 @@ from flexlash.analysis.drive_budget import WINDUP, budget_of
 from flexlash.analysis.outcome import Outcome
 from flexlash.report.drive.catalogue_block import write_catalogue
 from flexlash.report.drive.combinations import write_combinations
-from flexlash.report.drive.drive_page import BESIDE, COLUMNS, SHEET, DrivePage
+from flexlash.report.drive.drive_page import BESIDE, COLUMNS, LETTERS, SHEET, DrivePage
 from flexlash.report.drive.sources_table import Chain, write_sources
 from flexlash.report.drive.stored_drives import drive_ratio, stored_drives
 from flexlash.report.extent import extent_of
 from flexlash.report.formula.stored import Stored
-from flexlash.report.layout.paper import print_one_page
+from flexlash.report.layout.paper import Listed, print_one_page
 from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book, literal
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.drive_sentences import drives_over_limit
@@ -36,7 +36,7 @@ DRIVE_NOTES = (
 _PINNED = 3
 """Rows that stay in sight."""
 
-_NAME = 30
+_NAME = 22
 _COLOURS = ("blue", "orange", "green", "sky", "red", "ink", "grey", "pale")
 _ALL = (
     ("system_mean_arcmin", "Average [arcmin]"),
@@ -48,7 +48,7 @@ _ALL = (
     ("system_p99_865_standard_error_arcmin", "Its standard error"),
     ("system_limit_arcmin", "System limit [arcmin]"),
 )
-_CHART, _CHART_ROWS = (475, 330), 13
+_CHART, _CHART_ROWS = (460, 330), 13
 """Size of a chart [px], and the rows that it takes beside a table with high headings."""
 
 
@@ -72,10 +72,11 @@ def write_drive(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> Stored 
     )
     shares = _contributions(book, chain, [WINDUP, *(source.name for source in sources)])
     book.insert(sheet, top, BESIDE, shares, size=_CHART, text=text)
-    after = write_catalogue(page, max(below, top + _CHART_ROWS) + 1, drive_ratio(sources))
+    end = max(below, top + _CHART_ROWS)
+    after = write_catalogue(page, end + 1, drive_ratio(sources))
     last = _write_all(page, after + 1, drawn, extent_of(outcome).note)
     sheet.freeze_panes(_PINNED, 1)
-    print_one_page(sheet, [width for _, width in COLUMNS], last)
+    print_one_page(sheet, [width for _, width in COLUMNS], last, ends=[end, after], listed=Listed(noun="parts"))
     return page.stored
 
 
@@ -91,8 +92,9 @@ def _contributions(book: Book, chain: Chain, names: Sequence[str]) -> Any:
             "border": OUTLINE,
             "gap": 50,
         })  # fmt: skip
-    chart.set_x_axis({"num_format": "0%", "major_gridlines": GRID})
-    chart.set_y_axis({"reverse": True})
+    chart.set_x_axis({"num_format": "0%", "major_gridlines": GRID, "num_font": LETTERS})
+    chart.set_y_axis({"reverse": True, "num_font": LETTERS})
+    chart.set_legend({"position": "bottom", "font": LETTERS})
     return chart
 
 

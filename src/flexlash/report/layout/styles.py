@@ -99,7 +99,6 @@ _FORMATS: dict[str, dict[str, Any]] = {
         "bg_color": PALETTE["pale"],
     },
     "key": {
-        "font_size": 8,
         "text_wrap": True,
         "font_color": "#595959",
         "italic": True,
@@ -107,6 +106,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
         "border_color": "#8EA9C1",
     },
     "link": {"font_color": PALETTE["blue"], "underline": 1},
+    "wrap link": {"font_color": PALETTE["blue"], "underline": 1, "text_wrap": True},
     "indented link": {"font_color": PALETTE["blue"], "underline": 1, "indent": 1},
     "figure": {"align": "right"},
     "input": {"num_format": "@", "bg_color": "#FFF5D6", "border": 1, "border_color": PALETTE["orange"], "bold": True},
@@ -166,7 +166,7 @@ def percent_of(error: float | None) -> str:
     return decimals if decimals == "share" else f"{decimals}%"
 
 
-_UNLINKED = {"link": "text", "indented link": "indented", "topic link": "topic"}
+_UNLINKED = {"link": "text", "wrap link": "wrap", "indented link": "indented", "topic link": "topic"}
 """What a text looks like that leads nowhere, by what it looks like where it does."""
 
 

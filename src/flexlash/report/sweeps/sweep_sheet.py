@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from xlsxwriter.utility import xl_col_to_name
+
 from flexlash.analysis.outcome import Outcome
 from flexlash.decisions.sweep import Study
 from flexlash.report.formula.stored import Stored
-from flexlash.report.layout.paper import print_one_page
+from flexlash.report.layout.paper import Listed, print_one_page
 from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of, merged_width
 from flexlash.report.sweeps.point_table import LAST_COLUMN, SHARE, STRESS, VALUE_WIDTH, WIDTH, write_points
@@ -61,7 +63,15 @@ def write_sweep(book: Book, outcome: Outcome, studies: Sequence[Study], stored: 
     for number, study in enumerate(studies[:MOST_STUDIES]):
         breaks.append(row)
         row = blocks.write(row, study, number) + 2
-    print_one_page(sheet, [VALUE_WIDTH, *[WIDTH] * LAST_COLUMN], row - 2, ends=[one - 2 for one in breaks[1:]])
+    letters = [xl_col_to_name(column) for column in range(LAST_COLUMN + 1, _columns(studies[:MOST_STUDIES]))]
+    widths = [VALUE_WIDTH, *[WIDTH] * (LAST_COLUMN + len(letters))]
+    listed = Listed(noun="studies", columns=[*[""] * (LAST_COLUMN + 1), *letters])
+    print_one_page(sheet, widths, row - 2, ends=[one - 2 for one in breaks[1:]], listed=listed)
+
+
+def _columns(studies: Sequence[Study]) -> int:
+    """Return how many columns the widest table over two dimensions has, with that of the limit."""
+    return max(study.results[study.second.key].n_unique() + 2 if study.second else 0 for study in studies)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,7 +14,7 @@ from xlsxwriter.utility import xl_rowcol_to_cell
 from flexlash.report.formula.functions import CONCATENATE, COUNTA, FIXED, IF, MAX, MIN, OR, PI, match_exactly
 from flexlash.report.formula.live import Live, Range, fill, put
 from flexlash.report.formula.stored import Stored
-from flexlash.report.layout.paper import print_one_page
+from flexlash.report.layout.paper import Listed, print_one_page
 from flexlash.report.layout.styles import PALETTE, Book
 from flexlash.report.trace.trace_inputs import write_inputs
 from flexlash.report.trace.trace_mechanics import write_integrals, write_shape, write_sums, write_windups
@@ -76,7 +76,7 @@ def write_trace(book: Book, sheet: Any, inputs: Stored, total: int, picked: int 
     sheet.freeze_panes(HEADER + 1, 0)
     sheet.repeat_rows(HEADER)
     ends = [row - 2 for row in page.sections[1:]]
-    print_one_page(sheet, WIDTHS, page.row, upright=True, ends=ends)
+    print_one_page(sheet, WIDTHS, page.row, upright=True, ends=ends, listed=Listed(noun="sections"))
     return page.lines
 
 
