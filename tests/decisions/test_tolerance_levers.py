@@ -149,3 +149,62 @@ def test_what_is_drawn_narrower_than_a_step_is_told(table, sound, tolerances):
     lever = _levers(outcome, target=outcome.results["probability_over_limit"][0] * 0.99995)["B3-160", "wall_thickness"]
     assert lever.direction == "meet"
     assert "finer than the drawing step of 0.001 mm" in lever.reason
+
+
+HELPS_THEN_HURTS = {
+    "scatter that takes that of the radius back": ((-0.06, 0.06, "normal"), 3.706, True),
+    "mean on the good side": ((-0.06, 0.06, "normal", "", 0.05), 3.714, False),
+}
+"""By why: the wall's deviations, the limit, whether wall and radius are tied. Without scatter the wall misses it."""
+
+
+@pytest.mark.parametrize("why", HELPS_THEN_HURTS)
+def test_a_tolerance_that_first_helps_and_then_hurts(why, table, sound, tolerances, tmp_path):
+    """A wall that misses its limit as wide as it is, and without scatter, meets it with some of it: that is found."""
+    wall, limit, tied = HELPS_THEN_HURTS[why]
+    deviations = {"wall_thickness": wall, "mean_radius": (-0.6 + 0.1 * tied, 0.6 - 0.1 * tied)}
+    ties = tmp_path / "ties.csv"
+    ties.write_text(
+        "tolerance_class,dimension_1,dimension_2,correlation,reason\nstandard,wall_thickness,mean_radius,-0.95,grinding\n"
+    )
+    rows, options = table([{**sound, "backlash_limit_arcmin": limit}]), {"correlations": ties} if tied else {}
+    lever = _levers(flexlash.run(rows, tolerances=tolerances(deviations), **options))["B3-160", "wall_thickness"]
+    assert lever.reason == ""
+    assert lever.direction == "meet"
+    assert 0 < lever.drawing_value <= lever.to_value < 0.06
+
+    def over(half):
+        changed = _changed(deviations | {"wall_thickness": (*wall, *[""] * 4)[:6]}, lever, half)
+        return flexlash.run(rows, tolerances=tolerances(changed), **options).results["probability_over_limit"][0]
+
+    assert over(lever.drawing_value) == pytest.approx(lever.over, rel=1e-6)
+    assert over(lever.to_value) == pytest.approx(0.00135, rel=1e-6)
+    assert min(over(0.06), over(0.0001)) > 0.00135
+
+
+def test_a_nominal_over_the_limit_is_no_reason_where_the_middle_is_within(table, sound, tolerances):
+    """Limits to one side: their middle is within, so that the reason is what the others leave over the limit."""
+    deviations = {"wall_thickness": (0.0, 0.06), "mean_radius": (-0.5, 0.5), "youngs_modulus": (-4.22, 4.22)}
+    rows = table([{**sound, "backlash_limit_arcmin": 3.68}])
+    levers = _levers(flexlash.run(rows, tolerances=tolerances(deviations)))
+    reasons = [lever.reason for lever in levers.values()]
+    assert len(reasons) == 3
+    assert all("even without scatter" in reason and "nominal" not in reason for reason in reasons)
+    assert reasons[-1].startswith("all tolerances together cannot: even without scatter of any of them ")
+
+
+def test_one_mean_on_the_good_side_helps_when_that_on_the_bad_side_goes(table, sound, tolerances):
+    """Half of the units are over the limit as it is and without any scatter; without that of the radius none are."""
+    deviations = {
+        "wall_thickness": (-0.06, 0.06, "normal", 10, 0.05),
+        "mean_radius": (-0.9, 0.9, "normal", 10, -1.3),
+        "youngs_modulus": (-0.02, 0.02),
+    }
+    rows = table([{**sound, "backlash_limit_arcmin": 3.66}])
+    outcome = flexlash.run(rows, tolerances=tolerances(deviations))
+    assert outcome.results["probability_over_limit"][0] > 0.5
+    levers = _levers(outcome)
+    radius, together = levers["B3-160", "mean_radius"], levers["B3-160", "all"]
+    assert radius.reason == ""
+    assert radius.over <= 0.00135
+    assert together.reason.endswith("tolerances together cannot: the nominal is over the limit")

@@ -79,3 +79,19 @@ def test_what_no_width_mends_is_told():
     """Where the narrowest misses the target there is no factor, but what it leaves over the limit."""
     root, asked = _found(narrowed(ALLOWED, 0.4), lambda factor: 0.2 + 0.2 * factor)
     assert (root.factor, root.over, asked) == (None, 0.2, 1)
+
+
+def test_a_width_between_two_that_miss_the_target_is_found():
+    """Where the narrowest misses it, too, the best is looked for about a likely one, however far that is off."""
+
+    def over(factor):
+        return float(ndtr(-2.5 - 0.7 * (1 - ((factor - 0.4) / 0.3) ** 2)))
+
+    true = 0.4 + 0.3 * math.sqrt(1 - (-ndtri(ALLOWED) - 2.5) / 0.7)
+    for likely in (0.4, 0.3, 0.55, 0.9):
+        root, _ = _found(narrowed(ALLOWED, over(1.0), likely), over)
+        assert root.factor == pytest.approx(true, rel=1e-6), likely
+    root, asked = _found(narrowed(ALLOWED / 1e3, over(1.0), 0.5), over)
+    assert (root.factor, asked) == (None, 14)
+    assert root.best == pytest.approx(0.4, abs=0.01)
+    assert root.over == over(root.best)

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple, TypeAlias
 
+import numpy as np
 from scipy.special import ndtri
 
 from flexlash.decisions.changed_rows import limits_as_submitted, over_limit, toleranced
@@ -17,9 +20,12 @@ from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.units import as_entered
 from flexlash.schema.variant import Limits
 from flexlash.tolerance.dimension_limits import distribution_of
-from flexlash.tolerance.row_batches import RowBatch, TolerancedRow, batches_alike
+from flexlash.tolerance.row_batches import FirstOrder, RowBatch, TolerancedRow, batches_alike
 
 __all__ = ["ALL", "FoundWidth", "Width", "found_widths"]
+
+_Drawn: TypeAlias = tuple[float, float]
+"""Half a width as drawn, and the share over the limit there."""
 
 ALL = "all"
 """What all tolerances of a variant are called where they change by one factor."""
@@ -27,8 +33,27 @@ ALL = "all"
 _UPPER = 0.975
 """The quantile by which the scatter of a variant is told for a first guess."""
 
+_NO_VARIANCE = 1e-12
+"""Part of its own variance that is added to what a width leaves, lest it be none."""
+
+_MORE_STEPS = 3
+"""Steps of the drawing by which a width may be finer than the first one on the safe side."""
+
 _HALF = 0.5
 """Share of units over the limit from which no narrower tolerance can help, if that of no tolerance is as great."""
+
+
+class Parts(NamedTuple):
+    """The variance of the backlash [rad²] that some tolerances have, and what all the others have, to first order.
+
+    `shared` is what both have by correlation, `shift` how far the mean shifts of their processes raise the backlash
+    [rad]; of tolerances k times as wide the variance is k² own + k shared + others, the shift k times as great.
+    """
+
+    own: float
+    shared: float
+    others: float
+    shift: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +61,7 @@ class Width:
     """Tolerances of a variant that change together: one alone by its name, or all.
 
     `half` is half the width and `step` the drawing's, in the unit of the dimension's column; of all the half is 1, a
-    factor. `variance` is what they have of the variance of the backlash to first order [rad²].
+    factor. `parts` say how the backlash scatters with them to first order.
     """
 
     present: Present
@@ -45,7 +70,7 @@ class Width:
     dimensions: tuple[str, ...]
     half: float
     step: float
-    variance: float
+    parts: Parts
 
     def at(self, factor: float) -> dict[str, Limits]:
         """Return the limits of the variant with these widths times a factor."""
@@ -62,9 +87,23 @@ class Width:
         most, by_shape = greatest_factor(self.present.variant, self.limits, self.dimensions)
         return self.drawn(most) / self.half, by_shape
 
-    def drawn(self, factor: float) -> float:
-        """Return half the width times a factor, rounded down to whole steps of the drawing."""
-        return on_drawing(self.half * factor, self.step, upwards=False)
+    def drawn(self, factor: float, less: int = 0) -> float:
+        """Return half the width times a factor, rounded down to whole steps of the drawing, so many steps less."""
+        return on_drawing(self.half * factor - less * self.step, self.step, upwards=False)
+
+    @cached_property
+    def likely_best(self) -> float:
+        """How many times as wide they leave the least over the limit, were the backlash normal: 0 where no width helps.
+
+        Equation: the k up to 3 with the greatest (limit − median + shift (1 − k))/σ, σ² = own k² + shared k + others
+        """
+        own, shared, others, shift = self.parts
+        if shared >= 0 and shift >= 0:
+            return 0.0
+        factor = np.linspace(0.0, 3.0, 97)
+        sd = np.sqrt(np.maximum(own * factor**2 + shared * factor + others, 0.0) + _NO_VARIANCE * own)
+        room = self.present.limit - self.present.quantiles[0.5] + shift * (1 - factor)
+        return float(factor[np.argmax(room / sd)])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,68 +111,76 @@ class FoundWidth:
     """A width with its root, None where none was looked for.
 
     `drawn` is half the width in whole steps of the drawing and `over` the share over the limit there, None where there
-    is no such width. `over_narrow` is the share over the limit that the narrowest leaves, where none helps: without
-    this tolerance, or without any where `alone` is False.
+    is no such width. `over_best` is the least share over the limit that was found, where none helps: with the width
+    times `best`, or without any tolerance where `alone` is False.
     """
 
     width: Width
     root: Root | None = None
     drawn: float | None = None
     over: float | None = None
-    over_narrow: float | None = None
+    over_best: float | None = None
+    best: float = 0.0
     alone: bool = True
 
 
 def found_widths(presents: Sequence[Present], terms: Terms) -> list[FoundWidth]:
     """Return the widths of the tolerances of variants that scatter, in the order of these."""
-    every = [_widths_of(present, limits, slopes, terms) for present, limits, slopes in _sloped(presents, terms)]
+    every = [_widths_of(present, limits, order, terms) for present, limits, order in _sloped(presents, terms)]
     narrow = _over_without_any(every, terms)
     widths = [width for some in every for width in some]
     looked = [index for index, width in enumerate(widths) if id(width.present) not in narrow and not width.is_measured]
     roots = dict(zip(looked, _roots([widths[index] for index in looked], terms), strict=True))
-    drawn = {index: half for index, root in roots.items() if (half := _drawn(widths[index], root))}
-    known = {index: roots[index].over for index in drawn if roots[index].bounded and terms.plan.method == "line"}
-    asked = [index for index in drawn if index not in known]
-    overs = _over([(widths[index], drawn[index] / widths[index].half) for index in asked], terms, by_lines=False)
-    over = known | dict(zip(asked, overs, strict=True))
+    drawn = _drawn(widths, roots, terms)
     return [
-        _found(width, roots.get(index), drawn.get(index), over.get(index), narrow.get(id(width.present)))
+        _found(width, roots.get(index), drawn.get(index), narrow.get(id(width.present)))
         for index, width in enumerate(widths)
     ]
 
 
-def _found(
-    width: Width, root: Root | None, drawn: float | None, over: float | None, narrow: float | None
-) -> FoundWidth:
+def _found(width: Width, root: Root | None, drawn: _Drawn | None, narrow: float | None) -> FoundWidth:
     if narrow is not None:
-        return FoundWidth(width=width, over_narrow=narrow, alone=width.name == ALL)
-    if root is None or root.factor is None:
-        return FoundWidth(width=width, root=root, over_narrow=None if root is None else root.over)
-    return FoundWidth(width=width, root=root, drawn=drawn, over=over)
+        return FoundWidth(width=width, over_best=narrow, alone=width.name == ALL)
+    if root is not None and root.factor is None:
+        return FoundWidth(width=width, root=root, over_best=root.over, best=root.best)
+    half, over = drawn or (None, None)
+    return FoundWidth(width=width, root=root, drawn=half, over=over)
 
 
-def _sloped(
-    presents: Sequence[Present], terms: Terms
-) -> Iterator[tuple[Present, Mapping[str, Limits], Mapping[str, float]]]:
-    """Yield each variant with its limits and the slopes of its backlash at the middle of these."""
+def _sloped(presents: Sequence[Present], terms: Terms) -> Iterator[tuple[Present, Mapping[str, Limits], FirstOrder]]:
+    """Yield each variant with its limits and what its backlash does to first order at the middle of these."""
     rows = [toleranced(one.variant, limits_as_submitted(one.variant, terms)[0], one.limit, terms) for one in presents]
-    slopes: dict[int, Mapping[str, float]] = {}
+    orders: dict[int, FirstOrder] = {}
     for batch in batches_alike(rows):
-        orders = RowBatch([rows[index] for index in batch]).first_order()
-        slopes |= {index: order.slopes for index, order in zip(batch, orders, strict=True)}
-    return ((one, row.limits, slopes[index]) for index, (one, row) in enumerate(zip(presents, rows, strict=True)))
+        orders |= zip(batch, RowBatch([rows[index] for index in batch]).first_order(), strict=True)
+    return ((one, row.limits, orders[index]) for index, (one, row) in enumerate(zip(presents, rows, strict=True)))
 
 
-def _widths_of(
-    present: Present, limits: Mapping[str, Limits], slopes: Mapping[str, float], terms: Terms
-) -> list[Width]:
+def _parts(limits: Mapping[str, Limits], order: FirstOrder, names: Sequence[str]) -> Parts:
+    """Return what dimensions have of the variance of the backlash, and what the others have."""
+    deviations = {
+        name: order.slopes[name] * distribution_of(one).standard_deviation
+        for name, one in limits.items()
+        if name in order.slopes
+    }
+    sums = [0.0, 0.0, 0.0]
+    for name, deviation in deviations.items():
+        sums[0 if name in names else 2] += deviation * deviation
+    for first, second, tie in order.ties:
+        moved = (first in names) + (second in names)
+        sums[2 - moved] += 2 * tie * deviations[first] * deviations[second]
+    others, shared, own = sums[2], sums[1], sums[0]
+    shift = math.fsum(order.slopes[name] * limits[name].mean_shift for name in names)
+    return Parts(own=own, shared=shared, others=others, shift=shift)
+
+
+def _widths_of(present: Present, limits: Mapping[str, Limits], order: FirstOrder, terms: Terms) -> list[Width]:
     """Return what may change of a variant: each tolerance alone, then all of them together."""
 
     def width(name: str, dimensions: tuple[str, ...], half: float, step: float) -> Width:
-        parts = (slopes[one] * distribution_of(limits[one]).standard_deviation for one in dimensions)
-        variance = math.fsum(part * part for part in parts)
+        parts = _parts(limits, order, dimensions)
         return Width(
-            present=present, limits=limits, name=name, dimensions=dimensions, half=half, step=step, variance=variance
+            present=present, limits=limits, name=name, dimensions=dimensions, half=half, step=step, parts=parts
         )
 
     free = [name for name in shop_tolerances(limits) if _may_change(name, terms)]
@@ -155,14 +202,15 @@ def _may_change(name: str, terms: Terms) -> bool:
 def _over_without_any(every: Sequence[Sequence[Width]], terms: Terms) -> dict[int, float]:
     """Return the shares over the limit of variants that no tolerance can help, without any, by the id of the variant.
 
-    Of these so great a share is over the limit with all of the tolerances and with none that it is with some of them.
+    Of these so great a share is over the limit with all of the tolerances and with none that it is with some of them,
+    unless means lie off the middle: one to the good side may stay while another goes.
     """
     asked = [
         widest
         for widths in every
         if widths and widths[0].present.over >= _HALF
         for widest in [max(widths, key=lambda width: len(width.dimensions))]
-        if not widest.is_measured
+        if not (widest.is_measured or any(one.mean_shift for one in widest.limits.values()))
     ]
     overs = _over([(width, 0.0) for width in asked], terms)
     return {id(width.present): over for width, over in zip(asked, overs, strict=True) if over >= _HALF}
@@ -198,7 +246,7 @@ def _search(width: Width, target: float) -> Search:
     """Return the search for the factor of a width, outwards where the variant keeps its target, else inwards."""
     over = width.present.over
     if width.present.direction(target) == "meet":
-        return narrowed(target, over)
+        return narrowed(target, over, best if (best := width.likely_best) < 1 else 0.0)
     return widened(target, over, _guess(width, target), width.farthest[0])
 
 
@@ -212,12 +260,33 @@ def _guess(width: Width, target: float) -> float:
     quantiles = present.quantiles
     sd = (quantiles[_UPPER] - quantiles[0.5]) / -float(ndtri(1 - _UPPER))
     spare = ((present.limit - quantiles[0.5]) / score) ** 2 - sd**2
-    return math.sqrt(1 + max(spare, 0.0) / width.variance) if width.variance and score > 0 else math.inf
+    return math.sqrt(1 + max(spare, 0.0) / width.parts.own) if width.parts.own and score > 0 else math.inf
 
 
-def _drawn(width: Width, root: Root) -> float | None:
-    """Return half the width in whole steps of the drawing, on the safe side; None where that leaves no change."""
+def _drawn(widths: Sequence[Width], roots: Mapping[int, Root], terms: Terms) -> dict[int, _Drawn]:
+    """Return half the width in whole steps of the drawing, on the safe side, and the share over the limit there.
+
+    Those that leave no change, or do not keep the target after all, have none.
+    """
+    found: dict[int, _Drawn] = {}
+    steps = {index: half for index, root in roots.items() if (half := _rounded(widths[index], root))}
+    for index in [index for index in steps if roots[index].bounded and terms.plan.method == "line"]:
+        found[index] = steps.pop(index), roots[index].over
+    for _ in range(1 + _MORE_STEPS):
+        asked = [(widths[index], half / widths[index].half) for index, half in steps.items()]
+        overs = dict(zip(steps, _over(asked, terms, by_lines=False), strict=True))
+        found |= {index: (steps[index], over) for index, over in overs.items() if over <= terms.target}
+        missing = [index for index in steps if index not in found]
+        steps = {index: half for index in missing if (half := _rounded(widths[index], roots[index], steps[index]))}
+    return found
+
+
+def _rounded(width: Width, root: Root, above: float | None = None) -> float | None:
+    """Return half the width in whole steps of the drawing, on the safe side; None where that leaves no change.
+
+    It is the next one below `above`, where that is given.
+    """
     if root.factor is None:
         return None
-    half = width.drawn(root.factor)
+    half = width.drawn(root.factor) if above is None else width.drawn(above / width.half, less=1)
     return half if half > (width.half if root.factor >= 1 else 0.0) else None

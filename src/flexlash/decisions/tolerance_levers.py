@@ -12,9 +12,12 @@ from flexlash.decisions.lever import Lever, Present, Terms
 from flexlash.decisions.tolerance_widths import grades_finer
 from flexlash.decisions.why_not import share_of_units
 from flexlash.schema.columns import DIMENSIONS
+from flexlash.schema.findings import spelled_out
 from flexlash.schema.variant import Variant
 
 __all__ = ["tolerance_levers"]
+
+_DIGITS, _HALF = 3, 0.5
 
 FACTOR = "×"
 """The unit of the factor by which all tolerances change."""
@@ -82,27 +85,44 @@ def _reason(found: FoundWidth, *, meets: bool) -> str:
     width = found.width
     if width.is_measured:
         return "its parts were measured: other limits do not change how they scatter"
-    if found.over_narrow is not None:
-        return _helpless(found, found.over_narrow)
-    if found.drawn is not None:
-        return ""
+    if found.over_best is not None:
+        return _helpless(found, found.over_best)
+    return "" if found.drawn is not None else _not_drawn(found, meets=meets)
+
+
+def _not_drawn(found: FoundWidth, *, meets: bool) -> str:
+    """Return why no width on the drawing does it, though one would."""
+    width, root = found.width, found.root
     step = f"{width.step:g}{'' if width.name == ALL else DIMENSIONS[width.name].unit_behind}"
+    if meets and root is not None and (root.factor or 0.0) * width.half >= width.step:
+        return f"{_half(width, root.factor)} would do, but beside it no multiple of the drawing step {step} does"
     if meets:
         return f"it would have to be finer than the drawing step of {step}"
-    if found.root is not None and found.root.bounded:
+    if root is not None and root.bounded:
         return "the shape allows no more" if width.farthest[1] else "it is as wide as is usual, ± 10 % of the value"
     return f"not by a drawing step of {step}"
 
 
+def _half(width: Width, factor: float | None) -> str:
+    """Return half the width times a factor, of all the factor."""
+    half = spelled_out((factor or 0.0) * width.half, _DIGITS)
+    return f"× {half}" if width.name == ALL else f"± {half}{DIMENSIONS[width.name].unit_behind}"
+
+
 def _helpless(found: FoundWidth, over: float) -> str:
-    """Return why no width helps, with what the narrowest leaves over the limit."""
-    present = found.width.present
-    who = "no tolerance can, nor all together" if found.width.name == ALL else "no tolerance alone can"
-    nominal = float(BACKLASH_OF[present.variant.flexspline_type](present.variant.dimensions))
-    if nominal > present.limit:
+    """Return why no width helps, with what the best that was found leaves over the limit."""
+    width, limit = found.width, found.width.present.limit
+    narrower = "narrower " if width.likely_best > 1 else ""
+    if width.name == ALL:
+        who = f"{'narrower' if narrower else 'all'} tolerances together cannot"
+    else:
+        who = f"no {narrower}tolerance alone can"
+    nominal = float(BACKLASH_OF[width.present.variant.flexspline_type](width.present.variant.dimensions))
+    if over >= _HALF and nominal > limit:
         return f"{who}: the nominal is over the limit"
-    without = "it" if found.alone and found.width.name != ALL else "any of them"
     share = share_of_units(over)
-    return (
-        f"{who}: even without scatter of {without} {share} {'is' if share.endswith('unit') else 'are'} over the limit"
-    )
+    are = "is" if share.endswith("unit") else "are"
+    if found.best:
+        return f"{who}: at {_half(width, found.best)}, the best that was tried, {share} {are} over the limit"
+    without = "it" if found.alone and width.name != ALL else "any of them"
+    return f"{who}: even without scatter of {without} {share} {are} over the limit"

@@ -32,6 +32,9 @@ _HALF = 0.5
 _MOST, _HALVED = 80, 5
 """Most questions of a search, of which every fifth halves what is left."""
 
+_LOOKS = 6
+"""Times that the halves beside the best factor are halved: to less than a hundredth of the width."""
+
 _BEYOND = 1.05
 """How much further than the guess a first try goes that should end on the other side."""
 
@@ -41,12 +44,13 @@ class Root:
     """A factor of widths and the share over the limit there.
 
     `bounded` says that a wider tolerance was not to be tried: the target is still kept. Without a `factor` none keeps
-    it, and `over` is what the narrowest leaves.
+    it, and `over` is the least that was found, `best` the factor there: 0 where the narrowest is best.
     """
 
     factor: float | None
     over: float
     bounded: bool = False
+    best: float = 0.0
 
 
 def widened(allowed: float, over: float, guess: float, farthest: float) -> Search:
@@ -66,12 +70,37 @@ def widened(allowed: float, over: float, guess: float, farthest: float) -> Searc
         kept, at = (at, found), min(2 * at, farthest)
 
 
-def narrowed(allowed: float, over: float) -> Search:
-    """Return how many times as wide tolerances may be, below 1, that miss the target as they are."""
-    least = yield 0.0
-    if least > allowed:
-        return Root(factor=None, over=least)
-    return (yield from _between(allowed, (0.0, least), (1.0, over)))
+def narrowed(allowed: float, over: float, likely: float = 0.0) -> Search:
+    """Return how many times as wide tolerances may be, below 1, that miss the target as they are.
+
+    Arguments: shares over the limit, `allowed` and `over` as it is; the factor that is `likely` the best. Where that is
+        not 0, the narrowest need not be: scatter that takes that of others back, or a mean on the good side, goes with
+        the width. The best is then looked for about the likely one.
+    """
+    missed = (1.0, over)
+    best = (0.0, (yield 0.0))
+    if best[1] > allowed and 0 < likely < 1:
+        best = yield from _lowest(allowed, best, likely, missed)
+    if best[1] > allowed:
+        return Root(factor=None, over=best[1], best=best[0])
+    return (yield from _between(allowed, best, missed))
+
+
+def _lowest(allowed: float, narrowest: _Point, likely: float, missed: _Point) -> Generator[float, float, _Point]:
+    """Return the factor with the least share over the limit found about a likely one, or the first that will do.
+
+    Both halves beside the best one so far are halved in turn.
+    """
+    low, best, high = narrowest, (likely, (yield likely)), missed
+    for _ in range(_LOOKS):
+        if best[1] <= allowed:
+            break
+        below = ((low[0] + best[0]) / 2, (yield (low[0] + best[0]) / 2))
+        above = ((best[0] + high[0]) / 2, (yield (best[0] + high[0]) / 2))
+        order = [low, below, best, above, high]
+        place = min(range(1, 4), key=lambda index: order[index][1])
+        low, best, high = order[place - 1 : place + 2]
+    return min(best, narrowest, key=lambda point: point[1])
 
 
 def _between(allowed: float, kept: _Point, missed: _Point) -> Search:
