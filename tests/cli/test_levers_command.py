@@ -112,6 +112,9 @@ def test_exit_codes_are_those_of_run(table, sound, tmp_path):
     assert "E207" not in done.stdout
     assert _call(table([{**sound, "torque_Nm": -1}], "none.csv"), "-o", tmp_path / "none.json").exit_code == 4
     assert not (tmp_path / "none.json").exists()
+    done = _call(tmp_path / "none.csv")
+    assert done.exit_code == 4
+    assert done.stdout.splitlines()[-1] == "There is no change to tell: no row could be computed."
     assert _call(tmp_path / "missing.csv").exit_code == 5
     done = _call(some, "-o", tmp_path / "report.xlsx")
     assert done.exit_code == 2

@@ -128,21 +128,26 @@ def test_the_sheet_says_what_is_swept(submission, tmp_path):
     assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "b.xlsx").read_bytes()
     complaint = _complaint(submission)
     assert (
-        complaint == "Error: Nothing is swept: its sheet Sweep has no row; say what to sweep: --vary KEY=FROM:TO:STEP."
+        complaint == "Error: Nothing is swept: its sheet Sweep has no row; say what to sweep: --vary NAME=FROM:TO:STEP."
     )
 
 
 COMPLAINTS = {
     ("cylinder_lenth=1:2:1",): "there is no dimension cylinder_lenth; did you mean cylinder_length_mm?",
     ("backlash_limit=1:2:1",): "backlash_limit_arcmin is not a dimension of the part, so it cannot be swept.",
-    ("torque=1:2",): "write KEY=FROM:TO:STEP, such as cylinder_length_mm=100:200:20, or KEY=V1,V2,…",
-    ("torque",): "write KEY=FROM:TO:STEP, such as cylinder_length_mm=100:200:20, or KEY=V1,V2,…",
+    ("torque=1:2",): "write NAME=FROM:TO:STEP, such as cylinder_length_mm=100:200:20, or NAME=V1,V2,…",
+    ("torque",): "write NAME=FROM:TO:STEP, such as cylinder_length_mm=100:200:20, or NAME=V1,V2,…",
     ("torque=1:9:0",): "the step must be greater than 0, not 0; to count down write the greater value first.",
     ("torque=1:2:5",): "the step 5 is greater than the range of 1.",
     ("torque=1,5:2:1",): '"1,5" is not a number; decimals have a point.',
     ("torque=1,nan",): '"nan" is not a number.',
     ("torque=0:1:0.0001",): "that is 10,001 values; at most 2,000 are computed at once. Take a larger step.",
     ("torque=1,2", "torque_Nm=3"): "torque_Nm is swept twice; name two dimensions.",
+    ("Torque T [N·m]=1,2", "torque_Nm=3"): "torque_Nm is swept twice; name two dimensions.",
+    ("Wall thicknes [mm]=1,2",): "there is no dimension Wall thicknes [mm]; did you mean wall_thickness_mm?",
+    ("Wanddicke=1,2",): "there is no dimension Wanddicke; did you mean wall_thickness_mm?",
+    ("Wall thickness Δ [cm]=1,2",): "the values of wall_thickness_mm are in mm, not in cm.",
+    ("Backlash limit [arcmin]=1,2",): ("backlash_limit_arcmin is not a dimension of the part, so it cannot be swept."),
     ("torque=1", "cylinder_length=1", "wall_thickness=1"): "one or two dimensions can be swept together, not 3.",
 }
 
@@ -163,6 +168,10 @@ def test_what_no_variant_can_be_swept_over(submission):
     )
     assert _complaint(submission, "--variant", "B3-160 cylinder", "--vary", "disk_thickness=1,2").startswith(
         "Error: Nothing is swept: no value makes a part: B3-160 cylinder: "
+    )
+    assert _complaint(submission, "--variant", THIRD, "--vary", "Bore diameter=150,160").endswith(
+        f": {THIRD}: it is entered by its mean radius, to which a bore diameter would be a second one; sweep "
+        "mean_radius_mm, or enter the bore diameter instead."
     )
     assert _complaint(submission, "--vary", "torque=1:1000:1") == (
         "Error: Nothing is swept: that is 3,000 points of 3 variants; at most 2,000 are computed at once. Take larger "
@@ -216,6 +225,9 @@ def test_from_python(submission, tmp_path):
     assert outcome.outputs == ()
     assert study.results["cylinder_length_mm"].to_list() == [100.0, 120.5, 200.0]
     assert [round(one.value, 1) for one in study.crossings] == [168.6, 164.1, 161.9]
+    _, (same,) = flexlash.sweep(submission, vary={"Cylinder length l [mm]": [120.5, 100, 200, 100]}, variant=THIRD)
+    assert same.results.equals(study.results, null_equal=True)
+    assert same.first == study.first
     with pytest.raises(SweepError, match="did you mean torque_Nm"):
         flexlash.sweep(submission, vary={"torqe": [1.0]})
     with pytest.raises(SweepError, match="number"):
@@ -224,15 +236,17 @@ def test_from_python(submission, tmp_path):
 
 
 def test_every_dimension_can_be_named_with_and_without_its_unit():
-    """Each dimension of Variants is found under both names, and no requirement is."""
+    """Each dimension of Variants is found by key and header, each with and without unit, and no requirement is."""
     from flexlash.schema.swept_columns import swept_column
 
     for column in VARIANTS:
         if column.role == "dimension":
             assert swept_column(column.key) is swept_column(column.dimension) is column
+            assert swept_column(column.label) is swept_column(column.name) is swept_column(column.plain_name) is column
         else:
-            with pytest.raises(ValueError, match="cannot be swept"):
-                swept_column(column.key)
+            for name in (column.key, column.label):
+                with pytest.raises(ValueError, match="cannot be swept"):
+                    swept_column(name)
 
 
 @pytest.mark.slow

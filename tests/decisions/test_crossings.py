@@ -7,7 +7,7 @@ import math
 import pytest
 from scipy.optimize import brentq
 
-from flexlash.decisions.crossings import Bracket, crossings
+from flexlash.decisions.crossings import Bracket, Turn, crossings, past_turns
 
 FUNCTIONS = {
     "line": (lambda x: 3 * x - 4, 0.0, 9.0),
@@ -70,3 +70,40 @@ def test_few_evaluations_of_a_smooth_number():
     bracket = Bracket(whose="", low=40.0, high=50.0, at_low=ends[40.0], at_high=ends[50.0])
     assert crossings([bracket], evaluate, 1e-10) == [pytest.approx(45.84, rel=1e-6)]
     assert len(counted) <= 6
+
+
+TURNS = {
+    "dip": (lambda x: (x - 1.7) ** 2 - 0.01, (0.0, 2.0, 3.0), True),
+    "dip, given downwards": (lambda x: (x - 1.7) ** 2 - 0.01, (3.0, 2.0, 0.0), True),
+    "hill of another shape": (lambda x: -0.2 + math.exp(-(abs(x - 0.4) ** 1.5)) - 0.7, (-1.0, 0.05, 3.0), True),
+    "touches nothing": (lambda x: (x - 1.7) ** 2 + 0.01, (0.0, 2.0, 3.0), False),
+    "far off": (lambda x: 5 + (x - 1.7) ** 2, (0.0, 2.0, 3.0), False),
+    "level": (lambda _: 1.0, (0.0, 1.0, 2.0), False),
+}
+"""A function, three values that have one sign, whether it has another one between them."""
+
+
+def test_what_turns_past_0_between_its_points_is_bracketed_twice():
+    """Zeros before and after a turn are those of Brent; one that comes near to 0, or does not, has none."""
+    turns = [Turn(whose=name, values=at, numbers=tuple(map(of, at))) for name, (of, at, _) in TURNS.items()]
+
+    def evaluate(asked):
+        return [TURNS[name][0](value) for name, value in asked]
+
+    found = past_turns(turns, evaluate)
+    for name, (function, values, turned) in TURNS.items():
+        own = [one for one in found if one.whose == name]
+        assert len(own) == 2 * turned, name
+        assert own == past_turns([turn for turn in turns if turn.whose == name], evaluate)
+        for bracket, value in zip(own, crossings(own, evaluate, 1e-13), strict=True):
+            assert (function(bracket.low), function(bracket.high)) == (bracket.at_low, bracket.at_high)
+            low, high = sorted((bracket.low, bracket.high))
+            assert min(values) <= low < high <= max(values)
+            assert value == pytest.approx(brentq(function, low, high), abs=1e-8), name
+        assert sum(value is not None for value in crossings(own, evaluate, 1e-13)) == len(own)
+
+
+def test_a_turn_where_no_part_is_possible_is_left_alone():
+    """Where the number is missing between the values nothing is told."""
+    turn = Turn(whose="", values=(0.0, 2.0, 3.0), numbers=(4.0, 0.1, 3.0))
+    assert past_turns([turn], lambda asked: [None] * len(asked)) == []

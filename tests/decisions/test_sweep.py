@@ -7,8 +7,10 @@ import math
 import polars as pl
 import pytest
 import regenerate
+from scipy.optimize import brentq
 from swept import point_rows, sweep_row, swept
 
+from flexlash.decisions.allowed_spans import allowed_spans
 from flexlash.decisions.sweep import sweep_levels, sweep_table
 from flexlash.feedback.template.template_workbook import Filling, study, template_bytes
 from flexlash.pipeline import check, run
@@ -158,11 +160,43 @@ def test_no_crossing_and_no_limit(outcome, tmp_path):
     assert not none.crossings
 
 
-def test_several_crossings(outcome):
-    """A cup whose r_co is swept has more disk and, alone, a thinner cylinder's share: a limit may be crossed twice."""
-    (rising,) = swept(outcome, sweep_row(THIRD, ("cylinder_length_mm", [200.0, 100.0, 200.0])))
-    nominal = [(round(one.value, 1), one.falls) for one in rising.crossings if one.percent is None]
-    assert nominal == [(168.6, False), (168.6, False)]
+def test_a_limit_that_is_crossed_between_two_points_and_again(tmp_path):
+    """A short cup winds up least at r = 3 l t/Δ: between points that all miss the limit some radii meet it.
+
+    2U = T l/(π G r³ Δ) + T/(2π Δ G)(1/r_ci² − 1/r²) by itself says where; within 99.865 % of units, so does a run.
+    """
+    cup = {
+        "variant": "short", "flexspline_type": "cup", "material": "20Cr2Ni4", "torque_Nm": 300.0,
+        "cylinder_length_mm": 20.0, "mean_radius_mm": 70.0, "wall_thickness_mm": 1.0, "disk_inner_radius_mm": 30.0,
+        "tolerance_class": "exact", "backlash_limit_arcmin": 2.065,
+    }  # fmt: skip
+    wall = {"tolerance_class": "exact", "dimension": "wall_thickness", "lower_deviation": -0.002}
+    tolerances = [{**wall, "upper_deviation": 0.002, "deviation_unit": "mm"}]
+    outcome = check(_written(tmp_path, Filling(variants=[cup], tolerances=tolerances)))
+    rising, falling, both = swept(
+        outcome,
+        sweep_row("short", ("mean_radius_mm", (40, 100, 30))),
+        sweep_row("short", ("mean_radius_mm", (100, 40, 30))),
+        sweep_row("short", ("mean_radius_mm", (40, 100, 30)), ("wall_thickness_mm", (1.0, 1.01, 0.01))),
+    )
+
+    def backlash(radius):
+        shear, wall = 211e9 / 2.6, 1e-3
+        cylinder = 300 * 0.02 / (math.pi * shear * radius**3 * wall)
+        return (cylinder + 300 / (2 * math.pi * shear * wall) * (1 / 0.03**2 - 1 / radius**2)) / (math.pi / 10800)
+
+    expected = [1e3 * brentq(lambda radius: backlash(radius) - 2.065, *ends) for ends in ((0.04, 0.06), (0.06, 0.1))]
+    nominal = [(one.value, one.falls) for one in rising.crossings if one.percent is None]
+    assert [value for value, _ in nominal] == pytest.approx(expected, rel=1e-6)
+    assert [falls for _, falls in nominal] == [True, False]
+    assert [one.value for one in falling.crossings if one.percent is None] == pytest.approx(expected[::-1], rel=1e-6)
+    assert [one.percent for one in rising.crossings] == [None, None, 97.5, 97.5, 99.865, 99.865]
+    assert len([one for one in both.crossings if one.second == 1.01]) == len(rising.crossings)
+    (span,) = allowed_spans(rising, 99.865)
+    assert (span.low_crosses, span.high_crosses) == (True, True)
+    rows = [{**cup, "variant": f"{value}", "mean_radius_mm": value} for value in (span.low, span.high)]
+    again = run(_written(tmp_path, Filling(variants=rows, tolerances=tolerances), "again.xlsx"), jobs=1).results
+    assert again["p99_865_arcmin"].to_list() == pytest.approx([2.065] * 2, rel=2e-7)
 
 
 @pytest.mark.slow

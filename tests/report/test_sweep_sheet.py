@@ -164,10 +164,10 @@ def test_the_summary_says_it_and_leads_there(report):
 SENTENCES = {
     ("B3-160 case 1", LENGTHS): "Cylinder length may grow to 161.85 mm for 99.865 % of units within 3.8′.",
     (THIRD, ("cylinder_length_mm", (100, 120, 20))): (
-        "Every cylinder length from 100 to 120 mm keeps 99.865 % of units within 3.8′."
+        "Every computed cylinder length from 100 to 120 mm keeps 99.865 % of units within 3.8′."
     ),
     (THIRD, ("cylinder_length_mm", (180, 200, 20))): (
-        "No cylinder length from 180 to 200 mm keeps 99.865 % of units within 3.8′."
+        "No computed cylinder length from 180 to 200 mm keeps 99.865 % of units within 3.8′."
     ),
     (THIRD, ("disk_inner_radius_mm", (30, 90, 10))): (
         "Disk inner radius must be at least 45.836 mm for 99.865 % of units within 3.8′."

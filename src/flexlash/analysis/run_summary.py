@@ -175,7 +175,8 @@ def closing_lines(
     yield f"{name}: {words}."
     yield from details
     if ran and not counts["computed"]:
-        yield "No report was written: no row could be computed."
+        nothing = "There is no change to tell" if tells_levers else "No report was written"
+        yield f"{nothing}: no row could be computed."
     yield from (_written_line(written, path) for path in written.paths if not is_picture(path))
     yield from (f"Written: {words}" for words in picture_words(written.paths))
     quoted_name = f'"{name}"' if " " in name else name

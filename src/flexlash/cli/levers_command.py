@@ -49,7 +49,8 @@ def levers(submission: Path, output: Path | None, *, as_json: bool, quiet: bool,
         if as_json:
             attempt.further = {"levers": table.to_dicts()}
         elif output is None:
-            attempt.closing = ["", *_lines(attempt.outcome, table)]
+            lines = list(_lines(attempt.outcome, table))
+            attempt.closing = ["", *lines] if lines else []
     sys.exit(told.end())
 
 

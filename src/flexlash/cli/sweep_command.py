@@ -34,10 +34,10 @@ _SHOWN = 5
 @click.command()
 @SUBMISSION
 @click.option(
-    "--vary", multiple=True, metavar="KEY=FROM:TO:STEP",
+    "--vary", multiple=True, metavar="NAME=FROM:TO:STEP",
     help= (
-        "A dimension of Variants and its values, in the unit of its column; also KEY=V1,V2,… . Given twice: every "
-        "combination of values. Default: the sheet Sweep."
+        "A dimension of Variants, by key or header, and its values, in the unit of its column; also NAME=V1,V2,… . "
+        "Given twice: every combination of values. Default: the sheet Sweep."
     ),
 )  # fmt: skip
 @click.option("--variant", metavar="NAME", help="Sweep this variant alone. Default: every one that has the dimension.")

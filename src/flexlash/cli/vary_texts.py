@@ -1,4 +1,4 @@
-"""`--vary KEY=FROM:TO:STEP` and `--vary KEY=V1,V2,…` → the values that a dimension takes."""
+"""`--vary NAME=FROM:TO:STEP` and `--vary NAME=V1,V2,…` → the values that a dimension takes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexlash.schema.swept_values import MOST_POINTS, swept_count, swept_values
 __all__ = ["sentence", "varied"]
 
 _PARTS = 3
-_FORMS = "KEY=FROM:TO:STEP, such as cylinder_length_mm=100:200:20, or KEY=V1,V2,…"
+_FORMS = "NAME=FROM:TO:STEP, such as cylinder_length_mm=100:200:20, or NAME=V1,V2,…"
 
 
 def varied(texts: Sequence[str]) -> dict[str, tuple[float, ...]]:

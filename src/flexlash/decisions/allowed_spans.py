@@ -24,7 +24,6 @@ def allowed_spans(study: Study, percent: float | None, second: float | None = No
     """Return the spans of the first dimension in which a level of the backlash is within the limit, rising.
 
     `percent` is the level's share of units, None for the nominal backlash; `second` the value of the second dimension.
-    Between two computed points the backlash is taken to cross the limit once at most.
     """
     spans: list[AllowedSpan] = []
     last: tuple[float, bool] | None = None
@@ -33,19 +32,33 @@ def allowed_spans(study: Study, percent: float | None, second: float | None = No
             last = None
             continue
         within = margin <= 0
-        if last is None or within == last[1]:
-            if within and last is not None:
-                spans[-1] = replace(spans[-1], high=value)
-            elif within:
-                spans.append(AllowedSpan(low=value, high=value))
+        if last is None:
+            spans += [AllowedSpan(low=value, high=value)] if within else []
         else:
-            end = _crossing(study, percent, second, last[0], value)
-            if within:
-                spans.append(AllowedSpan(low=value if end is None else end, high=value, low_crosses=True))
-            else:
-                spans[-1] = replace(spans[-1], high=last[0] if end is None else end, high_crosses=True)
+            _go_on(spans, last, (value, within), _crossings(study, percent, second, last[0], value))
         last = (value, within)
     return spans
+
+
+def _go_on(spans: list[AllowedSpan], last: tuple[float, bool], now: tuple[float, bool], found: Sequence[float]) -> None:
+    """Go on from one point to the next, each a value and whether it is within, by the crossings between them."""
+    (before, was_within), (value, within) = last, now
+    if was_within != within:
+        end = found[0] if found else value if within else before
+        if within:
+            spans.append(AllowedSpan(low=end, high=value, low_crosses=True))
+        else:
+            spans[-1] = replace(spans[-1], high=end, high_crosses=True)
+        return
+    inner = [one for one in found if before < one < value]
+    turns = len(inner) > 1
+    if within and turns:
+        spans[-1] = replace(spans[-1], high=inner[0], high_crosses=True)
+        spans.append(AllowedSpan(low=inner[-1], high=value, low_crosses=True))
+    elif within:
+        spans[-1] = replace(spans[-1], high=value)
+    elif turns:
+        spans.append(AllowedSpan(low=inner[0], high=inner[-1], low_crosses=True, high_crosses=True))
 
 
 def computed_values(study: Study, second: float | None = None) -> list[float]:
@@ -68,13 +81,10 @@ def _line(study: Study, second: float | None) -> Sequence[tuple[float, dict[str,
     return sorted(rows.items())
 
 
-def _crossing(study: Study, percent: float | None, second: float | None, low: float, high: float) -> float | None:
-    """Return where a level crosses the limit between two neighbouring values."""
-    return next(
-        (
-            one.value
-            for one in study.crossings
-            if one.percent == percent and one.second == second and low <= one.value <= high
-        ),
-        None,
+def _crossings(study: Study, percent: float | None, second: float | None, low: float, high: float) -> list[float]:
+    """Return where a level crosses the limit from one value to its neighbour, rising."""
+    return sorted(
+        one.value
+        for one in study.crossings
+        if one.percent == percent and one.second == second and low <= one.value <= high
     )

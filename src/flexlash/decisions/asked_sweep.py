@@ -33,7 +33,7 @@ class SweepError(ValueError):
 
 
 def asked_sweep(vary: Mapping[str, Sequence[float]], variant: str | None = None) -> SweepRow:
-    """Return the sweep over one or two dimensions, by the keys of their columns, through these values.
+    """Return the sweep over one or two dimensions, by the names of their columns, through these values in order.
 
     Raises SweepError for a dimension that there is not, no value or none that is a number, and too many points.
     """
@@ -41,7 +41,7 @@ def asked_sweep(vary: Mapping[str, Sequence[float]], variant: str | None = None)
         raise SweepError(f"one or two dimensions can be swept together, not {len(vary)}")
     try:
         swept = [
-            SweptDimension(key=swept_column(name).key, values=tuple(number(name, value) for value in values))
+            SweptDimension(key=swept_column(name).key, values=_along([number(name, value) for value in values]))
             for name, values in vary.items()
         ]
     except (TypeError, ValueError) as fault:
@@ -69,7 +69,7 @@ def with_sweep(found: Examined, sweep: SweepRow | None) -> Examined:
     if sweep is None:
         if not validated.sweeps:
             faulty = " without an error" if validated.faulty_sweeps else ""
-            raise SweepError(f"its sheet Sweep has no row{faulty}; say what to sweep: --vary KEY=FROM:TO:STEP")
+            raise SweepError(f"its sheet Sweep has no row{faulty}; say what to sweep: --vary NAME=FROM:TO:STEP")
         return found
     sweep = replace(sweep, variant=_known_name(validated, sweep.variant))
     variants = swept_variants(validated, sweep)
@@ -102,6 +102,16 @@ def swept_alone(found: Examined) -> Examined:
         variants=replace(validated.variants, frame=validated.variants.frame.filter(is_wanted)),
     )
     return replace(found, validated=validated, nominal=assess(validated, found.settings))
+
+
+def _along(values: Sequence[float]) -> tuple[float, ...]:
+    """Return values each once, rising unless they fall.
+
+    >>> _along([3, 1, 2, 1]), _along([3, 2, 1])
+    ((1, 2, 3), (3, 2, 1))
+    """
+    rising = sorted(set(values))
+    return tuple(rising[::-1] if [*values] == rising[::-1] else rising)
 
 
 def _points(sweep: SweepRow) -> int:

@@ -7,12 +7,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
-__all__ = ["Bracket", "crossings"]
+__all__ = ["Bracket", "Turn", "crossings", "past_turns"]
 
 Whose = TypeVar("Whose")
 
 _STEPS = 100
 """Most evaluations of a bracket, which close it whatever the number does; a smooth one takes three to six."""
+
+_LOOKS = 12
+"""Most values at which it is looked where a number turns."""
 
 _NEAR = 1e-8
 """Width of a bracket, as a part of its values, at which it has closed."""
@@ -27,6 +30,79 @@ class Bracket(Generic[Whose]):
     high: float
     at_low: float
     at_high: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Turn(Generic[Whose]):
+    """Three values, in their order, at which a number has one sign, and is nearest to 0 at the middle one."""
+
+    whose: Whose
+    values: tuple[float, float, float]
+    numbers: tuple[float, float, float]
+
+
+def past_turns(
+    turns: Sequence[Turn[Whose]], evaluate: Callable[[Sequence[tuple[Whose, float]]], Sequence[float | None]]
+) -> list[Bracket[Whose]]:
+    """Return the brackets of the two zeros of each turn whose number changes its sign between the values after all.
+
+    `evaluate` is as of `crossings`. Where the number turns is found by parabolas through three values; one that turns
+    too far from 0 is left alone. Each turn goes its own way.
+
+    >>> turn = Turn(whose=0.5, values=(0.0, 2.0, 3.0), numbers=(4.0, 0.5, 3.5))
+    >>> past_turns([turn], lambda asked: [2 * (value - 1.6) ** 2 - whose for whose, value in asked])[0].high
+    1.5...
+    """
+    found: list[Bracket[Whose]] = []
+    open_ones = list(turns)
+    for _ in range(_LOOKS):
+        asked = [(turn, value) for turn in open_ones if (value := _extreme(turn)) is not None]
+        if not asked:
+            break
+        open_ones = []
+        numbers = evaluate([(turn.whose, value) for turn, value in asked])
+        for (turn, value), number in zip(asked, numbers, strict=True):
+            if number is None:
+                continue
+            if (number > 0) != (turn.numbers[1] > 0):
+                found += _both_sides(turn, value, number)
+            else:
+                open_ones.append(_nearer(turn, value, number))
+    return found
+
+
+def _extreme(turn: Turn[Whose]) -> float | None:
+    """Return where the parabola through a turn is nearest to 0, or past it; None where that is far from 0, or known."""
+    (low, middle, high), (at_low, at_middle, at_high) = turn.values, map(abs, turn.numbers)
+    if at_middle > max(at_low, at_high) - at_middle:
+        return None
+    left, right = (at_low - at_middle) / (low - middle), (at_high - at_middle) / (high - middle)
+    bend = (right - left) / (high - low)
+    if not bend > 0:
+        return None
+    value = (middle + low) / 2 - left / (2 * bend)
+    if abs(value - middle) <= _NEAR**0.5 * abs(high - low):
+        return None
+    return value if min(low, high) < value < max(low, high) else None
+
+
+def _both_sides(turn: Turn[Whose], value: float, number: float) -> list[Bracket[Whose]]:
+    """Return the brackets between a value of the other sign and its neighbours of a turn."""
+    before = max(place for place in (0, 1) if (turn.values[place] < value) == (turn.values[0] < turn.values[2]))
+    return [
+        Bracket(whose=turn.whose, low=turn.values[before], high=value, at_low=turn.numbers[before], at_high=number),
+        Bracket(
+            whose=turn.whose, low=value, high=turn.values[before + 1], at_low=number, at_high=turn.numbers[before + 1]
+        ),
+    ]
+
+
+def _nearer(turn: Turn[Whose], value: float, number: float) -> Turn[Whose]:
+    """Return the three of four points about the one that is nearest to 0."""
+    points = sorted([*zip(turn.values, turn.numbers, strict=True), (value, number)])
+    middle = min((1, 2), key=lambda place: abs(points[place][1]))
+    values, numbers = zip(*points[middle - 1 : middle + 2], strict=True)
+    return replace(turn, values=values, numbers=numbers)
 
 
 def crossings(

@@ -14,7 +14,7 @@ import polars as pl
 from flexlash.analysis.options import Progress
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.results import empty_results
-from flexlash.decisions.crossings import Bracket, crossings
+from flexlash.decisions.crossings import Bracket, Turn, crossings, past_turns
 from flexlash.decisions.swept_points import point_levels, point_results
 from flexlash.schema.decision_rows import SweepRow, SweptDimension
 from flexlash.schema.result_columns import RESULTS
@@ -196,26 +196,54 @@ def _with_crossings(outcome: Outcome, studies: Sequence[Study], rows: Sequence[i
         return [level_margin(result, line.level) for result, (line, _) in zip(found, asked, strict=True)]
 
     found: dict[int, list[Crossing]] = {number: [] for number in range(len(studies))}
+    turns = [turn for number, study in enumerate(studies) for level in levels for turn in _turns(number, study, level)]
+    brackets += past_turns(turns, margins)
     for bracket, value in zip(brackets, crossings(brackets, margins, _SMALL), strict=True):
         if value is not None:
             line = bracket.whose
             falls = (bracket.at_low > 0) == (bracket.low < bracket.high)
             found[line.study].append(Crossing(percent=line.level, second=line.second, value=value, falls=falls))
-    return [replace(study, crossings=tuple(found[number])) for number, study in enumerate(studies)]
+    return [replace(study, crossings=_in_order(study, found[number], levels)) for number, study in enumerate(studies)]
+
+
+def _in_order(study: Study, found: Sequence[Crossing], levels: Sequence[float | None]) -> tuple[Crossing, ...]:
+    """Return crossings level by level, by the second dimension, along the first one."""
+    seconds = list(dict.fromkeys(study.second.values if study.second else (None,)))
+    way = -1 if study.first.values[0] > study.first.values[-1] else 1
+    return tuple(sorted(found, key=lambda one: (levels.index(one.percent), seconds.index(one.second), way * one.value)))
 
 
 def _brackets(number: int, study: Study, level: float | None) -> Iterator[Bracket[_Line]]:
     """Yield neighbouring points of a study between which a level crosses the limit."""
+    for beside, line in _lines(study, level):
+        for (low, at_low), (high, at_high) in pairwise(line):
+            if at_low is not None and at_high is not None and (at_low > 0) != (at_high > 0):
+                whose = _Line(number, beside, level)
+                yield Bracket(whose=whose, low=low, high=high, at_low=at_low, at_high=at_high)
+
+
+def _turns(number: int, study: Study, level: float | None) -> Iterator[Turn[_Line]]:
+    """Yield three neighbouring points of a study on one side of the limit, whose middle one is nearest to it."""
+    for beside, line in _lines(study, level):
+        for three in zip(line, line[1:], line[2:], strict=False):
+            first, middle, last = (margin for _, margin in three)
+            if first is None or middle is None or last is None:
+                continue
+            near, far = sorted((abs(first), abs(last)))
+            if (first > 0) == (middle > 0) == (last > 0) and abs(middle) <= near and abs(middle) < far:
+                low, between, high = (value for value, _ in three)
+                whose = _Line(number, beside, level)
+                yield Turn(whose=whose, values=(low, between, high), numbers=(first, middle, last))
+
+
+def _lines(study: Study, level: float | None) -> Iterator[tuple[float | None, list[tuple[float, float | None]]]]:
+    """Yield each value of the second dimension, with the points along the first one as values and margins."""
     second = None if study.second is None else study.second.key
     lines: dict[float | None, list[tuple[float, float | None]]] = {}
     for result in study.results.iter_rows(named=True):
         beside = None if second is None else result[second]
         lines.setdefault(beside, []).append((result[study.first.key], level_margin(result, level)))
-    for beside, line in lines.items():
-        for (low, at_low), (high, at_high) in pairwise(line):
-            if at_low is not None and at_high is not None and (at_low > 0) != (at_high > 0):
-                whose = _Line(number, beside, level)
-                yield Bracket(whose=whose, low=low, high=high, at_low=at_low, at_high=at_high)
+    yield from lines.items()
 
 
 def level_margin(result: Mapping[str, Any], level: float | None) -> float | None:

@@ -32,7 +32,7 @@ def _value(dimension: str, value: float) -> str:
 
 
 def never_met(dimension: str, value: float, ends: tuple[float, float], over: float) -> str:
-    """Return that no value of a dimension meets the limit, where the best that was tried [SI] leaves such a share over it.
+    """Return that no value of a dimension meets the limit, where the best one tried [SI] leaves such a share over it.
 
     >>> never_met("disk_inner_radius", 0.0795, (0.004, 0.0795), 0.12)
     'no disk inner radius alone can: at 79.5 mm, the greatest value tried, 12 % of units are still over the limit'

@@ -9,7 +9,8 @@ from typing import Any
 
 from flexlash.schema.columns import DIMENSIONS, columns_of
 from flexlash.schema.decision_rows import SweepRow, SweptDimension
-from flexlash.schema.part_row import NumberRow, first_broken
+from flexlash.schema.entry_words import dimension_words
+from flexlash.schema.part_row import NumberRow, PartRule, first_broken
 from flexlash.schema.part_rules import PART_RULES
 from flexlash.schema.spellings import plain
 from flexlash.schema.swept_values import MOST_POINTS, swept_count, swept_values
@@ -24,6 +25,7 @@ _COLUMNS = columns_of("Sweep")
 _FIRST = ("dimension", "from", "to", "step")
 _SECOND = ("second_dimension", "second_from", "second_to", "second_step")
 _IMPOSSIBLE = [rule for rule in PART_RULES if rule.is_error]
+_RADII = ("mean_radius", "bore_diameter")
 _LISTED = 5
 
 
@@ -181,5 +183,17 @@ def why_no_part(study: SweepRow, record: Mapping[str, Any]) -> str:
         rule = first_broken(_IMPOSSIBLE, NumberRow(type=part.type, entries=entries))
         if rule is None:
             return ""
-        words = words or rule.words
+        words = words or _words(rule, names)
     return words
+
+
+def _words(rule: PartRule, swept: Sequence[str]) -> str:
+    """Return the words of a broken rule; of two entries for one radius what to sweep instead."""
+    others = [name for name in _RADII if name not in swept]
+    if rule.code != "E302" or len(others) != 1:
+        return rule.words
+    (entered,), (asked,) = others, [name for name in swept if name in _RADII]
+    return (
+        f"it is entered by its {dimension_words(entered)}, to which a {dimension_words(asked)} would be a second one; "
+        f"sweep {DIMENSIONS[entered].key}, or enter the {dimension_words(asked)} instead"
+    )

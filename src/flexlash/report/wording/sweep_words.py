@@ -119,9 +119,9 @@ def allowed_sentence(study: Study, target: float) -> str:
         few = "" if spans else "fewer than "
         return f"With {swept.replace(' of ', ' ')}, {few}{share} are within {_limit(study)}."
     if not spans:
-        return f"No {swept} keeps {share} within {_limit(study)}."
+        return f"No computed {swept} keeps {share} within {_limit(study)}."
     if spans == [AllowedSpan(low=values[0], high=values[-1])]:
-        return f"Every {swept} keeps {share} within {_limit(study)}."
+        return f"Every computed {swept} keeps {share} within {_limit(study)}."
     verb = _verb(study, spans, values)
     unit = columns_of("Variants")[study.first.key].unit_behind
     return f"{_capital(name)} {verb}{unit} for {share} within {_limit(study)}."
@@ -194,7 +194,9 @@ def _crossing_sentence(study: Study, target: float) -> str:
         else:
             never.append(name)
     if not crossed:
-        return f"No level crosses {_limit(study)} between the computed points." if computed_values(study) else ""
+        return (
+            f"No crossing of {_limit(study)} was found between the computed points." if computed_values(study) else ""
+        )
     nor = f"; {', '.join(never)} not" if never else ""
     return f"{_limit(study)} is crossed by {', '.join(crossed)}{nor}."
 
