@@ -63,7 +63,7 @@ def run(
 ) -> Outcome:
     """Return the outcome of a submission and write it to `output`, unless that is None.
 
-    Options are those of the command line: seed, method, samples, cross_check, elasticity, strict, jobs,
+    Options are those of the command line: seed, method, samples, target_percent, cross_check, elasticity, strict, jobs,
     tolerances, materials, measurements, correlations, other_sources, samples_out, pictures, from_report. The output's
     ending decides its form: .xlsx, .csv, .parquet or .json.
 

@@ -5,15 +5,17 @@ from __future__ import annotations
 import csv
 import json
 import sys
+from dataclasses import replace
 
 import pytest
 from measured_parts import scattered
 
 from flexlash.analysis.options import TABLES, Options
 from flexlash.batch.manifest import options_digest
-from flexlash.cli import main
-from flexlash.pipeline import check, run
+from flexlash.cli import cli, main
+from flexlash.pipeline import check, levers, run
 from flexlash.reading.read import Source
+from flexlash.report.carried_sheet import carried_text
 
 _LIMITS = {"tolerance_class": "shop", "dimension": "wall_thickness", "lower_deviation": -0.02, "upper_deviation": 0.02}
 
@@ -147,3 +149,22 @@ def test_a_sheet_of_a_workbook_must_name_its_samples(book, sound):
     rows = [["Part", "Wall thickness [mm]"], *([part, value] for part, value in enumerate(scattered(60)))]
     outcome = check(book({"Variants": [list(sound), list(sound.values())], "Measurements": rows}))
     assert [one.code for one in outcome.findings if one.sheet == "Measurements"] == ["E111"]
+
+
+@pytest.mark.slow
+def test_the_target_of_a_table_is_an_option(table, workbook, sound, main_in):
+    """--target-percent is to a table what the setting is to a workbook, and the report carries it."""
+    row = {**sound, "backlash_limit_arcmin": 3.75}
+    entered = run(workbook([row], settings={"target_percent": 97.5}), samples=64)
+    submission = table([row])
+    given = run(submission, target_percent=97.5, samples=64)
+    assert given.settings == replace(entered.settings, samples=64)
+    assert [outcome.counts["meets"] for outcome in (given, entered, run(submission, samples=64))] == [1, 1, 0]
+    assert json.loads(carried_text(given))["options"]["target_percent"] == 97.5
+    _, changes = levers(submission, target_percent=97.5, samples=64)
+    assert set(changes["direction"]) == {"relax"}
+    for command in ("run", "levers", "sweep", "distribution"):
+        assert "--target-percent" in [name for one in cli.commands[command].params for name in one.opts]
+    with pytest.raises(ValueError, match=r"target_percent = 90: a number from 97\.5 to 99\.9999 is required"):
+        run(submission, target_percent=90)
+    assert main_in("run", submission, "--target-percent", "100") == 2

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import copy
 import json
+import math
 
 import openpyxl
 import pytest
@@ -49,6 +50,13 @@ def test_what_is_sound_is_taken():
     assert carried_submission(GOOD, ReadingLimits()).name == STUDY.name
 
 
+def test_a_report_of_before_the_target_was_an_option_is_taken():
+    """Without target_percent among its options a report leaves it to the settings that it carries."""
+    options = {name: value for name, value in GOOD["options"].items() if name != "target_percent"}
+    found = carried_submission(_changed(("options",), options), ReadingLimits())
+    assert "target_percent" not in found.run_with
+
+
 WRONG = {
     "no object": ((), [1]),
     "name a number": (("submission", "name"), 7),
@@ -68,6 +76,10 @@ WRONG = {
     "samples 0": (("options", "samples"), 0),
     "samples a fraction": (("options", "samples"), 1.5),
     "a switch between": (("options", "strict"), 1),
+    "target a text": (("options", "target_percent"), "99"),
+    "target true": (("options", "target_percent"), True),
+    "target no number": (("options", "target_percent"), math.nan),
+    "target of all": (("options", "target_percent"), 100),
     "options absent": (("options",), {}),
     "role a number": (("cells", "role"), 1),
     "modified no date": (("cells", "modified"), "yesterday"),

@@ -20,7 +20,7 @@ from flexlash.reading.raw import Submission
 from flexlash.reading.read import ReadReport, Source, limits_of_reports, of_table, report_of, submission_of, table_of
 from flexlash.reading.refusal import Refusal
 from flexlash.schema.findings import Finding, finding, readable
-from flexlash.schema.variant import Settings
+from flexlash.schema.variant import OVERRIDDEN, Settings
 from flexlash.validation.validated import Validated
 
 __all__ = ["Examined", "examined", "opened", "tables_beside"]
@@ -103,9 +103,7 @@ def _validated(given: Source | ReadReport, tables: Mapping[str, Source], options
     beside = {name: table_of(table, name, options.limits) for name, table in tables.items()}
     submission = replace(submission, sheets=submission.sheets | beside)
     validated = validate(submission, options.limits)
-    overrides = {
-        name: getattr(options, name) for name in ("seed", "method", "samples") if getattr(options, name) is not None
-    }
+    overrides = {name: given for name in OVERRIDDEN if (given := getattr(options, name)) is not None}
     return Examined(
         submission=submission,
         settings=replace(validated.settings, **overrides),

@@ -10,7 +10,16 @@ from pathlib import Path
 from typing import Any
 
 from flexlash.reading.reading_limits import ReadingLimits
-from flexlash.schema.argument_checks import file_path, flag, function, known, of_type, one_of, whole_number
+from flexlash.schema.argument_checks import (
+    file_path,
+    flag,
+    function,
+    known,
+    number_within,
+    of_type,
+    one_of,
+    whole_number,
+)
 from flexlash.schema.columns import SETTINGS
 
 __all__ = ["TABLES", "Options", "Progress"]
@@ -35,7 +44,10 @@ def _setting(key: str, text: str) -> dict[str, Any]:
     column = next(one for one in SETTINGS if one.key == key)
     if column.choices:
         return _declared(partial(one_of, choices=column.choices), text)
-    return _declared(partial(whole_number, least=int(column.minimum or 0), most=int(column.maximum or 0)), text)
+    least, most = column.minimum or 0, column.maximum or 0
+    if column.type == "number":
+        return _declared(partial(number_within, least=least, most=most), text)
+    return _declared(partial(whole_number, least=int(least), most=int(most)), text)
 
 
 def _output(name: str, value: object) -> Any:
@@ -63,6 +75,10 @@ class Options:
     seed: int | None = field(default=None, metadata=_setting("seed", "Start of the random numbers."))
     method: str | None = field(default=None, metadata=_setting("method", "How the spread is sampled."))
     samples: int | None = field(default=None, metadata=_setting("samples", "Lines or points per variant."))
+    target_percent: float | None = field(
+        default=None,
+        metadata=_setting("target_percent", "Share of units in per cent that shall be within their backlash limit."),
+    )
     strict: bool | None = field(default=None, metadata=_declared(flag, "Compute nothing when any row has an error."))
     fail_over_limit: bool = field(
         default=False, metadata=_declared(flag, "End with exit code 6 when a variant does not meet its limit.")

@@ -92,6 +92,8 @@ def option(name: str, **shown: Any) -> Callable[[Command], Command]:
         how["type"] = click.Choice(check.keywords["choices"])
     elif check.func is argument_checks.whole_number:
         how["type"] = click.IntRange(check.keywords["least"], check.keywords.get("most"))
+    elif check.func is argument_checks.number_within:
+        how["type"] = click.FloatRange(check.keywords["least"], check.keywords["most"])
     return click.option(flag, name, **how | shown)
 
 
@@ -106,7 +108,7 @@ def spread_options(command: Command) -> Command:
     jobs = option("jobs", default=os.cpu_count() or 1, show_default="all cores")
     tables = map(option, ("tolerances", "materials", "measurements", "correlations", "other_sources"))
     every: list[Callable[[Command], Command]] = [
-        *map(option, ("seed", "method", "samples")),
+        *map(option, ("seed", "method", "samples", "target_percent")),
         jobs,
         LIMITS,
         JSON,

@@ -31,6 +31,7 @@ __all__ = ["run"]
 @option("seed")
 @option("method")
 @option("samples")
+@option("target_percent")
 @option("cross_check")
 @option("elasticity")
 @option("jobs", default=os.cpu_count() or 1, show_default="all cores")

@@ -23,6 +23,7 @@ from flexlash.schema.columns import MATERIALS, columns_of
 from flexlash.schema.findings import Finding, shown
 from flexlash.schema.result_columns import result_columns
 from flexlash.schema.spellings import plain
+from flexlash.schema.variant import OVERRIDDEN
 from flexlash.validation.blocking_errors import stopped_by
 from flexlash.validation.consolidation import consolidated
 from flexlash.validation.validate import validate
@@ -183,7 +184,7 @@ class Side:
         """Return the settings that hold, those that options of the run have replaced among them."""
         run_with = self.submission.run_with or {}
         settings = vars(self.validated.settings) | self.validated.settings.calibrations
-        return settings | {key: run_with[key] for key in ("seed", "method", "samples") if run_with}
+        return settings | {key: run_with[key] for key in OVERRIDDEN if key in run_with}
 
 
 def side_of(path: Path, limits: ReadingLimits) -> Side:

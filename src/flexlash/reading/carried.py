@@ -17,6 +17,7 @@ from flexlash.reading.worksheet import MAXIMUM_COLUMN, MAXIMUM_ROW
 from flexlash.reading.xlsx import Cells, read_workbook
 from flexlash.schema.columns import SETTINGS
 from flexlash.schema.findings import shown
+from flexlash.schema.variant import OVERRIDDEN
 
 __all__ = ["FORM", "SHEET", "SWITCHES", "carried_submission", "read_report"]
 
@@ -31,6 +32,7 @@ SWITCHES = ("cross_check", "elasticity", "strict")
 _NONSENSE = (ValueError, TypeError, LookupError, AttributeError, RecursionError, OverflowError)
 """What arises where a text is not what it should be."""
 
+_TARGET = "target_percent"
 _DIGEST = re.compile("[0-9a-f]{64}")
 _KINDS = frozenset({"workbook", "csv", "parquet"})
 _DELIMITERS = frozenset(",;\t|")
@@ -115,7 +117,11 @@ def _options(carried: dict[str, Any]) -> dict[str, Any]:
         fits = type(value) is int and (column.minimum or 0) <= value <= (column.maximum or math.inf)
         _require(fits or (name == "samples" and value is None))
     _require(carried["method"] in columns["method"].choices, *(isinstance(carried[name], bool) for name in SWITCHES))
-    return {name: carried[name] for name in ("seed", "method", "samples", *SWITCHES)}
+    # Reports of before 0.10 have the target among the settings of the submission alone.
+    target, column = carried.get(_TARGET), columns[_TARGET]
+    if target is not None:
+        _require(type(target) in {int, float} and (column.minimum or 0) <= target <= (column.maximum or math.inf))
+    return {name: carried[name] for name in (*OVERRIDDEN, *SWITCHES) if name in carried}
 
 
 def _check_sheets(sheets: list[RawSheet], limits: ReadingLimits, last: int) -> None:

@@ -16,6 +16,7 @@ from flexlash.reading.cells_json import cells_to_json
 from flexlash.reading.raw import RawSheet, RawValue, Submission
 from flexlash.reading.xlsx import Cells
 from flexlash.report.layout.styles import Book
+from flexlash.schema.variant import OVERRIDDEN
 from flexlash.validation.entry_sheets import sheet_names
 
 __all__ = ["carried_text", "write_carried"]
@@ -51,7 +52,7 @@ def carried_text(outcome: Outcome) -> str:
         "version": __version__,
         "submission": {"name": _name(outcome), "sha256": submission.sha256, "kind": submission.kind}
         | ({"worst_of": worst_of} if worst_of else {}),
-        "options": {name: getattr(settings, name) for name in ("seed", "method", "samples")}
+        "options": {name: getattr(settings, name) for name in OVERRIDDEN}
         | {name: bool(getattr(outcome.options, name)) for name in SWITCHES},
         "cells": cells_to_json(
             Cells(

@@ -29,6 +29,7 @@ __all__ = [
     "known",
     "named_arguments",
     "number",
+    "number_within",
     "numbers",
     "of_type",
     "one_of",
@@ -75,6 +76,22 @@ def number(name: str, value: object, *, finite: bool = True) -> float:
     except OverflowError:
         real = math.inf
     if math.isnan(real) or (finite and math.isinf(real)):
+        raise ValueError(_refusal(name, value, required))
+    return real
+
+
+def number_within(name: str, value: object, *, least: float, most: float) -> float:
+    """Return a number from one to another.
+
+    >>> number_within("target_percent", 90, least=97.5, most=99.9999)
+    Traceback (most recent call last):
+    ValueError: target_percent = 90: a number from 97.5 to 99.9999 is required
+    """
+    required = f"a number from {least:.10g} to {most:.10g}"
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(_refusal(name, value, required))
+    real = float(value)
+    if not least <= real <= most:
         raise ValueError(_refusal(name, value, required))
     return real
 

@@ -13,6 +13,7 @@ from flexlash.schema.limit_verdict import VerdictBounds
 __all__ = [
     "FAR",
     "FEWEST_PARTS",
+    "OVERRIDDEN",
     "CorrelationRow",
     "Limits",
     "Material",
@@ -221,6 +222,10 @@ class CorrelationRow:
     first: str
     second: str
     correlation: float
+
+
+OVERRIDDEN = ("seed", "method", "samples", "target_percent")
+"""Settings that an option of a run may give in the place of the sheet's."""
 
 
 @dataclass(frozen=True, kw_only=True)
