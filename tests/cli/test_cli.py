@@ -17,6 +17,7 @@ from click.testing import CliRunner
 from flexlash import __version__
 from flexlash.cli import cli, main
 from flexlash.schema.columns import ENTRY_SHEETS, OPTIONAL_SHEETS
+from flexlash.schema.decision_results import LEVERS_TABLE
 from flexlash.schema.finding_catalogue import CATALOGUE
 from flexlash.validation.template_versions import TEMPLATE_VERSION
 
@@ -456,9 +457,13 @@ def test_schema_json_is_the_dictionary():
         *ENTRY_SHEETS,
         "Results",
         "Tolerances used",
+        "Levers table",
         "Allocation",
         "Findings",
     }
+    assert [one["key"] for one in columns if one["sheet"] == "Levers table"] == [one.key for one in LEVERS_TABLE]
+    places = [(column["sheet"], column["key"]) for column in columns]
+    assert len(places) == len({*places})
 
 
 def test_schema_in_words():

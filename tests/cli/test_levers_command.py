@@ -61,6 +61,23 @@ def test_the_cheapest_change_holds_as_a_submission_of_its_own(submission, table,
     assert set(again["direction"]) == {"relax"}
 
 
+def test_the_screen_calls_the_inner_edge_of_a_hat_by_its_name(table, sound):
+    """Beside a cup, whose hub radius it is, the inner edge of a hat's disk is its disk inner radius."""
+    hat = {
+        **sound,
+        "variant": "hat",
+        "flexspline_type": "hat",
+        "disk_inner_radius_mm": 79.9,
+        "disk_outer_radius_mm": 120,
+    }
+    limited = [one | {"backlash_limit_arcmin": 3.9} for one in (sound, hat)]
+    cup, hat_lines = _call(table(limited)).stdout.split("\nhat m")
+    assert "Hub radius" in cup
+    assert "isk inner radius" not in cup
+    assert "Hub radius" not in hat_lines
+    assert "Disk inner radius" in hat_lines
+
+
 def test_files_hold_the_table_with_every_digit(submission, tmp_path):
     """CSV, Parquet and JSON read back are the frame that Python returns; blank for none; JSON and Parquet stamped."""
     outcome, frame = levers(submission, tmp_path / "levers.parquet")

@@ -38,6 +38,12 @@ def test_shared_dimensions_that_change_without_the_others_are_told_as_alone():
     assert names["disk_inner_radius", None] == "hub radius"
 
 
+def test_a_hat_has_no_hub_at_the_inner_radius_of_its_disk():
+    """Named as a hat, a variant has its disk inner radius changed, not the hub that it has at the outer edge."""
+    as_hat = {row["dimension"]: change_words(row) for row in shown_levers(study_levers(), {CASE_3}).to_dicts()}
+    assert as_hat["disk_inner_radius"] == "disk inner radius 40 → 46 mm"
+
+
 @pytest.mark.parametrize(
     ("known", "words"),
     [

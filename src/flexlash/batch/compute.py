@@ -87,7 +87,7 @@ def answer_of(
         told=told,
         finding_lines=tuple(finding_lines(outcome.findings)),
         words=state_words(outcome, ran=ran),
-        details=(*detail_lines(outcome, ran=ran), *_changes(data)),
+        details=(*detail_lines(outcome, ran=ran), *_changes(outcome, data)),
         by_rule=Counter(found.code for found in outcome.findings),
         worst=tuple(map(WorstVariant.of, worst_first(outcome, _WORST))) if ran else (),
         file=file,
@@ -98,12 +98,13 @@ def answer_of(
     )
 
 
-def _changes(data: ReportData | None) -> Iterator[str]:
+def _changes(outcome: Outcome, data: ReportData | None) -> Iterator[str]:
     """Yield the cheapest changes that a report tells."""
     if data is not None:
         from flexlash.report.wording.lever_sentences import cheapest_lines
+        from flexlash.report.wording.lever_words import hats_of
 
-        yield from cheapest_lines(data.levers)
+        yield from cheapest_lines(data.levers, hats_of(outcome))
 
 
 def data_of(outcome: Outcome, task: Task) -> ReportData | None:

@@ -57,8 +57,9 @@ def levers(submission: Path, output: Path | None, *, as_json: bool, quiet: bool,
 def _lines(outcome: Outcome, table: pl.DataFrame) -> Iterator[str]:
     """Yield the table as the screen shows it."""
     from flexlash.cli.levers_lines import levers_lines
+    from flexlash.report.wording.lever_words import hats_of
 
     width = max(shutil.get_terminal_size((100, 24)).columns, _NARROWEST)
-    for text, look in levers_lines(outcome.results, table, width):
+    for text, look in levers_lines(outcome.results, table, width, hats_of(outcome)):
         style = {"bold": True} if look == "bold" else {"fg": look or None}
         yield click.style(text, **style) if look else text

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 import polars as pl
@@ -27,13 +27,15 @@ _RANK = 4
 _NAME, _MATERIAL = 200, 60
 
 
-def levers_lines(results: pl.DataFrame, levers: pl.DataFrame, width: int) -> Iterator[tuple[str, str]]:
+def levers_lines(
+    results: pl.DataFrame, levers: pl.DataFrame, width: int, hats: Collection[str] = ()
+) -> Iterator[tuple[str, str]]:
     """Yield lines, each with its colour or an empty text: the variants in the order of Results, each with its changes.
 
-    `results` are the Results of the submission, `width` how many characters a line may have.
+    `results` are the Results of the submission, `width` how many characters a line may have; `hats` names the hats.
     """
     rows = {row["variant"]: row for row in results.iter_rows(named=True)}
-    for variants in shown_levers(levers).partition_by("variant", maintain_order=True):
+    for variants in shown_levers(levers, hats).partition_by("variant", maintain_order=True):
         changes = variants.to_dicts()
         yield from _block(rows[changes[0]["variant"]], changes, width)
     without = results.filter(pl.col("p97_5_arcmin").is_not_null() & pl.col("backlash_limit_arcmin").is_null()).height

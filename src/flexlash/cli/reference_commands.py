@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import click
 
@@ -10,19 +11,23 @@ from flexlash.schema.findings import CATALOGUE, shown
 
 __all__ = ["explain", "schema"]
 
+_LEVERS = "Levers table"
+
 
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="As a JSON array, one object per column.")
 def schema(*, as_json: bool) -> None:
     """Print the data dictionary: every column of every sheet, and the rules of its cells."""
     from flexlash.schema.columns import ENTRY_SHEETS
-    from flexlash.schema.decision_results import ALLOCATION
+    from flexlash.schema.decision_results import ALLOCATION, LEVERS_TABLE
     from flexlash.schema.part_rules import PART_RULES
     from flexlash.schema.result_columns import FINDINGS, RESULTS
     from flexlash.schema.used_columns import TOLERANCES_USED
 
-    shown = {"Results": RESULTS, "Tolerances used": TOLERANCES_USED, "Allocation": ALLOCATION, "Findings": FINDINGS}
-    sheets = {**ENTRY_SHEETS, **shown}
+    # Levers is a sheet of the template and one of the report.
+    levers = [replace(column, sheet=_LEVERS) for column in LEVERS_TABLE]
+    told = {"Results": RESULTS, "Tolerances used": TOLERANCES_USED, _LEVERS: levers, "Allocation": ALLOCATION}
+    sheets = {**ENTRY_SHEETS, **told, "Findings": FINDINGS}
     columns = [column for sheet in sheets.values() for column in sheet]
     if as_json:
         click.echo(json.dumps([column.as_dictionary() for column in columns], ensure_ascii=False, indent=1))

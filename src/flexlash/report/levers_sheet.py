@@ -18,7 +18,7 @@ from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of
 from flexlash.report.report_data import ROW, ReportData
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.lever_table import LEVER_COLUMNS, LeverColumn
-from flexlash.report.wording.lever_words import Lever, shown_levers
+from flexlash.report.wording.lever_words import Lever, hats_of, shown_levers
 
 __all__ = ["FIRST_LEVER", "LEVERS", "lever_places", "write_levers"]
 
@@ -41,7 +41,7 @@ _WIDTHS = [column.width for column in LEVER_COLUMNS]
 
 def write_levers(book: Book, outcome: Outcome, data: ReportData) -> None:
     """Write the single changes of the drawn variants that have a limit; no sheet where none has."""
-    levers = shown_levers(data.levers)
+    levers = shown_levers(data.levers, hats_of(outcome))
     if levers.is_empty():
         return
     sheet = book.sheet(LEVERS, kind=GivenRows)

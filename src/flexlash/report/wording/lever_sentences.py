@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 import polars as pl
 
@@ -87,9 +87,12 @@ def cheapest(levers: pl.DataFrame, variant: str) -> Lever | None:
     return first.row(0, named=True) if first.height else None
 
 
-def cheapest_lines(levers: pl.DataFrame) -> Iterator[str]:
-    """Yield for the screen the cheapest change of the first variants that miss their limit; `levers` as computed."""
-    ordered = shown_levers(levers)
+def cheapest_lines(levers: pl.DataFrame, hats: Collection[str] = ()) -> Iterator[str]:
+    """Yield for the screen the cheapest change of the first variants that miss their limit.
+
+    `levers` as computed; `hats` names the variants that are hats.
+    """
+    ordered = shown_levers(levers, hats)
     names = _names(ordered, "meet")
     for name in names[:NAMED]:
         lever = cheapest(ordered, name)

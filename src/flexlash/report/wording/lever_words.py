@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, TypeAlias
 
 import polars as pl
 
+from flexlash.analysis.outcome import Outcome
 from flexlash.decisions.found_widths import ALL
 from flexlash.schema.decision_columns import MATERIAL
 from flexlash.schema.entry_words import dimension_words
@@ -19,6 +20,7 @@ __all__ = [
     "Lever",
     "change_words",
     "followers_words",
+    "hats_of",
     "lever_name",
     "sentence_start",
     "shown_levers",
@@ -32,6 +34,9 @@ Lever: TypeAlias = Mapping[str, Any]
 
 ALONE = "alone"
 """The column that `shown_levers` adds: the dimension is shared, and here it changes without the others."""
+
+OF_HAT = "of_hat"
+"""The other one: the variant is a hat, whose disk has no hub at its inner edge."""
 
 FROM_MATERIAL = "from_material"
 """What a row may have beside its columns: the present material."""
@@ -55,8 +60,14 @@ _HUB = {"disk_inner_radius": "hub radius"}
 """What a drawing calls the inner edge of a cup's disk."""
 
 
-def shown_levers(levers: pl.DataFrame) -> pl.DataFrame:
-    """Return the table of levers in the order in which it is read, variants in their order.
+def hats_of(outcome: Outcome) -> frozenset[str]:
+    """Return the names of the computed variants that are hats."""
+    variants = (one.variant for one in outcome.computed.values())
+    return frozenset(one.name for one in variants if one.flexspline_type == "hat")
+
+
+def shown_levers(levers: pl.DataFrame, hats: Collection[str] = ()) -> pl.DataFrame:
+    """Return the table of levers in the order in which it is read, variants in their order; `hats` names the hats.
 
     Variants that miss their limit come first; of each the changes by rank, then those that are out of range, then those
     that cannot do it; of one that meets it what saves most.
@@ -73,6 +84,7 @@ def shown_levers(levers: pl.DataFrame) -> pl.DataFrame:
     return (
         levers.with_columns(
             alone & (pl.col("moves").fill_null("") == ""),
+            pl.col("variant").is_in([*hats]).alias(OF_HAT),
             pl.col("variant").replace_strict(variants, return_dtype=pl.Int64).alias("_place"),
         )
         .sort(
@@ -96,13 +108,15 @@ def lever_name(lever: Lever) -> str:
     'wall and disk thickness'
     >>> lever_name({"dimension": "mean_radius", "moves": "disk_outer_radius"})
     'mean radius'
+    >>> [lever_name({"dimension": "disk_inner_radius", "moves": None, "of_hat": hat}) for hat in (False, True)]
+    ['hub radius', 'disk inner radius']
     """
     dimension = lever["dimension"]
     if dimension == MATERIAL:
         return MATERIAL
     if dimension == ALL:
         return f"all {len(lever['moves'].split('+'))} tolerances"
-    own = _HUB.get(dimension) or dimension_words(dimension)
+    own = (None if lever.get(OF_HAT) else _HUB.get(dimension)) or dimension_words(dimension)
     followers = [dimension_words(name) for name in (lever["moves"] or "").split("+") if name]
     kind = own.rpartition(" ")[2]
     if lever["dimension"] == "wall_thickness" and followers and all(name.endswith(kind) for name in followers):

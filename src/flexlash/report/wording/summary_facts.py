@@ -17,7 +17,7 @@ from flexlash.analysis.whole_batch import is_straddled, verdict_place
 from flexlash.report.extent import Extent, extent_of
 from flexlash.report.report_data import DRAWN, ROW, ranked
 from flexlash.report.wording.labels import distinct_labels
-from flexlash.report.wording.lever_words import shown_levers
+from flexlash.report.wording.lever_words import hats_of, shown_levers
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import shown
 from flexlash.schema.limit_verdict import VERDICTS, VerdictBounds
@@ -92,7 +92,11 @@ def summary_facts(outcome: Outcome, levers: pl.DataFrame) -> SummaryFacts:
     rows = ranked(outcome).with_columns(verdict=verdict, straddled=is_straddled(bounds))
     labels = labels_of(outcome, rows["variant"].head(DRAWN).to_list())
     return SummaryFacts(
-        outcome=outcome, levers=shown_levers(levers), ranked=rows, labels=labels, extent=extent_of(outcome)
+        outcome=outcome,
+        levers=shown_levers(levers, hats_of(outcome)),
+        ranked=rows,
+        labels=labels,
+        extent=extent_of(outcome),
     )
 
 
