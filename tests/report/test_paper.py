@@ -71,3 +71,6 @@ def test_a_page_ends_with_a_part_unless_the_first_is_too_long(tmp_path):
     area, head = _printed(tmp_path / "c.xlsx", wide, 120, ends=[99], listed=listed)
     assert head == "Printed: the beginning of this sheet"
     assert int(area.rpartition("B")[2]) * 15 * 7 / 11 <= 512
+    area, head = _printed(tmp_path / "d.xlsx", wide, 120, smallest=10, listed=listed)
+    assert head == "Printed: the beginning of this sheet"
+    assert int(area.rpartition("A")[2]) * 15 * 7 / 10 <= 512

@@ -11,6 +11,7 @@ import pytest
 import regenerate
 from decided_drives import drive
 from libreoffice import convert_all, needs_pages
+from openpyxl.utils import range_boundaries
 from report_entries import opened
 
 from flexlash.feedback.template.template_workbook import Filling, study, template_bytes
@@ -121,6 +122,27 @@ def test_every_page_is_whole(printed, tmp_path, name, paper):
     assert set(pages.values()) == {1}
     assert pages.total() <= ROOM
     assert failing == min(MOST_PAGES, sum(cell.value in ("fails", "marginal") for cell in book["Results"]["B"]))
+
+
+@pytest.mark.slow
+@needs_pages
+@pytest.mark.parametrize("name", dict(PRINTED))
+def test_no_chart_is_chopped_or_stands_on_cells(printed, name):
+    """A chart is printed whole or not at all, and no cell behind it has an entry that it would hide."""
+    report = next(path for (example, _), (path, _) in printed.items() if example == name)
+    checked = 0
+    for sheet in (sheet for sheet in opened(report) if sheet.sheet_state == "visible"):
+        _, _, right, bottom = range_boundaries(sheet.print_area.partition("!")[2] or sheet.dimensions)
+        for chart in sheet._charts:
+            start, end = chart.anchor._from, chart.anchor.to
+            last_row, last_column = end.row + (end.rowOff > 0), end.col + (end.colOff > 0)
+            behind = sheet.iter_rows(start.row + 1, last_row, start.col + 1, last_column, values_only=True)
+            assert not any(value is not None for row in behind for value in row), (sheet.title, start.row)
+            if start.row < bottom:
+                assert last_row <= bottom, (sheet.title, "is chopped at the end of the page")
+                assert last_column <= right, (sheet.title, "is chopped at the side")
+                checked += 1
+    assert checked > 4
 
 
 _WORD = re.compile(r'<word xMin="([\d.]+)" yMin="([\d.]+)" xMax="([\d.]+)" yMax="([\d.]+)">([^<]+)</word>')

@@ -238,7 +238,7 @@ def _widths(mirror: _Mirror, rows: Mapping[int, Mapping[int, RawValue]], last: i
             if column + shift <= last:
                 text = raw_text(value)
                 words = text.split() if row == mirror.header else [text]
-                long = max(map(len, words), default=0) * (_BOLD if row == mirror.header else 1.0) + 2.0
+                long = max(map(len, words), default=0) * (_BOLD if row == mirror.header else 1.0) + 2.5
                 place = column + shift - 1
                 widths[place] = min(max(widths[place], long), _MOST)
     return widths
@@ -262,7 +262,8 @@ def _style(mirror: _Mirror, row: int, column: int, value: object) -> str:
         return "header"
     if row < mirror.header and mirror.raw.rows.get(1, {}).get(1) in _TEMPLATE_TITLES:
         return "title" if row == 1 and column == 1 else "label" if row == mirror.header - 1 else "quiet"
-    return "wrap" if _is_wrapped(value) else "text"
+    # A text stands clear of the number at its left.
+    return "wrap" if _is_wrapped(value) else "indented" if isinstance(value, str) and column > 1 else "text"
 
 
 def _write_guilt(book: Book, sheet: Any, mirror: _Mirror) -> None:

@@ -67,13 +67,14 @@ def print_readably(sheet: Any, widths: Sequence[float], *, breaks: Sequence[int]
 
 @dataclass(frozen=True, kw_only=True)
 class Listed:
-    """What a sheet lists, as the head of its page counts it: `noun` from row `first` on, `columns` by name.
+    """What a sheet lists, as the head of its page counts it: a `noun` in each row from `first` on, `columns` by name.
 
-    Columns whose name is blank are not missed where they are left out.
+    With `first` None each of the parts is one of them. Columns whose name is blank are not missed where they are left
+    out.
     """
 
     noun: str
-    first: int = 0
+    first: int | None = None
     columns: Sequence[str] = ()
 
 
@@ -83,22 +84,24 @@ def print_one_page(
     last: int,
     *,
     upright: bool = False,
+    smallest: float = 11.0,
     ends: Sequence[int] = (),
     listed: Listed | None = None,
 ) -> None:
     """Print on one page what of the columns of these widths (0: hidden) and of the rows to `last` can be read there.
 
-    With `ends` the page ends with one of these rows, the last that it has room for. The head of the page says what is
-    left out of what is `listed`, or of the parts that end so.
+    `smallest` is the size of the smallest letters [pt]. With `ends` the page ends with one of these rows, the last that
+    it has room for. The head of the page says what is left out of what is `listed`, or of the parts that end so.
     """
     width, height = _UPRIGHT if upright else _SIDEWAYS
+    least = _LEAST * 11.0 / smallest
     wide = [value * _BROADER / _POINT for value in accumulate(map(_pixels, widths))]
-    columns = max(1, sum(value * _LEAST <= width for value in wide))
+    columns = max(1, sum(value * least <= width for value in wide))
     high = list(accumulate(sheet.heights.get(row, LINE_HEIGHT) for row in range(last + 1)))
-    if high[-1] * _LEAST <= _ROOM * height:
+    if high[-1] * least <= _ROOM * height:
         end = last
     else:
-        scale = max(_LEAST, min(1.0, width / wide[columns - 1]))
+        scale = max(least, min(1.0, width / wide[columns - 1]))
         fitting = [row for row in range(last) if high[row] * scale <= _ROOM * height] or [0]
         end = max(set(ends).intersection(fitting), default=fitting[-1])
     sheet.fit_to_pages(1, 1)
@@ -116,13 +119,11 @@ def _pixels(width: float) -> int:
 
 def _rows_words(end: int, last: int, ends: Sequence[int], listed: Listed | None) -> str:
     """Return which rows are printed where a page ends before the last."""
-    if listed and ends:
+    if listed is None or listed.first is None:
         printed, whole = sum(row <= end for row in ends), len(ends) + 1
-    elif listed:
-        printed, whole = end + 1 - listed.first, last + 1 - listed.first
     else:
-        printed, whole = 0, 0
-    if not listed or printed < 1:
+        printed, whole = end + 1 - listed.first, last + 1 - listed.first
+    if listed is None or printed < 1:
         return "the beginning of this sheet"
     return f"the first{f' {grouped(printed)}' * (printed > 1)} of {grouped(whole)} {listed.noun}"
 

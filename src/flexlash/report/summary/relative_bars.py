@@ -22,15 +22,16 @@ KINDS = (*reversed(VERDICTS), NO_VERDICT)
 _REACHES = (1.0, 2.0, 5.0, 10.0)
 """Ends [%] that the scale may have, unless a spread is wider."""
 
-_LABEL = 24
-"""Most characters of a name under the chart."""
+_FEW, _LABEL, _SHORT = 12, 24, 16
+"""Most characters of a name under the chart, of more than a few variants, whose names stand upright, less."""
 
 
 def relative_bars(drawn: Sequence[Drawn], bounds: VerdictBounds, most: int) -> Stored:
     """Return the bars of the worst variants that have a limit, or, where none has one, about their medians."""
     limited = [one for one in drawn if one.row["backlash_limit_arcmin"] is not None]
     shown = (limited or list(drawn))[:most]
-    labels = distinct_labels([one.row["variant"] for one in shown], _LABEL)
+    names = [one.row["variant"] for one in shown]
+    labels = distinct_labels(names, _LABEL if len(names) <= _FEW else _SHORT)
     reach = scale_end(shown)
     rows = [_entries(one, label, bounds, reach) for one, label in zip(shown, labels, strict=True)]
     return Stored("Bars", rows)

@@ -14,9 +14,12 @@ from flexlash.report.wording.sweep_words import level_title, swept_title, value_
 from flexlash.schema.columns import columns_of
 from flexlash.schema.findings import shown
 
-__all__ = ["backlash_chart", "share_chart"]
+__all__ = ["SMALLEST", "backlash_chart", "share_chart"]
 
-_SMALL = {"name_font": {"size": 9, "bold": False}, "num_font": {"size": 9}}
+SMALLEST = 10
+"""Size of the smallest letters of the sheet [pt]."""
+
+_SMALL = {"name_font": {"size": SMALLEST, "bold": False}, "num_font": {"size": SMALLEST}}
 _MARKS = ("circle", "triangle", "diamond", "square")
 _MARK_COLOURS = ("grey", "rose", "red", "ink")
 _EDGE = {"color": PALETTE["grey"], "width": 0.75}
@@ -58,7 +61,7 @@ def backlash_chart(book: Book, study: Study, number: int, stored: Stored) -> Any
         "interval_tick": grid.labelled,
         "major_tick_mark": "none",
     })  # fmt: skip
-    bands.set_legend({"position": "right", "delete_series": hidden, "font": {"size": 9}})
+    bands.set_legend({"position": "right", "delete_series": hidden, "font": {"size": SMALLEST}})
     return bands
 
 

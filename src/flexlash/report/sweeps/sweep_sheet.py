@@ -15,7 +15,7 @@ from flexlash.report.layout.paper import Listed, print_one_page
 from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of, merged_width
 from flexlash.report.sweeps.point_table import LAST_COLUMN, SHARE, STRESS, VALUE_WIDTH, WIDTH, write_points
-from flexlash.report.sweeps.sweep_charts import backlash_chart, share_chart
+from flexlash.report.sweeps.sweep_charts import SMALLEST, backlash_chart, share_chart
 from flexlash.report.sweeps.two_way_table import write_two_way
 from flexlash.report.wording.chart_words import ends_of
 from flexlash.report.wording.sweep_words import study_sentences, study_title
@@ -66,7 +66,8 @@ def write_sweep(book: Book, outcome: Outcome, studies: Sequence[Study], stored: 
     letters = [xl_col_to_name(column) for column in range(LAST_COLUMN + 1, _columns(studies[:MOST_STUDIES]))]
     widths = [VALUE_WIDTH, *[WIDTH] * (LAST_COLUMN + len(letters))]
     listed = Listed(noun="studies", columns=[*[""] * (LAST_COLUMN + 1), *letters])
-    print_one_page(sheet, widths, row - 2, ends=[one - 2 for one in breaks[1:]], listed=listed)
+    ends = [one - 2 for one in breaks[1:]]
+    print_one_page(sheet, widths, row - 2, smallest=SMALLEST, ends=ends, listed=listed)
 
 
 def _columns(studies: Sequence[Study]) -> int:

@@ -10,6 +10,7 @@ from typing import Any
 from flexlash.decisions.sweep import Study, percentile_key, sweep_levels
 from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, LINES, PALETTE, Book
+from flexlash.report.sweeps.sweep_charts import SMALLEST
 from flexlash.report.wording.sweep_words import allowed_words, level_title, shown_level, swept_title
 from flexlash.report.wording.verdict import COLOURS, verdict_word
 from flexlash.schema.column import Column
@@ -28,7 +29,7 @@ _COLOURS = tuple(colour for colour in LINES if colour != "red")
 """Colours of the lines in the chart; so many values of the second dimension have one."""
 
 _WIDTH, _HEIGHT, _CHART_ROWS = 900, 370, 19
-_SMALL = {"name_font": {"size": 9, "bold": False}, "num_font": {"size": 9}}
+_SMALL = {"name_font": {"size": SMALLEST, "bold": False}, "num_font": {"size": SMALLEST}}
 _SCALE = {"type": "3_color_scale", "min_color": "#C6E5D8", "mid_color": "#FFFFFF", "max_color": "#F8CBAD"}
 
 
@@ -189,7 +190,7 @@ class _Table:
         chart.set_x_axis({**_SMALL, **ends, "name": name, "num_format": "General"})
         axis = axis_over([*numbers, *([] if limit is None else [limit])])
         chart.set_y_axis({**axis.options(), **_SMALL, "name": "Backlash [arcmin]", "major_gridlines": GRID})
-        chart.set_legend({"position": "right", "font": {"size": 9}})
+        chart.set_legend({"position": "right", "font": {"size": SMALLEST}})
         return chart
 
     def _series(self, column: int, name: str) -> dict[str, Any]:
