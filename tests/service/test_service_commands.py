@@ -118,10 +118,11 @@ def test_page_and_folder_give_the_report_of_the_command(serving):
 @pytest.mark.slow
 def test_a_second_server_on_the_store_is_refused(serving):
     """Another server on the same store, or on the same INBOX, ends with a sentence that says so, and 5."""
-    folder, *_ = serving
+    folder, page, *_ = serving
     code, said = _ended(folder, "serve", "--store", "kept/store", "--port", 0)
     assert (code, said.count("\n")) == (5, 1)
     assert "another flexlash serves the store" in said
+    assert f"Its page: {page.base_url}" in said
     code, said = _ended(folder, "watch", "inbox", "--out", "out", "--store", "other")
     assert (code, said.count("\n")) == (5, 1), said
     assert "another flexlash" in said.lower()
@@ -189,8 +190,16 @@ def test_the_opened_page_is_for_one_browser(tmp_path):
             assert mine.get(root).status_code == 200
             assert other.get(once).status_code in {401, 403, 404, 410}
             assert other.get(root).status_code == 401
+            second = _begun(tmp_path, "serve", "--store", "store", "--port", 0, "--open", BROWSER=f"{browser} %s")
+            said, _ = second.communicate(timeout=60)
+            assert (second.returncode, said.splitlines()[0]) == (0, "flexlash runs already.")
+            again = re.search(r"Page:  (\S+)", said)[1]
+            assert again in Path((tmp_path / "opened").read_text().removeprefix("file://")).read_text()
+            assert other.get(again).status_code == 200
+            assert str(other.get(root).url) == root
     finally:
         assert _stopped(process)[0] == 0
+    assert not [*(tmp_path / "store").glob(".page*")]
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ import re
 import pytest
 from web_pages import ADDRESS, JSON, OWN, page
 
+from flexlash.service.running_page import new_key
 from flexlash.service.web.access import Access, AccessError
 from flexlash.service.web.signing import Signer
 from flexlash.service.web.site import Limits
@@ -262,11 +263,26 @@ def test_open_lets_in_once(tmp_path):
         used = second.get(f"/open/{access.once}")
         assert (used.status_code, second.get("/").status_code) == (403, 401)
         assert access.once not in one.said.getvalue()
-        assert "start it again with --open" in used.text
-        assert "start it again with --open" in second.get("/").text
+        assert "by a double click or with --open" in used.text
+        assert "by a double click or with --open" in second.get("/").text
         assert 'name="access"' not in second.get("/").text
         assert second.post("/login", data={"access": ""}).status_code == 401
         assert second.post("/login", data={"access": access.once}).status_code == 401
+
+
+def test_a_key_left_in_the_store_lets_its_owner_in_once_more(tmp_path):
+    """What a second start leaves in the store opens the page once, also after the first address; nothing else does."""
+    access = Access.of(opens=True)
+    with page(tmp_path, access=access) as one:
+        assert one.visitor().get(f"/open/{access.once}").status_code == 303
+        key = new_key(one.store.folder)
+        assert one.visitor().get(f"/open/{key[:-1]}x").status_code == 403
+        again = one.visitor()
+        assert (again.get(f"/open/{key}").status_code, again.get("/").status_code) == (303, 200)
+        assert one.visitor().get(f"/open/{key}").status_code == 403
+        assert one.visitor().get("/open/ ").status_code == 403
+    with page(tmp_path / "other") as one:
+        assert one.visitor().get(f"/open/{new_key(one.store.folder)}").status_code == 401
 
 
 def test_nobody_keeps_the_owner_out(tmp_path):

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from flexlash.cli.program import keep_window_open
 from flexlash.cli.service_options import of_service, setup_of, started_or_why
 from flexlash.cli.status_command import require_extra
 from flexlash.cli.terminal import named
@@ -18,6 +21,8 @@ if TYPE_CHECKING:
 __all__ = ["serve"]
 
 _PAGE = ("starlette", "uvicorn", "jinja2", "python_multipart")
+_STARTING = 10.0
+"""Seconds that a page has to be there once its service has the store."""
 
 
 @click.command()
@@ -58,18 +63,44 @@ def serve(inbox: Path | None, *, as_json: bool, **chosen: Any) -> None:
     setup = setup_of(inbox, **chosen)
     from flexlash.service.log import Log
     from flexlash.service.running import running
+    from flexlash.service.running_page import announce_page
     from flexlash.service.web.app import application
     from flexlash.service.web.serving import PageServer
+    from flexlash.service.web.visitors import OPENING
 
     log = Log(as_json=as_json)
-    with started_or_why(), running(setup, log) as service:
+    opens_alone = access.once != "" and inbox is None
+    with started_or_why(), _or_the_running_one(setup.store, opens=opens_alone), running(setup, log) as service:
         app = application(
             service.store, service.dispatcher, access, service.options_digest, service.started_at, log=log,
             troubles=service.folder.troubles if service.folder else tuple,
         )  # fmt: skip
         server = PageServer(app, access, log)
+        announce_page(service.store.folder, f"{server.address.rstrip('/')}{OPENING}" if access.once else server.address)
         _say(server, service, opens=bool(access.once))
         server.run()
+
+
+@contextmanager
+def _or_the_running_one(store: Path, *, opens: bool) -> Iterator[None]:
+    """Lead to the page that runs already, as after a second double click; else say where it is."""
+    from flexlash.service.running_page import new_key, running_page
+    from flexlash.service.store import StoreInUseError
+    from flexlash.service.web.serving import open_browser
+    from flexlash.service.web.visitors import OPENING
+
+    try:
+        yield
+    except StoreInUseError as fault:
+        folder = store.absolute()
+        if not (page := running_page(folder, patience=_STARTING if opens else 0.0)):
+            raise
+        if not opens:
+            raise StoreInUseError(f"{fault}. Its page: {page.removesuffix(OPENING.lstrip('/'))}") from None
+        opening = f"{page}{new_key(folder)}" if page.endswith(OPENING) else page
+        click.echo(f"flexlash runs already.\nPage:  {opening}")
+        if not open_browser(opening, folder):
+            keep_window_open()
 
 
 def _say(server: PageServer, service: Service, *, opens: bool) -> None:

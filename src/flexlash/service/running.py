@@ -23,6 +23,7 @@ from flexlash.service.keeper import Keeper
 from flexlash.service.log import Log
 from flexlash.service.memory import give_back_large_blocks
 from flexlash.service.places import Places
+from flexlash.service.running_page import forget_page
 from flexlash.service.store import Store
 from flexlash.service.tasks import service_options
 from flexlash.service.webhook import Webhook, webhook_key
@@ -100,6 +101,8 @@ def running(setup: Setup, log: Log) -> Iterator[Service]:
         if setup.inbox is not None and setup.out is not None:
             places = stack.enter_context(Places.of(setup.inbox, setup.out, setup.store))
         store = stack.enter_context(Store(setup.store, serving=True, webhook=bool(setup.webhook)))
+        forget_page(store.folder)
+        stack.callback(forget_page, store.folder)
         service, parts = _put_together(setup, store, places, log)
         facts: dict[str, object] = {"inbox": places.inbox, "out": places.out} if places else {}
         log.say("started", "", store=store.folder, workers=setup.scheduler or setup.workers, **facts)

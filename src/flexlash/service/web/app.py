@@ -50,7 +50,7 @@ def application(
         store=store, works=works, access=access, signer=signer, options=options_digest, started_at=started_at,
         log=log or Log(), limits=limits or Limits(), troubles=troubles, templates=page_templates(),
     )  # fmt: skip
-    visitors = Visitors(access, signer)
+    visitors = Visitors(access, signer, store.folder)
     app = Starlette(
         routes=_routes(site, visitors),
         middleware=[Middleware(Guard, site, visitors)],

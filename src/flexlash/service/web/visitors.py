@@ -8,11 +8,13 @@ import ipaddress
 import re
 import threading
 from collections.abc import Mapping
+from pathlib import Path
 
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from flexlash.schema.findings import shown
+from flexlash.service.running_page import takes_key
 from flexlash.service.web.access import Access
 from flexlash.service.web.attempts import Attempts
 from flexlash.service.web.refusals import Refused
@@ -27,8 +29,8 @@ _OPEN_TO_ALL = ("/health", "/metrics")
 """What names nobody, so that it may be watched without a token or a proxy."""
 
 _ONE_BROWSER = (
-    "flexlash was started for the browser that opened it. If that was yours and you have closed it, stop flexlash and"
-    " start it again with --open."
+    "flexlash was started for the browser that opened it. If that was yours and you have closed it, start flexlash once"
+    " more, by a double click or with --open: the page opens again."
 )
 _SESSION = 30 * DAY
 _HOST = re.compile(r"(?P<name>[a-z0-9.-]{1,255}|\[[0-9a-f:.]{2,45}\])(:[0-9]{1,5})?")
@@ -39,9 +41,10 @@ _SAFE_METHODS = {"GET", "HEAD"}
 class Visitors:
     """Lets requests in, or says why not; knows again who has shown a token."""
 
-    def __init__(self, access: Access, signer: Signer) -> None:
+    def __init__(self, access: Access, signer: Signer, folder: Path) -> None:
         self._access = access
         self._signer = signer
+        self._folder = folder
         self._attempts = Attempts()
         self._once = access.once
         self._opening = threading.Lock()
@@ -128,15 +131,18 @@ class Visitors:
         return self._welcomed(request, wanted if _WANTED.fullmatch(wanted) else "/")
 
     def opened(self, request: Request) -> Response:
-        """Return the way in, with a cookie, for the token that works once."""
+        """Return the way in, with a cookie, for the token that works once, or a key that was left in the store."""
         if request.method != "GET":
             raise Refused(405, headers={"Allow": "GET"})
+        token = request.path_params["token"]
         with self._opening:
+            if self._access.once and takes_key(self._folder, token):
+                return self._welcomed(request, "/")
             if self._access.once and not self._once:
                 raise Refused(403, f"This address has been used once already, and works once alone. {_ONE_BROWSER}")
             # Nobody guesses 256 bits: counting wrong ones would only let another user of this machine keep its owner
             # out.
-            if not _is_same(request.path_params["token"], self._once):
+            if not _is_same(token, self._once):
                 raise Refused(401, "That is not the address that flexlash printed.", asks_for_token=True)
             self._once = ""
         return self._welcomed(request, "/")
