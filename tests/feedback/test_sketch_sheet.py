@@ -42,7 +42,8 @@ def _charts(parts):
 def test_every_symbol_of_the_sketches_is_explained():
     """What the three sketches call a dimension stands in the table beneath, beside the label of its column."""
     drawn = {mark.words for drawing in sketches().values() for mark in drawing.marks if isinstance(mark, Label)}
-    assert drawn <= set(SYMBOLS.values())
+    assert drawn - {*sketches()} <= set(SYMBOLS.values())
+    assert {*sketches()} <= drawn
     assert set(SYMBOLS) <= {name for name, column in DIMENSIONS.items() if column.sheet == "Variants"}
     sheet = openpyxl.load_workbook(io.BytesIO(template_bytes()))[SKETCH]
     told = {row[0]: row[1] for row in sheet.iter_rows(min_row=21, values_only=True) if row[0]}

@@ -13,7 +13,9 @@ __all__ = ["drawn_chart"]
 _FIRST_COLUMN = 40
 """Column of the sheet Lists behind all lists, from which on the points of charts stand."""
 
-_POINTS_PER_PIXEL = 0.75
+_LETTERS = 9.5
+"""Size of words [pt], just short of what LibreOffice breaks into two lines."""
+
 _CORNER = math.radians(20)
 """By how much a line turns at a corner at least."""
 
@@ -39,7 +41,7 @@ def drawn_chart(workbook: Any, lists: Any, name: str, drawing: Drawing) -> Any:
             if some:
                 chart.add_series({**points.written(some), "line": line, "marker": _NONE})
     for label in (mark for mark in drawing.marks if isinstance(mark, Label)):
-        font = {"name": "Calibri", "size": LETTER * _POINTS_PER_PIXEL, "color": label.colour}
+        font = {"name": "Calibri", "size": _LETTERS, "color": label.colour}
         words = {"series_name": True, "position": _SIDES[label.anchor], "font": font}
         place = points.written([[(label.x, label.y - LETTER / 3)]])
         series = {"name": label.words, "line": {"none": True}, "marker": _NONE, "data_labels": words}

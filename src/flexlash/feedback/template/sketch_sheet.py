@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from flexlash.feedback.template.demanded_cells import asking_types, other_way, refusing_types
+from flexlash.feedback.template.print_pages import set_up_page
 from flexlash.feedback.template.sketch_chart import drawn_chart
-from flexlash.mechanics.sketch.drawing_marks import Drawing
+from flexlash.mechanics.sketch.drawing_marks import LETTER, Drawing, Label
 from flexlash.mechanics.sketch.part_sketch import part_sketch
 from flexlash.schema.columns import DIMENSIONS, Column
 from flexlash.schema.entry_words import dimension_words
@@ -51,15 +53,22 @@ _SHAPES: dict[str, dict[str, float]] = {
 }
 """Parts whose walls are thick enough to see."""
 
-_COLUMNS = {"Symbol": 18, "Column of Variants": 30, "cup": 24, "hat": 24, "cylinder": 24, "Meaning": 92}
+_COLUMNS = {"Symbol": 16, "Column of Variants": 28, "cup": 22, "hat": 22, "cylinder": 22, "Meaning": 90}
 _PICTURE_ROW, _TABLE_ROW = 3, 19
-_GAP = 24
+_GAP = 8
 """Between two sketches [px]."""
+
+_NAME_COLOUR = "#1F3A5F"
 
 
 def sketches() -> dict[str, Drawing]:
-    """Return the sketch of each flexspline type with symbols instead of sizes."""
-    return {name: part_sketch(name, shape, with_sizes=False) for name, shape in _SHAPES.items()}
+    """Return the sketch of each flexspline type with its name, and with symbols instead of sizes."""
+    drawings = {name: part_sketch(name, shape, with_sizes=False) for name, shape in _SHAPES.items()}
+    return {name: replace(one, marks=(*one.marks, _name(name))) for name, one in drawings.items()}
+
+
+def _name(kind: str) -> Label:
+    return Label(x=4, y=LETTER, words=kind, colour=_NAME_COLOUR)
 
 
 def write_sketch(workbook: Any, sheet: Any, lists: Any, formats: Mapping[str, Any]) -> None:
@@ -79,11 +88,7 @@ def write_sketch(workbook: Any, sheet: Any, lists: Any, formats: Mapping[str, An
         left += round(drawing.width) + _GAP
     _write_symbols(sheet, formats)
     sheet.freeze_panes(1, 0)
-    sheet.set_landscape()
-    sheet.set_paper(9)
-    sheet.fit_to_pages(1, 0)
-    sheet.set_margins(0.4, 0.4, 0.5, 0.6)
-    sheet.set_footer("&L&A&C&P / &N&Rflexlash template")
+    set_up_page(sheet)
     sheet.protect("", {"format_columns": True, "objects": True})
 
 
@@ -93,7 +98,7 @@ def _write_symbols(sheet: Any, formats: Mapping[str, Any]) -> None:
         sheet.write_string(_TABLE_ROW, index, heading, formats["header"])
     for row, (name, symbol) in enumerate(SYMBOLS.items(), start=_TABLE_ROW + 1):
         column = DIMENSIONS[name]
-        sheet.set_row(row, 32 if len(column.help) > _COLUMNS["Meaning"] else 18)
+        sheet.set_row(row, 32 if len(column.help) > 1.1 * _COLUMNS["Meaning"] else 18)
         sheet.write_string(row, 0, symbol, formats["legend"])
         sheet.write_string(row, 1, column.label, formats["legend words"])
         for index, kind in enumerate(_SHAPES, start=2):

@@ -13,9 +13,10 @@ from flexlash.feedback.template.status_rules import COMPLETE, Known, Stage, row_
 from flexlash.feedback.template.stored_status import stored_statuses
 from flexlash.validation.headers import STATUS_HEADER
 
-__all__ = ["write_progress", "write_status"]
+__all__ = ["STATUS_WIDTH", "write_progress", "write_status"]
 
-_WIDTH = 48
+STATUS_WIDTH = 48
+"""Width of the column [characters]."""
 
 
 def write_status(
@@ -29,7 +30,7 @@ def write_status(
     name, status = sheet.get_name(), len(columns)
     sheet.write_string(HEADER_ROW, status, STATUS_HEADER, formats["header"])
     sheet.write_comment(HEADER_ROW, status, "Calculated while you type: what the row still lacks.")
-    sheet.set_column(status, status, _WIDTH, formats["status"])
+    sheet.set_column(status, status, STATUS_WIDTH, formats["status"])
     texts = stored_statuses(entries, stages, known)
     prepared = prepared_rows(name, len(texts))
     letters = {column.key: xl_col_to_name(index) for index, column in enumerate(columns)}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import io
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import xlsxwriter
@@ -23,8 +24,9 @@ from flexlash.feedback.template.entry_rules import (
     write_lists,
 )
 from flexlash.feedback.template.filling import Entries, Filling, study
+from flexlash.feedback.template.print_pages import print_side_by_side, set_up_page
 from flexlash.feedback.template.sketch_sheet import SKETCH, write_sketch
-from flexlash.feedback.template.status_column import write_progress, write_status
+from flexlash.feedback.template.status_column import STATUS_WIDTH, write_progress, write_status
 from flexlash.feedback.template.stored_status import counted, counted_pairs, listed_names
 from flexlash.feedback.template.template_formats import cell_formats
 from flexlash.feedback.template.tolerance_status import CORRELATION_STATUS, tolerance_status
@@ -36,9 +38,8 @@ __all__ = ["LEGEND", "LINKS", "TITLES", "Filling", "study", "template_bytes"]
 
 TITLES = {
     "Variants": (
-        "flexlash: one row per flexspline variant",
-        "Fill the yellow cells of a row: its type decides which. White cells may stay blank. Help: the note on a "
-        "header, the sheet Sketch.",
+        "Variants",
+        "One flexspline per row. Fill the yellow cells: the type decides which. White cells may stay blank.",
     ),
     "Materials": ("Materials", "One row per material. Add rows for your own."),
     "Tolerances": (
@@ -77,8 +78,8 @@ _OUTLINED = ("Refinements", "Process")
 """Groups of columns that can be folded away."""
 
 _PRINTED_ROWS = {
-    "Variants": 100,
-    "Tolerances": 45,
+    "Variants": 90,
+    "Tolerances": 42,
     "Correlations": 25,
     "Other sources": 25,
     "Levers": 30,
@@ -114,6 +115,11 @@ _WIDTHS = {
     "second_dimension": 24,
 }
 _WIDTHS_OF_SHEETS = {("Other sources", "source"): 30, ("Other sources", "distribution"): 17}
+
+
+def _width(name: str, column: Column) -> int:
+    """Return how wide a column of an entry sheet is [characters]."""
+    return _WIDTHS_OF_SHEETS.get((name, column.key)) or _WIDTHS.get(column.key, 13)
 
 
 def template_bytes(filling: Filling | None = None) -> bytes:
@@ -170,10 +176,20 @@ class _Template:
                 texts = write_status(self.workbook, sheet, entries, (stages[name], known), self.formats)
                 if name == "Variants":
                     self._variants(sheet, entries, texts)
-                width = len(entries.columns) + len(entries.own)
-                sheet.print_area(0, 0, HEADER_ROW + max(_PRINTED_ROWS[name], len(texts)), width)
+                last = len(entries.columns) + len(entries.own)
+                sheet.print_area(0, 0, HEADER_ROW + max(_PRINTED_ROWS[name], len(texts)), last)
+            self._print(sheet, name, entries, has_status=name in stages)
         write_sketch(self.workbook, self.sheets[SKETCH], self.sheets["Lists"], self.formats)
         write_dictionary(self.sheets["Dictionary"], self.formats, self.entries)
+
+    @staticmethod
+    def _print(sheet: Any, name: str, entries: Entries, *, has_status: bool) -> None:
+        """Print a sheet whose last column but the user's own may be its status."""
+        columns = entries.columns
+        behind = [*([STATUS_WIDTH] if has_status else []), *(_OWN_WIDTH for _ in entries.own)]
+        widths = [*(_width(name, column) for column in columns), *behind]
+        groups = [index for index, (one, next_) in enumerate(pairwise(columns), start=1) if one.group != next_.group]
+        print_side_by_side(sheet, widths, groups)
 
     def _format(self, column: Column) -> Any:
         kind = "number" if column.is_number else "text"
@@ -187,14 +203,13 @@ class _Template:
             for index in range(len(columns) + 1):
                 sheet.write_blank(row, index, None, self.formats["plain"])
         sheet.write_string(0, 0, title, self.formats["title"])
-        sheet.write_string(1, 0, hint, self.formats["hint"])
+        sheet.write_string(1, 1, hint, self.formats["hint"])
         sheet.set_row(0, 26)
         sheet.set_row(HEADER_ROW, 62)
         for index, column in enumerate(columns):
             some = "required by some" if asking_types(column) else "header"
             style = "required" if column.required else some
-            width = _WIDTHS_OF_SHEETS.get((name, column.key)) or _WIDTHS.get(column.key, 13)
-            sheet.set_column(index, index, width, self._format(column), self._outline(column))
+            sheet.set_column(index, index, _width(name, column), self._format(column), self._outline(column))
             sheet.write_string(HEADER_ROW, index, column.label, self.formats[style])
             sheet.write_comment(HEADER_ROW, index, header_note(column), {"x_scale": 2, "y_scale": 1.2})
         sheet.data_validation(
@@ -210,12 +225,7 @@ class _Template:
             },
         )
         sheet.freeze_panes(FIRST_ROW, 1)
-        sheet.set_landscape()
-        sheet.set_paper(9)
-        sheet.fit_to_pages(1, 0)
-        sheet.set_margins(0.4, 0.4, 0.5, 0.6)
-        sheet.repeat_rows(HEADER_ROW)
-        sheet.set_footer("&L&A&C&P / &N&Rflexlash template")
+        set_up_page(sheet, HEADER_ROW)
         return sheet
 
     @staticmethod
