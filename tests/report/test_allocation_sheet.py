@@ -82,7 +82,7 @@ def test_a_class_that_cannot_is_told():
     """A class of which some variants cannot be kept is told with them; one of which none can, with that alone."""
     reason = {"possible": "no", "reason": "even with the narrowest widths 12 % of units of long stay over the limit"}
     (line,) = allocation_lines(_table(reason), 99.0, 9)
-    assert "99 % of units of every other variant within. Mind: even with the narrowest widths 12 %" in line
+    assert "99 % of units of every other variant within. Note: even with the narrowest widths 12 %" in line
     (line,) = allocation_lines(_table(reason | {"to_value": None, "relative_cost": None}), 99.0, 9)
     assert line == f"Class shop: no tolerances keep its variants within their limits: {reason['reason']}."
 

@@ -46,7 +46,7 @@ def test_side_effects_for_the_worse_are_told(told):
     said = told(levers_table(wall))[CHANGE]
     assert "; 99.91 % of units are then within 3.8′, the mass rises by 20.7 %, the bending stress by 23.8 %." in said
     assert said.count("stress") == 1
-    assert " Mind: it is thick." in said
+    assert " Note: it is thick." in said
 
 
 def test_a_stress_that_may_be_elsewhere_is_the_greatest(told):

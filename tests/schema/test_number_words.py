@@ -188,7 +188,7 @@ def test_an_interval_up_to_all_is_told_by_its_lower_end():
     """With two digits of what it leaves to all, or of itself."""
     assert range_words(0.99912, 1.0) == "at least 99.912 %"
     assert range_words(3e-6, 1.0) == "at least 3 ppm"
-    assert range_words(0.0, 1.0) == "anything from none to all"
+    assert range_words(0.0, 1.0) == "0 to 100 %"
 
 
 def test_the_ends_of_a_narrow_interval_are_told_apart():

@@ -58,11 +58,11 @@ def _block(row: Mapping[str, Any], changes: Sequence[Lever], width: int) -> Iter
         if lever["possible"] == "no" and lever["what"] != "material":
             reasons[lever["reason"]].append(change_words(lever))
     for reason, unable in reasons.items():
-        yield from _wrapped(f"  cannot: {'; '.join(unable)}: {reason}", width, "bright_black")
+        yield from _wrapped(f"  not possible: {'; '.join(unable)}: {reason}", width, "bright_black")
     materials = [lever["to_material"] for lever in changes if lever["possible"] == "no" and lever["to_material"]]
     if materials:
         names = ", ".join(shown(name, longest=_MATERIAL) for name in materials)
-        yield from _wrapped(f"  cannot: another material: {names}", width, "bright_black")
+        yield from _wrapped(f"  not possible: another material: {names}", width, "bright_black")
     yield "", ""
 
 

@@ -87,4 +87,4 @@ def _left_without_tolerance(lever: Lever, terms: Terms) -> Iterator[str]:
         return
     if not any(row.dimension == _DISK for row in terms.classes[plain(variant.tolerance_class)]):
         name = variant.tolerance_class
-        yield f"the disk then has a thickness of its own, for which tolerance class {name} has no row: exact"
+        yield f"the disk then counts as exact: tolerance class {name} has no row for a disk thickness of its own"

@@ -114,9 +114,9 @@ def _helpless(found: FoundWidth, over: float) -> str:
     width, limit = found.width, found.width.present.limit
     narrower = "narrower " if width.likely_best > 1 else ""
     if width.name == ALL:
-        who = f"{'narrower' if narrower else 'all'} tolerances together cannot"
+        who = f"not even {narrower or 'all '}tolerances together are enough"
     else:
-        who = f"no {narrower}tolerance alone can"
+        who = f"no single {narrower}tolerance is enough"
     nominal = float(BACKLASH_OF[width.present.variant.flexspline_type](width.present.variant.dimensions))
     if over >= _HALF and nominal > limit:
         return f"{who}: the nominal is over the limit"
@@ -125,4 +125,4 @@ def _helpless(found: FoundWidth, over: float) -> str:
     if found.best:
         return f"{who}: at {_half(width, found.best)}, the best that was tried, {share} {are} over the limit"
     without = "it" if found.alone and width.name != ALL else "any of them"
-    return f"{who}: even without scatter of {without} {share} {are} over the limit"
+    return f"{who}: even without any scatter of {without}, {share} {are} over the limit"

@@ -35,14 +35,13 @@ def never_met(dimension: str, value: float, ends: tuple[float, float], over: flo
     """Return that no value of a dimension meets the limit, where the best one tried [SI] leaves such a share over it.
 
     >>> never_met("disk_inner_radius", 0.0795, (0.004, 0.0795), 0.12)
-    'no disk inner radius alone can: at 79.5 mm, the greatest value tried, 12 % of units are still over the limit'
+    'even at 79.5 mm, the greatest value tried, 12 % of units are still over the limit'
     """
     names = {ends[0]: "the least value tried", ends[1]: "the greatest value tried"}
     which = f", {names.get(value, 'the best value tried')}"
     share = share_of_units(over)
     verb = "is" if share.endswith("unit") else "are"
-    words = dimension_words(dimension)
-    return f"no {words} alone can: at {_value(dimension, value)}{which}, {share} {verb} still over the limit"
+    return f"even at {_value(dimension, value)}{which}, {share} {verb} still over the limit"
 
 
 def always_kept(dimension: str, ends: tuple[float, float]) -> str:

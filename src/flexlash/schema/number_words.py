@@ -107,7 +107,7 @@ def range_words(low: float, high: float) -> str:
     factor, unit = share_unit(high)
     is_open = high > 1 - LEAST_SHARE
     if low < LEAST_SHARE:
-        return "anything from none to all" if is_open else f"at most {_in_digits(high, factor)}{unit}"
+        return "0 to 100 %" if is_open else f"at most {_in_digits(high, factor)}{unit}"
     own, its = share_unit(low) if low < _FAR_APART * high else (factor, unit)
     if is_open:
         return f"at least {_in_digits(low, own)}{its}"

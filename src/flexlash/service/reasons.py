@@ -46,7 +46,7 @@ def answered_again_text(submission: StoredSubmission, names: Sequence[str]) -> b
     """
     name = shown(submission.name, 255)
     lines = [
-        f"{name}: this very file was handed in before, and its answer stands.",
+        f"{name}: this file was handed in before; that answer still holds.",
         "",
         "Name, content and options are the same, so nothing was computed again. The answer:",
         *([f"    {one}" for one in names] or ["    none: nothing of it was computed"]),

@@ -69,7 +69,7 @@ def _line(rows: pl.DataFrame, target: str, most: int, without: str = "") -> str:
     reason, cost = rows["reason"][0], float(rows["relative_cost"].sum())
     if rows["to_value"].is_null().all():
         return f"Class {name}: no tolerances keep its variants within their limits{without or f': {reason}'}."
-    but = without or f". Mind: {reason}" if reason else ""
+    but = without or f". Note: {reason}" if reason else ""
     kept = f"{target} of units of every {'other ' if reason else ''}variant within"
     changed = rows.filter(pl.col("to_value") != pl.col("from_value")).to_dicts()
     if not changed:

@@ -144,7 +144,7 @@ def _cheapest(facts: SummaryFacts, lever: Lever) -> str:
         f"{within_words(lever['probability_over_limit_after'])} of units are then within {_limit(row)}",
         *_effects(facts, row, lever),
     ]
-    note = f" Mind: {lever['range_note']}." if lever["range_note"] else ""
+    note = f" Note: {lever['range_note']}." if lever["range_note"] else ""
     return f"{facts.named(lever['variant'])}: {_changed(facts, row, lever)}; {', '.join(effects)}.{note}"
 
 
