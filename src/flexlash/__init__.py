@@ -34,16 +34,16 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from flexlash.analysis.outcome import Outcome
-    from flexlash.pipeline import check, distribution, levers, mend, run, sweep
+    from flexlash.pipeline import check, distribution, fix, levers, run, sweep
 
-__all__ = ["Outcome", "__version__", "check", "distribution", "levers", "mend", "run", "sweep"]
+__all__ = ["Outcome", "__version__", "check", "distribution", "fix", "levers", "run", "sweep"]
 
 __version__ = "0.9.0"
 
 
 def __getattr__(name: str) -> Any:
     """Load the pipeline only when it is used, so that the command line answers at once."""
-    if name in {"Outcome", "check", "distribution", "levers", "mend", "run", "sweep"}:
+    if name in {"Outcome", "check", "distribution", "levers", "fix", "run", "sweep"}:
         from flexlash import pipeline
 
         return getattr(pipeline, name)

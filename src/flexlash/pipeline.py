@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from flexlash.decisions.sweep import Study
     from flexlash.feedback.fixing.fix import Fix
 
-__all__ = ["Options", "Outcome", "check", "computed", "distribution", "levers", "mend", "run", "spread_out", "sweep"]
+__all__ = ["Options", "Outcome", "check", "computed", "distribution", "fix", "levers", "run", "spread_out", "sweep"]
 
 
 def check(submission: str | Path | Source | ReadReport, **options: Any) -> Outcome:
@@ -39,7 +39,7 @@ def check(submission: str | Path | Source | ReadReport, **options: Any) -> Outco
     return outputs.reported(outcome)
 
 
-def mend(
+def fix(
     submission: str | Path | Source | ReadReport, output: str | Path | Output, **options: Any
 ) -> tuple[Outcome, list[Fix]]:
     """Write a submission with the certain fixes made; return the outcome of checking that, and the fixes.
@@ -49,7 +49,7 @@ def mend(
     """
     from flexlash.feedback.returned_files import fixed
 
-    chosen = Options.of("mend()", options)
+    chosen = Options.of("fix()", options)
     outputs = delivery(submission, chosen, output, FIXED)
     source = opened(submission, chosen)
     outputs.require()

@@ -181,7 +181,7 @@ def test_contradicting_correlations_name_the_nearest_that_can_be(settled):
     assert len(found["shop"]) == 3
 
 
-def test_contradictions_that_no_single_value_mends_name_all(settled):
+def test_contradictions_that_no_single_value_fixes_name_all(settled):
     """Where two pairs must change each is told with its own value, and with these values nothing is wrong."""
     names = (WALL, DISK, RADIUS, "disk_inner_radius")
     plain = [_row(name, sample=None) for name in names]
@@ -192,8 +192,8 @@ def test_contradictions_that_no_single_value_mends_name_all(settled):
     assert len(ledger.findings) > 1
     assert {found.code for found in ledger.findings} == {"E348"}
     nearest = {int(found.cell[1:]) - 2: float(found.suggestion) for found in ledger.findings}
-    mended = [(*pair, nearest.get(index, value)) for index, (*pair, value) in enumerate(rows)]
-    assert _told(settled({"shop": plain}, *mended)[1]) == []
+    fixed = [(*pair, nearest.get(index, value)) for index, (*pair, value) in enumerate(rows)]
+    assert _told(settled({"shop": plain}, *fixed)[1]) == []
 
 
 def test_what_no_part_has_at_once_contradicts_nothing(settled):

@@ -1,4 +1,4 @@
-"""Correlations that no parts can have: the nearest values that are told mend them, and are the nearest."""
+"""Correlations that no parts can have: the nearest values that are told fix them, and are the nearest."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def _drawn(seed):
 
 
 @pytest.mark.slow
-def test_told_values_mend_what_contradicts():
+def test_told_values_fix_what_contradicts():
     """Whoever enters what is told, time after time, soon has correlations that can be; those that can be stay."""
-    mended = 0
+    fixed = 0
     for seed in range(300):
         correlations = _drawn(seed)
         for _ in range(4):
@@ -40,16 +40,16 @@ def test_told_values_mend_what_contradicts():
             assert bool(told) == (_least(correlations) < -1e-9), (seed, correlations)
             if not told:
                 break
-            mended += 1
+            fixed += 1
             assert len({pair for pair, _, _ in told}) == len(told)
             correlations |= {pair: value for pair, value, _ in told}
         else:
             pytest.fail(f"{seed}: {correlations}")
-    assert mended > 100
+    assert fixed > 100
 
 
 @pytest.mark.slow
-def test_a_value_that_mends_alone_is_the_nearest():
+def test_a_value_that_fixes_alone_is_the_nearest():
     """No value nearer to the entered one is admissible, up to the four decimals that are told."""
     alone = 0
     for seed in range(300):
@@ -82,7 +82,7 @@ def test_measured_correlations_that_can_be_are_kept_to_the_bit():
     """Nothing is changed that needs no change; what is changed can be."""
     for seed in range(60):
         correlations = _drawn(seed)
-        mended = without_contradiction(correlations)
-        assert mended.keys() == correlations.keys()
-        assert (mended == correlations) == (_least(correlations) >= -1e-9), seed
-        assert _least(mended) >= -1e-9, seed
+        fixed = without_contradiction(correlations)
+        assert fixed.keys() == correlations.keys()
+        assert (fixed == correlations) == (_least(correlations) >= -1e-9), seed
+        assert _least(fixed) >= -1e-9, seed

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flexlash.analysis.options import Options
-from flexlash.pipeline import check, mend, run
+from flexlash.pipeline import check, fix, run
 
 RUN = {"seed": 3, "method": "sobol", "samples": None, "cross_check": True, "elasticity": True, "strict": False}
 
@@ -57,8 +57,8 @@ REFUSED = [
 @pytest.mark.parametrize(("fault", "given", "message"), REFUSED)
 def test_wrong_options_are_refused_by_name(fault, given, message):
     """Each option of the Python interface is checked before a file is opened, with its name in the refusal."""
-    for call in (run, check, lambda file, **options: mend(file, "mended.xlsx", **options)):
-        name = {run: "run()", check: "check()"}.get(call, "mend()")
+    for call in (run, check, lambda file, **options: fix(file, "fixed.xlsx", **options)):
+        name = {run: "run()", check: "check()"}.get(call, "fix()")
         with pytest.raises(fault) as refusal:
             call("absent.xlsx", **given)
         assert str(refusal.value) == message.replace("run()", name)
@@ -71,7 +71,7 @@ def test_every_option_is_checked():
             Options.of("run()", {option.name: object()})
 
 
-@pytest.mark.parametrize("call", [run, check, lambda file: mend(file, "mended.xlsx"), lambda file: run("a.xlsx", file)])
+@pytest.mark.parametrize("call", [run, check, lambda file: fix(file, "fixed.xlsx"), lambda file: run("a.xlsx", file)])
 @pytest.mark.parametrize("file", [5, b"a.xlsx", ["a.xlsx"]])
 def test_files_are_paths(call, file):
     """Submission and output are a text or a path."""

@@ -216,8 +216,8 @@ def test_cells_are_counted_once(findings, words):
     assert to_fix_words(findings) == words
 
 
-def test_groups_have_their_count_and_their_mends():
-    """Findings of one rule are one group with the number of its cells; different mends are all said."""
+def test_groups_have_their_count_and_their_fixes():
+    """Findings of one rule are one group with the number of its cells; different fixes are all said."""
     group = [
         Finding(level="error", code="E112", sheet="Variants", cell=cell, message=f"message {cell}", fix=f"Write {fix}.")
         for cell, fix in (("D1", "a"), ("F1", "b"), ("E1", "a"))

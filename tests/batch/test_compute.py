@@ -14,7 +14,7 @@ from flexlash.analysis.options import Options
 from flexlash.analysis.run_summary import worst_first
 from flexlash.batch.answer import Answer, Task
 from flexlash.batch.compute import compute
-from flexlash.pipeline import check, mend, run
+from flexlash.pipeline import check, fix, run
 from flexlash.reading.read import Source
 from flexlash.schema.exit_codes import ExitCode
 
@@ -64,13 +64,13 @@ def test_a_check_gives_findings_and_the_marked_copy(tmp_path):
     assert answer.file is None
 
 
-def test_a_mended_submission_comes_with_its_fixes(tmp_path):
-    """Bytes and fixes are those of `mend`."""
-    answer = _answer(_task(FAULTY, "mend"))
-    outcome, fixes = mend(FAULTY, tmp_path / "mended.xlsx")
+def test_a_fixed_submission_comes_with_its_fixes(tmp_path):
+    """Bytes and fixes are those of `fix`."""
+    answer = _answer(_task(FAULTY, "fix"))
+    outcome, fixes = fix(FAULTY, tmp_path / "fixed.xlsx")
     assert list(answer.fixes) == fixes
     assert answer.told["counts"] == outcome.counts
-    assert (tmp_path / "mended.xlsx").read_bytes().startswith(answer.file.data[:-2])
+    assert (tmp_path / "fixed.xlsx").read_bytes().startswith(answer.file.data[:-2])
 
 
 def test_what_is_no_submission_is_an_answer():

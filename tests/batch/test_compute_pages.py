@@ -87,45 +87,45 @@ def test_the_answer_is_that_without_a_page_and_more(tmp_path):
     without = Answer.of(compute(Task(**{**vars(plain), "pages": False}).as_bytes()))
     for name in ("exit_code", "told", "finding_lines", "words", "details", "by_rule", "worst", "file", "copy"):
         assert getattr(answer, name) == getattr(without, name), name
-    assert (without.page, without.results, without.mended, without.rules) == (b"", None, None, ())
+    assert (without.page, without.results, without.fixed, without.rules) == (b"", None, None, ())
     run(FAULTY, tmp_path / "x.csv")
     assert answer.results.data == (tmp_path / "x.csv").read_bytes()
 
 
 @pytest.mark.slow
 @for_each("name", ["needs fixing", "tables", "headers", "percentages", "German", "no rows", "other columns"])
-def test_the_mended_file_is_that_of_the_command(name, tmp_path):
-    """It has the bytes and the fixes of `mend`, though what came of mending is not computed; else there is none."""
+def test_the_fixed_file_is_that_of_the_command(name, tmp_path):
+    """It has the bytes and the fixes of `fix`, though what came of fixing is not computed; else there is none."""
     path, _ = SUBMISSIONS[name](tmp_path)
     answer, _ = _answered(_task(path, "check"))
     made = fixed(opened(path, Options()), Options())
-    assert (answer.mended is not None) == bool(made.fixes)
+    assert (answer.fixed is not None) == bool(made.fixes)
     assert json.loads(answer.page)["fixable"] == len(made.fixes)
-    if answer.mended is not None:
-        assert (answer.mended.data, answer.mended.role) == (made.data, made.role)
+    if answer.fixed is not None:
+        assert (answer.fixed.data, answer.fixed.role) == (made.data, made.role)
 
 
 @pytest.mark.slow
-def test_what_a_fix_uncovers_is_mended_as_well(book):
-    """Below a misspelt header stands a number with its unit: the page offers a file in which both are mended."""
+def test_what_a_fix_uncovers_is_fixed_as_well(book):
+    """Below a misspelt header stands a number with its unit: the page offers a file in which both are fixed."""
     keys = ("variant", "material", "torque_Nm", "cylinder_length_mm", "mean_radius_mm")
     row = ["C-1", "20Cr2Ni4", 800, 160, 80, "1,6 mm", 40]
     path = book({"Variants": [[*keys, "Wall thicknes [mm]", "disk_inner_radius_mm"], row]})
     answer, _ = _answered(_task(path, "check"))
     made = fixed(opened(path, Options()), Options())
     assert {fix.cell for fix in made.fixes} == {"F1", "F2"}
-    assert answer.mended.data == made.data
+    assert answer.fixed.data == made.data
     assert json.loads(answer.page)["fixable"] == 2
 
 
 @pytest.mark.slow
 def test_a_check_has_a_page_and_no_results():
-    """Where nothing is computed there are findings, a marked copy and what can be mended."""
+    """Where nothing is computed there are findings, a marked copy and what can be fixed."""
     answer, heard = _answered(_task(FAULTY, "check"))
     told = json.loads(answer.page)
     assert (told["ran"], told["variants"], answer.results, answer.file) == (False, [], None, None)
     assert answer.copy is not None
-    assert answer.mended is not None
+    assert answer.fixed is not None
     assert {one.rows for one in heard} == {0}
     assert answer.told == _numbers_only(check(FAULTY))
 
@@ -149,7 +149,7 @@ def test_what_is_no_submission_has_a_page_and_tells_nothing_of_rows():
     assert answer.refused
     assert json.loads(answer.page)["refused"]["code"] == answer.told["findings"][0]["code"]
     assert not any(one.page for one in heard)
-    assert (answer.results, answer.mended) == (None, None)
+    assert (answer.results, answer.fixed) == (None, None)
 
 
 @pytest.mark.slow

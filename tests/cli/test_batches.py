@@ -227,7 +227,7 @@ def test_resume_computes_what_is_not_done(folder, monkeypatch):
 
 
 @pytest.mark.usefixtures("folder")
-def test_resume_skips_a_mended_file_whose_original_came_later():
+def test_resume_skips_a_fixed_file_whose_original_came_later():
     """What is skipped beside its original is so on --resume, although it was computed while it stood alone."""
     Path("in/d.csv").rename("in/b-autofixed.csv")
     Path("in/b.csv").rename("b.csv")

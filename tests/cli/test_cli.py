@@ -79,7 +79,7 @@ def test_run_writes_the_form_that_the_ending_names(table, sound, tmp_path, endin
 
 @pytest.mark.slow
 def test_check_prints_findings_and_the_next_command(table, sound, capsys, main_in):
-    """Check prints each finding with its place, what is required and the mend, then what to do next."""
+    """Check prints each finding with its place, what is required and the fix, then what to do next."""
     path = table([sound, {**sound, "variant": "b", "wall_thickness_mm": "1,6"}])
     assert main_in("check", path) == 3
     lines = capsys.readouterr().out.splitlines()
@@ -472,7 +472,7 @@ def test_schema_in_words():
     assert "  torque_Nm                        Torque T [N·m], required" in out
 
 
-def test_explain_prints_meaning_and_mend():
+def test_explain_prints_meaning_and_fix():
     """Explain takes a code in any case and prints what it means; without a code it lists them."""
     out = CliRunner().invoke(cli, ["explain", "e303"]).stdout
     assert out.startswith("E303 error: hub outside the disk\n")
@@ -568,8 +568,8 @@ def test_where_check_writes(table, sound, tmp_path, main_in, capsys):
 
 
 @pytest.mark.slow
-def test_the_next_command_names_the_mended_file(table, sound, tmp_path, main_in, capsys):
-    """After mending, the closing lines speak of the new file, which is the one to run."""
+def test_the_next_command_names_the_fixed_file(table, sound, tmp_path, main_in, capsys):
+    """After fixing, the closing lines speak of the new file, which is the one to run."""
     path = table([{**sound, "wall_thickness_mm": "1,6 mm"}])
     assert main_in("check", path, "--apply-fixes", "-o", tmp_path / "new.csv") == 0
     lines = capsys.readouterr().out.splitlines()

@@ -145,7 +145,7 @@ def test_misspelt_without_a_did_you_mean(change, code, suggestion, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("length", [4, 500, 5000])
 def test_an_empty_message_for_a_damaged_file(length, tmp_path):
-    """A damaged file is told in a full sentence with a mend."""
+    """A damaged file is told in a full sentence with a fix."""
     path = tmp_path / "a.xlsx"
     path.write_bytes(template_bytes()[:length])
     (found,) = check(path).findings

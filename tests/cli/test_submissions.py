@@ -207,7 +207,7 @@ def test_a_name_that_is_no_utf_8_is_computed_like_any_other(table, workbook, sou
 
 @no_utf_8
 def test_the_other_commands_take_such_names_too(table, sound, tmp_path):
-    """Marked, mended, upgraded, compared, computed anew: a name that is no UTF-8 stops nothing."""
+    """Marked, fixed, upgraded, compared, computed anew: a name that is no UTF-8 stops nothing."""
     odd = tmp_path / os.fsdecode(b"caf\xe9.csv")
     odd.write_bytes(table([{**sound, "wall_thickness_mm": "1,6 mm"}]).read_bytes())
     done = _flexlash("check", odd, "--annotate", "--apply-fixes")

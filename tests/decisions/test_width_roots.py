@@ -75,7 +75,7 @@ def test_a_search_ends_at_the_bound():
     assert (root.factor, root.bounded, root.over, asked) == (1.5, True, over(1.5), 1)
 
 
-def test_what_no_width_mends_is_told():
+def test_what_no_width_fixes_is_told():
     """Where the narrowest misses the target there is no factor, but what it leaves over the limit."""
     root, asked = _found(narrowed(ALLOWED, 0.4), lambda factor: 0.2 + 0.2 * factor)
     assert (root.factor, root.over, asked) == (None, 0.2, 1)

@@ -112,8 +112,8 @@ def test_fills_differ_in_lightness():
     assert all((light + 0.05) / 0.05 > 7 for light in luminance.values())
 
 
-def test_notes_say_code_message_and_mend():
-    """Each guilty cell's note names code, message and mend; the user's own words stand above."""
+def test_notes_say_code_message_and_fix():
+    """Each guilty cell's note names code, message and fix; the user's own words stand above."""
     found = notes(_marked())
     text, author = found["Data", "B2"]
     assert text.startswith("JM: measured twice\n\n")

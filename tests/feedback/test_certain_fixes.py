@@ -1,4 +1,4 @@
-"""What may be mended without asking is mended right: written into the cell, the finding is gone."""
+"""What may be fixed without asking is fixed right: written into the cell, the finding is gone."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ def test_a_repair_is_right(table, sound, change, code, certain_value):
     found = _only(check(table([sound | change])), code)
     assert certain_value_of(found) == certain_value
     assert type(certain_value_of(found)) is type(certain_value)
-    mended = check(table([sound | change | {found.column: certain_value}]))
-    assert code not in {one.code for one in mended.findings}
-    assert mended.counts["computed"] == 1
+    fixed = check(table([sound | change | {found.column: certain_value}]))
+    assert code not in {one.code for one in fixed.findings}
+    assert fixed.counts["computed"] == 1
 
 
 @pytest.mark.parametrize(("change", "code"), LEFT, ids=repr)
@@ -73,8 +73,8 @@ def test_a_header_keeps_its_unit(table, sound, header, certain_value):
     assert certain_value_of(found) == certain_value
     assert found.fix.startswith(f"Write {found.suggestion},")
     if certain_value:
-        mended = check(_renamed(table([sound]), "wall_thickness_mm", certain_value))
-        assert "E112" not in {one.code for one in mended.findings}
+        fixed = check(_renamed(table([sound]), "wall_thickness_mm", certain_value))
+        assert "E112" not in {one.code for one in fixed.findings}
 
 
 def test_a_repair_is_no_field_of_the_list_of_findings(table, sound):

@@ -1,4 +1,4 @@
-"""Other sources, Levers and Sweep in templates, upgrades, marked copies and mended files."""
+"""Other sources, Levers and Sweep in templates, upgrades, marked copies and fixed files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flexlash.feedback.template import entry_rules
 from flexlash.feedback.template.entry_rules import FIRST_ROW, HEADER_ROW
 from flexlash.feedback.template.template_workbook import Filling, template_bytes
 from flexlash.feedback.template.upgrade import upgraded
-from flexlash.pipeline import check, mend
+from flexlash.pipeline import check, fix
 from flexlash.schema.columns import ENTRY_SHEETS, columns_of
 from flexlash.validation.decision_sheets import DECISION_SHEETS
 
@@ -133,14 +133,14 @@ def test_the_marked_copy_marks_them(faulty, tmp_path):
 
 
 @pytest.mark.slow
-def test_certain_fixes_mend_them(faulty, tmp_path):
-    """What can only be one slip is mended, in the unit of its row; what a person must decide stays."""
-    _, fixes = mend(faulty, tmp_path / "mended.xlsx")
+def test_certain_fixes_fix_them(faulty, tmp_path):
+    """What can only be one slip is fixed, in the unit of its row; what a person must decide stays."""
+    _, fixes = fix(faulty, tmp_path / "fixed.xlsx")
     certain = {place: value for place, (_, value) in FAULTS.items() if value is not None} | REPAIRED
     assert {(one.sheet, one.cell): one.value for one in fixes} == {
         (sheet, _cell(sheet, key, row)): value for (sheet, key, row), value in certain.items()
     }
-    left = {(one.sheet, one.cell) for one in check(tmp_path / "mended.xlsx").findings if one.level == "error"}
+    left = {(one.sheet, one.cell) for one in check(tmp_path / "fixed.xlsx").findings if one.level == "error"}
     open_to = {place for place, (_, value) in FAULTS.items() if value is None}
     assert left == {(sheet, _cell(sheet, key, row)) for sheet, key, row in open_to}
 

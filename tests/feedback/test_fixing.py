@@ -165,7 +165,7 @@ def test_cells_as_xml():
 
 @pytest.fixture(scope="module")
 def book():
-    """Return a workbook with a formula, a picture of its own and texts to mend."""
+    """Return a workbook with a formula, a picture of its own and texts to fix."""
     workbook = openpyxl.Workbook()
     sheet = workbook.active
     sheet.title = "Variants"
@@ -184,7 +184,7 @@ def _parts(data):
 
 
 def test_cells_change_and_nothing_else(book):
-    """The mended workbook holds the new values, the formula, and every other part byte for byte."""
+    """The fixed workbook holds the new values, the formula, and every other part byte for byte."""
     wanted = [_repair("B2", 1.6), _repair("A1", "IT7", sheet="It's", found="IT 7")]
     data, made = fixed_workbook(book, wanted, LIMITS)
     assert made == wanted
@@ -231,14 +231,14 @@ def test_two_repairs_of_one_cell(book):
 
 
 def test_the_same_bytes(book):
-    """Mending twice gives the same bytes, and a mended workbook passes the gate."""
+    """Fixing twice gives the same bytes, and a fixed workbook passes the gate."""
     first, again = (fixed_workbook(book, [_repair("B2", 1.6)], LIMITS)[0] for _ in range(2))
     assert first == again
     assert read_workbook(first, LIMITS).sheets[0].rows[2][2] == 1.6
 
 
-def test_a_mended_workbook_can_be_mended_again(book):
-    """A second mending leaves the first list as it is and makes one of its own."""
+def test_a_fixed_workbook_can_be_fixed_again(book):
+    """A second fixing leaves the first list as it is and makes one of its own."""
     first, _ = fixed_workbook(book, [_repair("B2", 1.6)], LIMITS)
     second, made = fixed_workbook(first, [_repair("A2", "C")], LIMITS)
     assert len(made) == 1
@@ -255,7 +255,7 @@ TABLES = {
 
 @pytest.mark.parametrize("what", TABLES)
 def test_tables_keep_their_manner(what):
-    """A mended table keeps rows, delimiter and decimal sign."""
+    """A fixed table keeps rows, delimiter and decimal sign."""
     data, expected = TABLES[what]
     assert fixed_table(read_table(data, "Variants"), [_repair("B2", 1.6)]).decode() == expected
 
@@ -279,7 +279,7 @@ def test_a_row_of_more_cells_than_headers_stays_one():
     assert again.rows[3][2] == "s"
 
 
-def test_a_cell_whose_address_is_in_small_letters_is_mended():
-    """A workbook whose program writes b2 for B2 is mended at B2."""
+def test_a_cell_whose_address_is_in_small_letters_is_fixed():
+    """A workbook whose program writes b2 for B2 is fixed at B2."""
     part = SHEET.replace(b'"B2"', b'"b2"')
     assert SheetSpans(part, [(2, 2)]).cells.keys() == {(2, 2)}

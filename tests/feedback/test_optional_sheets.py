@@ -1,4 +1,4 @@
-"""Measurements and Correlations in templates, upgrades, marked copies and mended files."""
+"""Measurements and Correlations in templates, upgrades, marked copies and fixed files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from flexlash.feedback.template import entry_rules
 from flexlash.feedback.template.entry_rules import FIRST_ROW, HEADER_ROW
 from flexlash.feedback.template.template_workbook import Filling, template_bytes
 from flexlash.feedback.template.upgrade import upgraded
-from flexlash.pipeline import check, mend
+from flexlash.pipeline import check, fix
 from flexlash.schema.columns import ENTRY_SHEETS, OPTIONAL_SHEETS
 from flexlash.schema.spellings import plain
 
@@ -132,10 +132,10 @@ def test_the_marked_copy_marks_the_new_sheets(tmp_path):
     assert marked.sheetnames == ["Findings", *_with_ours(_MEASURED), "flexlash marks"]
 
 
-def test_certain_fixes_mend_the_new_sheets(tmp_path):
-    """What can only be one slip is mended on the new sheets; what a person must decide stays."""
+def test_certain_fixes_fix_the_new_sheets(tmp_path):
+    """What can only be one slip is fixed on the new sheets; what a person must decide stays."""
     path = _written(tmp_path, faulty_parts())
-    _, fixes = mend(path, tmp_path / "mended.xlsx")
+    _, fixes = fix(path, tmp_path / "fixed.xlsx")
     assert {(one.sheet, one.cell): one.value for one in fixes} == {
         ("Measurements", "H8"): 1.60712,
         ("Tolerances", "K20"): 1.33,
@@ -146,7 +146,7 @@ def test_certain_fixes_mend_the_new_sheets(tmp_path):
         ("Correlations", "D5"): 0.5,
         ("Correlations", "A6"): "measured",
     }
-    book = openpyxl.load_workbook(tmp_path / "mended.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "fixed.xlsx")
     assert all(book[one.sheet][one.cell].value == one.value for one in fixes)
-    left = {(one.sheet, one.cell) for one in check(tmp_path / "mended.xlsx").findings if one.level == "error"}
+    left = {(one.sheet, one.cell) for one in check(tmp_path / "fixed.xlsx").findings if one.level == "error"}
     assert left == {("Measurements", "A16"), ("Measurements", "C14"), ("Tolerances", "M24")}

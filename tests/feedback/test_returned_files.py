@@ -1,4 +1,4 @@
-"""What goes back: the marked copy, the findings alone where marking is impossible, the mended submission."""
+"""What goes back: the marked copy, the findings alone where marking is impossible, the fixed submission."""
 
 import json
 
@@ -11,7 +11,7 @@ import flexlash
 from flexlash.cli import cli
 from flexlash.feedback.splicing.sheet_spans import SheetSpans
 from flexlash.feedback.splicing.xml_spans import spliced
-from flexlash.pipeline import check, mend, run
+from flexlash.pipeline import check, fix, run
 from flexlash.reading.archive import packed, unpacked
 from flexlash.reading.reading_limits import ReadingLimits
 from flexlash.reading.refusal import Refusal
@@ -116,7 +116,7 @@ def test_marked_copies_are_skipped_unless_wanted(workbook, sound, tmp_path):
 
 @pytest.mark.slow
 def test_certain_repairs_are_made_and_listed(workbook, sound, tmp_path):
-    """What leaves no doubt is mended in a new file; what does, is left and told."""
+    """What leaves no doubt is fixed in a new file; what does, is left and told."""
     rows = [
         {**sound, "wall_thickness_mm": "1,6 mm"},
         {**sound, "variant": "B", "tolerance_class": "standart"},
@@ -124,7 +124,7 @@ def test_certain_repairs_are_made_and_listed(workbook, sound, tmp_path):
     ]
     path = workbook(rows)
     before = path.read_bytes()
-    outcome, fixes = mend(path, tmp_path / "new.xlsx")
+    outcome, fixes = fix(path, tmp_path / "new.xlsx")
     assert path.read_bytes() == before
     assert [(one.place, one.value) for one in fixes] == [("Variants!H5", 1.6), ("Variants!AA6", "standard")]
     assert [(found.code, found.cell) for found in outcome.findings] == [("E202", "D7")]
@@ -135,25 +135,25 @@ def test_certain_repairs_are_made_and_listed(workbook, sound, tmp_path):
 
 
 def test_one_repair_uncovers_another(table, sound, tmp_path):
-    """When a header is mended, what stands under it is looked at and mended as well."""
+    """When a header is fixed, what stands under it is looked at and fixed as well."""
     path = table([{**sound, "Tooth rim lenght [mm]": "20 mm", "rim_thickness_mm": 3.2}])
-    outcome, fixes = mend(path, tmp_path / "new.csv")
+    outcome, fixes = fix(path, tmp_path / "new.csv")
     assert {one.code for one in fixes} == {"E112", "E202"}
     assert outcome.exit_code == 0
     assert check(tmp_path / "new.csv").results["backlash_rad"][0] == outcome.results["backlash_rad"][0]
 
 
-def test_nothing_to_mend_writes_nothing(table, sound, tmp_path):
+def test_nothing_to_fix_writes_nothing(table, sound, tmp_path):
     """Without a certain fix no file is written."""
-    outcome, fixes = mend(table([{**sound, "torque_Nm": None}]), tmp_path / "new.csv")
+    outcome, fixes = fix(table([{**sound, "torque_Nm": None}]), tmp_path / "new.csv")
     assert (fixes, outcome.outputs) == ([], ())
     assert not (tmp_path / "new.csv").exists()
 
 
-def test_a_refused_file_is_not_mended(tmp_path):
+def test_a_refused_file_is_not_fixed(tmp_path):
     """A file that is no submission is refused as ever."""
     (tmp_path / "a.xlsx").write_bytes(b"%PDF-1.7")
-    outcome, fixes = mend(tmp_path / "a.xlsx", tmp_path / "new.xlsx")
+    outcome, fixes = fix(tmp_path / "a.xlsx", tmp_path / "new.xlsx")
     assert (outcome.exit_code, fixes) == (4, [])
 
 
@@ -161,14 +161,14 @@ def test_repairs_do_not_touch_parquet(sound, tmp_path):
     """A Parquet file is left to the program that wrote it."""
     path = tmp_path / "a.parquet"
     pl.DataFrame([{**sound, "material": "20crNi2Mo"}]).write_parquet(path)
-    assert mend(path, tmp_path / "new.csv")[1] == []
+    assert fix(path, tmp_path / "new.csv")[1] == []
 
 
 @pytest.mark.limited_process
-def test_marked_and_mended_by_the_limited_process(workbook, sound, tmp_path):
-    """The process that reads also marks and mends, within its limits."""
+def test_marked_and_fixed_by_the_limited_process(workbook, sound, tmp_path):
+    """The process that reads also marks and fixes, within its limits."""
     path = workbook([{**sound, "wall_thickness_mm": "1,6"}])
-    outcome, fixes = mend(path, tmp_path / "new.xlsx", marked_copy=tmp_path / "copy.xlsx", limits=ReadingLimits())
+    outcome, fixes = fix(path, tmp_path / "new.xlsx", marked_copy=tmp_path / "copy.xlsx", limits=ReadingLimits())
     assert len(fixes) == 1
     assert outcome.exit_code == 0
     check(path, marked_copy=tmp_path / "copy.xlsx")
@@ -217,13 +217,13 @@ def test_work_saved_in_a_marked_copy_is_never_overwritten(workbook, sound, tmp_p
     assert check(copy, marked_copies=True).exit_code == 0
 
 
-def test_a_mended_file_does_not_replace_another(table, sound, tmp_path):
-    """A mended file takes no path where another file stands; the same bytes again need no number."""
+def test_a_fixed_file_does_not_replace_another(table, sound, tmp_path):
+    """A fixed file takes no path where another file stands; the same bytes again need no number."""
     path = table([{**sound, "wall_thickness_mm": "1,6 mm"}])
     target = tmp_path / "new.csv"
     target.write_text("mine", encoding="utf-8")
     for _ in range(2):
-        assert mend(path, target)[0].outputs == (tmp_path / "new (2).csv",)
+        assert fix(path, target)[0].outputs == (tmp_path / "new (2).csv",)
     assert target.read_text(encoding="utf-8") == "mine"
 
 
@@ -264,7 +264,7 @@ def test_a_percentage_in_a_cell(workbook, sound, tmp_path):
 
 
 def test_a_formula_is_left_to_its_author(workbook, sound, tmp_path):
-    """A cell whose text comes from a formula is told, but not mended: the formula would be lost."""
+    """A cell whose text comes from a formula is told, but not fixed: the formula would be lost."""
     parts = unpacked(workbook([sound]).read_bytes(), ReadingLimits())
     part = next(name for name in parts if name.endswith("sheet1.xml"))
     (span,) = SheetSpans(parts[part], [(5, 8)]).cells.values()
@@ -272,7 +272,7 @@ def test_a_formula_is_left_to_its_author(workbook, sound, tmp_path):
     parts[part] = spliced(parts[part], [(span.start, span.end, cell)])
     path = tmp_path / "formula.xlsx"
     path.write_bytes(packed(parts))
-    outcome, fixes = mend(path, tmp_path / "new.xlsx")
+    outcome, fixes = fix(path, tmp_path / "new.xlsx")
     assert [(found.code, found.cell, found.suggestion) for found in outcome.findings] == [("E202", "H5", "1.6")]
     assert (fixes, outcome.outputs) == ([], ())
 

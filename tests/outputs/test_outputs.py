@@ -33,7 +33,7 @@ from flexlash.outputs.naming import (
     template_output,
 )
 from flexlash.outputs.plan import Plan
-from flexlash.pipeline import check, mend, run
+from flexlash.pipeline import check, fix, run
 from flexlash.schema.stamps import placeholder, stamp_at, stamped
 
 FEW = {"samples": 16, "method": "random"}
@@ -112,7 +112,7 @@ PLANS = {
 
 @pytest.mark.parametrize("what", PLANS)
 def test_where_outputs_go(what, tmp_path):
-    """Reports, mended files and marked copies get names that say what they are, each its own, none an input's."""
+    """Reports, fixed files and marked copies get names that say what they are, each its own, none an input's."""
     names, output, *expected = PLANS[what]
     paths = [tmp_path / name for name in names]
     for path in paths:
@@ -165,8 +165,8 @@ def test_outputs_that_cannot_be_meant(plans, what, tmp_path):
         plans(Plan(inputs=paths), paths, tmp_path / output)
 
 
-def test_a_report_may_be_parquet_and_a_mended_file_not(tmp_path):
-    """Results take forms that a mended submission cannot have."""
+def test_a_report_may_be_parquet_and_a_fixed_file_not(tmp_path):
+    """Results take forms that a fixed submission cannot have."""
     paths = [tmp_path / "a.xlsx"]
     assert report_outputs(Plan(inputs=paths), paths, tmp_path / "x.parquet")[0].path == tmp_path / "x.parquet"
     with pytest.raises(ValueError, match="parquet"):
@@ -297,14 +297,14 @@ def test_no_input_is_ever_an_output(what, spelt, tmp_path, table, sound):
     assert _contents(tmp_path) == before
 
 
-def test_no_input_is_a_marked_or_a_mended_file(tmp_path, workbook, sound):
-    """Marked copies and mended files spare the submission as reports do; two outputs never share a name."""
+def test_no_input_is_a_marked_or_a_fixed_file(tmp_path, workbook, sound):
+    """Marked copies and fixed files spare the submission as reports do; two outputs never share a name."""
     path = workbook([{**sound, "wall_thickness_mm": "1,6 mm"}])
     before = _contents(tmp_path)
     for call in (
         lambda: check(path, marked_copy=path),
-        lambda: mend(path, path),
-        lambda: mend(path, tmp_path / "new.xlsx", marked_copy=path),
+        lambda: fix(path, path),
+        lambda: fix(path, tmp_path / "new.xlsx", marked_copy=path),
         lambda: run(path, tmp_path / "new.xlsx", marked_copy=tmp_path / "new.xlsx"),
     ):
         with pytest.raises(ValueError, match=r"never overwrites|two outputs"):
@@ -492,7 +492,7 @@ def _all(folder, pattern="*.xlsx"):
 
 
 def test_a_second_run_of_the_whole_folder(tmp_path, workbook, sound, capsys):
-    """Reports, marked and mended copies are skipped with an info, the rest is computed, with the same bytes."""
+    """Reports, marked and fixed copies are skipped with an info, the rest is computed, with the same bytes."""
     workbook([sound, {**sound, "variant": "b", "torque_Nm": None}], "a.xlsx")
     workbook([sound], "b.xlsx")
     (tmp_path / "~$a.xlsx").write_bytes(b"\x05Anna " + b" " * 49)
@@ -509,8 +509,8 @@ def test_a_second_run_of_the_whole_folder(tmp_path, workbook, sound, capsys):
     assert "left alone" not in said
 
 
-def test_a_second_mending_of_the_whole_folder(tmp_path, workbook, table, sound, capsys):
-    """Mended workbooks and tables are skipped beside their originals, and mended again to the same bytes."""
+def test_a_second_fixing_of_the_whole_folder(tmp_path, workbook, table, sound, capsys):
+    """Fixed workbooks and tables are skipped beside their originals, and fixed again to the same bytes."""
     rows = [{**sound, "wall_thickness_mm": "1,6 mm"}]
     workbook(rows, "a.xlsx")
     table(rows, "b.csv")
@@ -521,7 +521,7 @@ def test_a_second_mending_of_the_whole_folder(tmp_path, workbook, table, sound, 
 
 
 def test_what_somebody_worked_in_is_skipped_and_kept(tmp_path, workbook, sound):
-    """Reports, marked and mended copies are known by what flexlash wrote in them, also when they were saved since."""
+    """Reports, marked and fixed copies are known by what flexlash wrote in them, also when they were saved since."""
     path = workbook([sound, {**sound, "variant": "b", "wall_thickness_mm": "1,6 mm"}], "a.xlsx")
     assert _run(path) == 3
     assert _call("check", path, "--apply-fixes") == 0
@@ -534,12 +534,12 @@ def test_what_somebody_worked_in_is_skipped_and_kept(tmp_path, workbook, sound):
     assert set(_contents(tmp_path)) == {"a.xlsx", *(f"a-{name}.xlsx" for name in theirs), *numbered}
 
 
-def test_a_mended_file_is_a_submission_without_its_original(tmp_path, workbook, table, sound):
-    """An engineer mends and then runs the mended file: it is computed, alone and beside other files."""
+def test_a_fixed_file_is_a_submission_without_its_original(tmp_path, workbook, table, sound):
+    """An engineer fixes and then runs the fixed file: it is computed, alone and beside other files."""
     rows = [{**sound, "wall_thickness_mm": "1,6 mm"}]
     original, other = workbook(rows, "a.xlsx"), table([sound], "other.csv")
-    mend(original, tmp_path / "a-autofixed.xlsx")
-    mend(table(rows, "t.csv"), tmp_path / "t-autofixed.csv")
+    fix(original, tmp_path / "a-autofixed.xlsx")
+    fix(table(rows, "t.csv"), tmp_path / "t-autofixed.csv")
     for name in ("a-autofixed.xlsx", "t-autofixed.csv"):
         fixed = tmp_path / name
         assert run(fixed, **FEW).exit_code == 0
@@ -548,12 +548,12 @@ def test_a_mended_file_is_a_submission_without_its_original(tmp_path, workbook, 
     assert check(tmp_path / "a-autofixed.xlsx").counts["computed"] == 1
 
 
-def test_a_mended_workbook_knows_its_original_by_content(tmp_path, workbook, sound):
+def test_a_fixed_workbook_knows_its_original_by_content(tmp_path, workbook, sound):
     """Under another name or in another folder it is skipped as well while its original is unchanged."""
     original = workbook([{**sound, "wall_thickness_mm": "1,6 mm"}], "a.xlsx")
     (tmp_path / "out").mkdir()
     fixed = tmp_path / "out" / "fixed.xlsx"
-    mend(original, fixed)
+    fix(original, fixed)
     given = [original, fixed]
     assert [found.code for found in check(fixed, given=given).findings] == ["I526"]
     _worked_in(fixed)

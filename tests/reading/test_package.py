@@ -153,7 +153,7 @@ def test_styles_are_where_readers_look_for_them():
 
 
 def test_a_type_without_its_part_is_left_out():
-    """A part that is listed and not there is forgotten, and the workbook is told as mended."""
+    """A part that is listed and not there is forgotten, and the workbook is told as fixed."""
     listed = '<Override PartName="/xl/theme/theme1.xml" ContentType="x"/></Types>'
     package = _opened(_replaced(TYPES, "</Types>", listed))
     assert package.is_rewritten

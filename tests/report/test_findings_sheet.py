@@ -1,4 +1,4 @@
-"""The Findings sheet: each rule once with its mend, below it every finding with its links."""
+"""The Findings sheet: each rule once with its fix, below it every finding with its links."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def report(table, sound, tmp_path):
 
 @pytest.mark.slow
 def test_each_rule_stands_once_on_top(report):
-    """A line for each rule tells level, code, count, title, how to learn more and the mend."""
+    """A line for each rule tells level, code, count, title, how to learn more and the fix."""
     outcome, sheet = report
     rules = rules_of(outcome)
     assert len(rules["E201"]) == 2

@@ -109,7 +109,7 @@ def test_guilty_cells_are_marked_and_no_others():
 @pytest.mark.slow
 @for_each("name", SUBMISSIONS)
 def test_every_finding_is_on_one_card(name, tmp_path):
-    """Counts of the cards add up to all findings, by rule; a place is named, a message and a mend are there."""
+    """Counts of the cards add up to all findings, by rule; a place is named, a message and a fix are there."""
     path, options = SUBMISSIONS[name](tmp_path)
     outcome, facts = _checked(path, **{key: value for key, value in options.items() if key != "elasticity"})
     json.dumps(facts, allow_nan=False)
@@ -164,28 +164,28 @@ def test_a_rule_of_a_row_shows_what_it_compares(tmp_path):
 
 
 @pytest.mark.slow
-def test_what_is_drawn_as_mended_stands_in_the_mended_file(tmp_path):
+def test_what_is_drawn_as_fixed_stands_in_the_fixed_file(tmp_path):
     """The row below an entry has what the file with the certain fixes holds there."""
     outcome = check(FAULTY)
     made = fixed(Source(name=FAULTY.name, data=FAULTY.read_bytes()), Options())
-    (tmp_path / "mended.xlsx").write_bytes(made.data)
-    cells = _sheets_of(tmp_path / "mended.xlsx")
+    (tmp_path / "fixed.xlsx").write_bytes(made.data)
+    cells = _sheets_of(tmp_path / "fixed.xlsx")
     facts = page_facts(outcome, Found.of(outcome, ran=False, fixes=made.fixes), ran=False)
-    mended = [
+    drawn = [
         (grid["sheet"], row["row"], letters, text)
         for _, grid in _drawn(facts)
         for row in grid["rows"]
-        for letters, text in zip(grid["columns"], row["mended"] or [], strict=False)
+        for letters, text in zip(grid["columns"], row["fixed"] or [], strict=False)
         if text
     ]
-    assert len(mended) == facts["fixable"] == len(made.fixes) == 2
-    for sheet, row, letters, text in mended:
+    assert len(drawn) == facts["fixable"] == len(made.fixes) == 2
+    for sheet, row, letters, text in drawn:
         assert _is_shown(text, cells[sheet][row, _column(letters)])
 
 
 @pytest.mark.slow
-def test_a_mend_has_the_decimal_sign_of_the_table(tmp_path):
-    """In a text with decimal commas a number is mended with one, as the mended file has it."""
+def test_a_fix_has_the_decimal_sign_of_the_table(tmp_path):
+    """In a text with decimal commas a number is fixed with one, as the fixed file has it."""
     path = tmp_path / "study.csv"
     header = "Variant;Material;Torque T [N·m];Cylinder length l [mm];Mean radius r_m [mm];Wall thickness Δ [mm];"
     line = "C-1;20Cr2Ni4;800;160;80;1,6;40\nC-2;20Cr2Ni4;800;160;80;1,8 mm;40\n"
@@ -193,9 +193,9 @@ def test_a_mend_has_the_decimal_sign_of_the_table(tmp_path):
     outcome, facts = _checked(path)
     (card,) = (card for card in facts["cards"] if card["code"] == "E202")
     (row,) = card["grid"]["rows"]
-    assert (row["row"], row["mended"][row["marked"][0]]) == (3, "1,8")
-    mended = fixed(Source(name=path.name, data=path.read_bytes()), Options()).data.decode("utf-8-sig")
-    assert ";1,8;40" in mended
+    assert (row["row"], row["fixed"][row["marked"][0]]) == (3, "1,8")
+    text = fixed(Source(name=path.name, data=path.read_bytes()), Options()).data.decode("utf-8-sig")
+    assert ";1,8;40" in text
     (found,) = (found for found in outcome.findings if found.code == "E202")
     assert found.cell == f"{card['grid']['columns'][row['marked'][0]]}3"
 

@@ -65,7 +65,7 @@ def test_rows_that_failed_weigh_more_than_a_limit(table, sound):
 
 @pytest.mark.slow
 def test_an_error_is_never_code_0(table, sound, monkeypatch):
-    """Where an error stands, the code is 3 though every row was computed, and the next step is to mend it."""
+    """Where an error stands, the code is 3 though every row was computed, and the next step is to fix it."""
     from flexlash.schema.findings import finding
 
     found = finding("E112", sheet="Variants", cell="Z1", value="Rim lenght", label="Tooth rim length [mm]", name="x")

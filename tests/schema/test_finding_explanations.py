@@ -27,7 +27,7 @@ def test_examples_are_short_enough(code):
 
 
 def test_an_explanation_has_its_parts():
-    """Title, message in general, meaning, mend and example follow each other."""
+    """Title, message in general, meaning, fix and example follow each other."""
     assert list(explanation_of("E303", {"E303": "Variants!J18 …"}).lines()) == [
         "E303 error: hub outside the disk",
         "",
@@ -47,12 +47,12 @@ def test_an_unknown_code_has_no_explanation():
 
 @for_each("code", CATALOGUE)
 def test_the_page_says_what_the_command_says(code):
-    """Pattern, meaning, mend and example of docs/findings.md are those of `flexlash explain`."""
+    """Pattern, meaning, fix and example of docs/findings.md are those of `flexlash explain`."""
     page = (regenerate.ROOT / "docs" / "findings.md").read_text(encoding="utf-8")
     one = explanation_of(code)
     section = page.partition(f"### {code} ")[2].partition("\n#")[0]
     assert section.startswith(one.title)
-    for part in (one.pattern, one.meaning, one.mend, one.example):
+    for part in (one.pattern, one.meaning, one.fix, one.example):
         assert part in section
 
 

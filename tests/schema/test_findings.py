@@ -82,7 +82,7 @@ def test_level_is_the_letter(code):
 
 @for_each("code", CATALOGUE)
 def test_every_code_has_its_words(code):
-    """Title, message, mend and explanation are there, and the last three are sentences."""
+    """Title, message, fix and explanation are there, and the last three are sentences."""
     rule = CATALOGUE[code]
     assert rule.title
     assert not rule.title.endswith(".")
@@ -111,7 +111,7 @@ def test_messages_are_short(code):
 
 @for_each("code", CATALOGUE)
 def test_words_are_an_engineers(code):
-    """No programmer's word stands in title, message, mend or explanation."""
+    """No programmer's word stands in title, message, fix or explanation."""
     rule = CATALOGUE[code]
     assert JARGON.findall(f"{rule.title} {rule.message} {rule.fix} {rule.explanation}") == []
 
@@ -144,7 +144,7 @@ def test_shown(value, expected):
 
 
 def test_fields_of_a_finding():
-    """A finding carries level, code, address, variant, column, value, message, mend and suggestion, in this order."""
+    """A finding carries level, code, address, variant, column, value, message, fix and suggestion, in this order."""
     found = finding(
         "E202",
         sheet="Variants",

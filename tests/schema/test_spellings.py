@@ -47,7 +47,7 @@ def test_the_nearest_name(text, names, meant):
     ],
 )
 def test_what_can_only_be_a_slip(text, names, meant):
-    """A long name with one slip can be mended; a short one, another number, or one near two names cannot."""
+    """A long name with one slip can be fixed; a short one, another number, or one near two names cannot."""
     assert misspelt(text, spelt_alike(names)) == meant
 
 

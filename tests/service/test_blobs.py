@@ -43,7 +43,7 @@ def test_the_same_bytes_are_kept_once(blobs):
 
 
 @pytest.mark.parametrize("damage", ["flipped", "cut", "gone"])
-def test_r2_damaged_bytes_are_not_handed_out_and_are_mended_by_the_same_ones(blobs, damage):
+def test_r2_damaged_bytes_are_not_handed_out_and_are_fixed_by_the_same_ones(blobs, damage):
     """A file with a flipped bit, cut short, or gone is refused by name; put again, it is whole again."""
     sha256, _ = blobs.put(b"a report")
     path = blobs.path(sha256)
@@ -59,7 +59,7 @@ def test_r2_damaged_bytes_are_not_handed_out_and_are_mended_by_the_same_ones(blo
     assert blobs.read(sha256) == b"a report"
 
 
-def test_r2_a_damaged_result_answers_nobody_and_computing_anew_mends_it(tmp_path):
+def test_r2_a_damaged_result_answers_nobody_and_computing_anew_fixes_it(tmp_path):
     """With a flipped bit in its report a submission is no answer to the same one, which is computed instead."""
     with Store(tmp_path / "store", serving=True) as store:
 

@@ -81,7 +81,7 @@ ENDINGS = {
 
 @pytest.mark.slow
 def test_each_submission_ends_as_it_should(store):
-    """State and exit code follow the contract; a rejected one says why and how to mend it."""
+    """State and exit code follow the contract; a rejected one says why and how to fix it."""
     options = Options(samples=64, limits=ReadingLimits(file_mebibytes=1))
     with dispatching(store, options=options) as dispatcher:
         ids = {what: hand_in(store, content, name) for what, (name, content, *_) in ENDINGS.items()}

@@ -96,7 +96,7 @@ def test_a_file_that_needs_fixing_comes_back_with_its_cells(tab, tmp_path, scrip
     assert page.url == address
     card = page.locator("article", has_text="E202").first
     assert card.locator(".mark").inner_text() == "1,6 mm"
-    assert "1.6" in card.locator(".mended").inner_text()
+    assert "1.6" in card.locator(".fixed").inner_text()
     copy = handed_over(page, "Marked copy", tmp_path)
     assert copy.name.endswith(".xlsx")
     assert zipfile.is_zipfile(copy)

@@ -101,7 +101,7 @@ def _results(folder, opening):
 def test_files_are_those_of_the_command_whoever_computes_them(tmp_path, processes):
     """One worker, two, and Dask give the same bytes, which are those of `flexlash.run`."""
     found = _results(tmp_path / "two", _shared(processes))
-    assert {role for _, role in found} == {"report", "results", "checked", "mended", "outcome", "page"}
+    assert {role for _, role in found} == {"report", "results", "checked", "fixed", "outcome", "page"}
     assert _results(tmp_path / "one", partial(local_executor, 1, tries=1)) == found
     if find_spec("distributed"):
         assert _results(tmp_path / "dask", partial(dask_executor, "local", 2)) == found

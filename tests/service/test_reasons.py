@@ -35,8 +35,8 @@ def said(text: bytes) -> str:
     return text.decode("utf-8-sig").replace("\r\n", "\n")
 
 
-def test_a_partly_computed_submission_is_told_what_where_required_mend_copy_and_id():
-    """Who handed in a file with a fault reads all that is needed to mend it, without the program or its page."""
+def test_a_partly_computed_submission_is_told_what_where_required_fix_copy_and_id():
+    """Who handed in a file with a fault reads all that is needed to fix it, without the program or its page."""
     text = said(reasons_text(PARTLY, "study A.xlsx", submission=ID))
     for needed in (
         "study A.xlsx: 3 of 4 rows computed", "study A-report.xlsx", "Variants!D8", "above 0 is required",

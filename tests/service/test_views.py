@@ -148,7 +148,7 @@ def test_many_rules_wait_behind_a_line():
 def test_cells_are_drawn_like_the_sheet():
     """A card shows column letters, row numbers, the guilty cell marked and what it would become."""
     facts = made(PageFacts, "words")
-    row = {"row": 9, "cells": ["V-05", "", "1,6 mm"], "marked": [2], "mended": ["", "", "1.6"]}
+    row = {"row": 9, "cells": ["V-05", "", "1,6 mm"], "marked": [2], "fixed": ["", "", "1.6"]}
     grid = {"sheet": "Variants", "columns": ["A", "…", "H"], "header_row": 4, "header": ["Variant", "", "Wall [mm]"]}
     grid["rows"] = [row]
     facts["cards"] = [{**facts["cards"][0], "grid": grid}]

@@ -52,7 +52,7 @@ def test_poor_tokens_are_refused(tmp_path, text):
 @pytest.mark.skipif(os.name != "posix", reason="files have an owner alone on POSIX")
 @pytest.mark.parametrize("mode", [0o640, 0o604, 0o644, 0o660])
 def test_a_token_that_others_read_is_refused(token_file, mode):
-    """A token file that group or others may read is refused, and the message says how to mend it."""
+    """A token file that group or others may read is refused, and the message says how to fix it."""
     token_file.chmod(mode)
     with pytest.raises(AccessError, match="chmod 600"):
         Access.of(token_file=token_file)

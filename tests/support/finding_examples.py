@@ -406,8 +406,8 @@ def _by_machine(folder: Path) -> Made:
     return _book(folder, sheets)[0], {"measurements": parts}
 
 
-def _mended(folder: Path) -> Made:
-    """Write a table and what was mended in it."""
+def _fixed(folder: Path) -> Made:
+    """Write a table and what was fixed in it."""
     original = _file(folder, _text([CUP]))[0]
     fixed = _file(folder, _text([CUP]), "study-autofixed.csv")[0]
     return fixed, {"given": [original, fixed]}
@@ -467,7 +467,7 @@ SUBMISSIONS: dict[str, Callable[[Path], Made]] = {
     "older report": lambda folder: (_marked("flexlash", "report")(folder)[0], {"from_report": True}),
     "altered report": lambda folder: (_book(folder, {"Carried": [["{"]]})[0], {"from_report": True}),
     "marked": _marked("flexlash", "checked"),
-    "mended": _mended,
+    "fixed": _fixed,
     "results": _results,
     "lock": _plain(b"\x05Anna", "~$study.xlsx"),
     "newer": _marked("flexlash_template_version", "99"),

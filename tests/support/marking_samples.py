@@ -22,7 +22,7 @@ __all__ = ["fault", "loaded", "look", "notes", "own_workbook", "rewritten", "ric
 
 def fault(sheet="Data", cell="B2", level="error", code="E202", **words):
     """Return a finding on a cell."""
-    texts = {"message": f"{sheet}!{cell} is wrong.", "fix": "Mend it.", **words}
+    texts = {"message": f"{sheet}!{cell} is wrong.", "fix": "Fix it.", **words}
     return Finding(level=level, code=code, sheet=sheet, cell=cell, **texts)
 
 

@@ -49,7 +49,7 @@ def render(name, path="/", **context):
 
 
 FILES = {role: StoredFile(role=role, sha256="a" * 64, size=9, name=f"x{ending}") for role, ending in {
-    "report": ".xlsx", "results": ".csv", "findings": ".csv", "checked": ".xlsx", "mended": ".xlsx", "reasons": ".txt",
+    "report": ".xlsx", "results": ".csv", "findings": ".csv", "checked": ".xlsx", "fixed": ".xlsx", "reasons": ".txt",
     "page": ".json"}.items()}  # fmt: skip
 
 

@@ -89,7 +89,7 @@ def test_where_an_input_follows_another_the_one_value_is_told_in_full():
 
 
 def test_all_nearest_values_that_are_told_are_accepted():
-    """Where no single pair mends, all told values entered together are admissible, rounded as they are."""
+    """Where no single pair fixes, all told values entered together are admissible, rounded as they are."""
     names = "abcd"
     inputs = {name: Uniform(0, 1) for name in names}
     given = {(one, other): -0.8 for index, one in enumerate(names) for other in names[:index]}

@@ -51,7 +51,7 @@ def test_the_entry_that_changes_least_is_named():
     assert fault.nearest == {0: pytest.approx(0.45 + (0.19 * 0.75) ** 0.5)}
 
 
-def test_each_cluster_is_mended_by_itself():
+def test_each_cluster_is_fixed_by_itself():
     """Two clusters that contradict themselves are two faults, each with a value of its own."""
     entries = [("a", "b", 0.9), ("b", "c", 0.9), ("a", "c", 0.5), ("d", "e", 1), ("e", "f", 1), ("d", "f", 0.2)]
     first, second = CorrelationMatrix.of(entries, NAMES).faults()
@@ -76,7 +76,7 @@ def test_nearest_values_are_admissible_when_entered(draw, count):
     assert CorrelationMatrix.of(entries, NAMES).faults() == []
 
 
-def test_all_values_are_told_where_no_single_pair_mends():
+def test_all_values_are_told_where_no_single_pair_fixes():
     """Of four inputs each turned away from all others no single entry can be the one; all are told."""
     entries = [(one, other, -0.8) for index, one in enumerate(NAMES[:4]) for other in NAMES[:index]]
     (fault,) = CorrelationMatrix.of(entries, NAMES).faults()

@@ -70,7 +70,7 @@ def test_interval_ends_where_an_eigenvalue_becomes_negative(draw, size, deficit,
         assert bool(least(matrix) >= -1e-7) is inside
 
 
-def test_no_value_of_a_pair_mends_what_the_others_contradict():
+def test_no_value_of_a_pair_fixes_what_the_others_contradict():
     """Where the other inputs contradict one another there is no interval, nor where one follows them no way."""
     assert admissible_interval(symmetric(0.1, 0.1, 0.1, 0.1, 0.1, -0.9), 0, 1) is not None
     twisted = symmetric(0, 0.9, 0.9, 0, 0, -0.9)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from flexlash.pipeline import check, mend
+from flexlash.pipeline import check, fix
 from flexlash.reading.delimited import read_table
 from flexlash.validation.csv_findings import report_dialect
 from flexlash.validation.ledger import Ledger
@@ -131,13 +131,13 @@ DOUBTS = {
     "thousands beside both signs": ("1.200;1.200,5", {"C2"}),
     "undecided": ("1.200;1,6 mm;160.5;1,6", {"C2"}),
     "a lone point": ("1.7;1,6;160,5;1,8", {"C2"}),
-    "a lone point beside a cell to mend": ("1.7;1.6 mm;160,5;1,8;1,9", {"C2"}),
+    "a lone point beside a cell to fix": ("1.7;1.6 mm;160,5;1,8;1,9", {"C2"}),
 }
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("what", DOUBTS)
-def test_a_doubtful_number_stays_in_doubt_in_the_mended_file(tmp_path, what):
+def test_a_doubtful_number_stays_in_doubt_in_the_fixed_file(tmp_path, what):
     """Mending other cells of a table never makes a number of one whose decimal sign is in doubt."""
     values, doubtful = DOUBTS[what]
     keys = ["torque_Nm", "wall_thickness_mm", "cylinder_length_mm", "mean_radius_mm", "disk_inner_radius_mm"]
@@ -145,7 +145,7 @@ def test_a_doubtful_number_stays_in_doubt_in_the_mended_file(tmp_path, what):
     lines = [["variant", "material", *keys[: len(numbers)], "flexspline_type"], ["A", "20Cr2Ni4", *numbers, "cylindre"]]
     path, new = tmp_path / "a.csv", tmp_path / "new.csv"
     path.write_text("\n".join(map(";".join, lines)), encoding="utf-8")
-    outcome, fixes = mend(path, new)
+    outcome, fixes = fix(path, new)
     assert "cylinder" in {certain_value.value for certain_value in fixes}
     for found in (check(path).findings, outcome.findings, check(new).findings):
         assert doubtful <= {one.cell for one in found if one.code == "E202"}

@@ -50,7 +50,7 @@ def test_the_grade_that_was_meant(entered, meant):
     ("entered", "certain_value"), [("IT 7", "IT7"), ("ISO 2768-mK", "2768-m"), ("7", None), ("g6", None)]
 )
 def test_a_grade_is_repaired_unless_its_letters_are_missing(table, sound, entered, certain_value):
-    """A grade that is written otherwise can be mended without asking; a bare number cannot."""
+    """A grade that is written otherwise can be fixed without asking; a bare number cannot."""
     rows = [{"tolerance_class": "standard", "dimension": "wall_thickness", "grade": entered}]
     outcome = check(table([sound]), tolerances=table(rows, "tolerances.csv"))
     (found,) = [one for one in outcome.findings if one.code == "E210"]

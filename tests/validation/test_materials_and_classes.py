@@ -560,8 +560,8 @@ def test_what_a_setting_requires_is_said_of_the_setting():
     assert "a whole number" in ledger.findings[0].message
 
 
-def test_the_mend_of_a_fraction():
-    """A seed of 1.5 is told to be whole, by message and mend."""
+def test_the_fix_of_a_fraction():
+    """A seed of 1.5 is told to be whole, by message and fix."""
     _, ledger = _settings(["seed", 1.5])
     assert "whole" in ledger.findings[0].fix
 

@@ -5,14 +5,14 @@ import pytest
 from filled import SOUND
 
 from flexlash.feedback.template.upgrade import upgraded
-from flexlash.pipeline import check, mend, run
+from flexlash.pipeline import check, fix, run
 
 NAMES = {"Variants": "Variants - Table 1-1", "Materials": "Materials - Table 1", "Settings": "Settings - Table 1"}
 
 
 @pytest.fixture
 def renamed(workbook):
-    """Return a filled template whose sheets were renamed, as Numbers does, with one cell to mend."""
+    """Return a filled template whose sheets were renamed, as Numbers does, with one cell to fix."""
     path = workbook([SOUND, {**SOUND, "variant": "B", "wall_thickness_mm": "1,6"}], settings={"seed": 7})
     book = openpyxl.load_workbook(path)
     for name, other in NAMES.items():
@@ -42,9 +42,9 @@ def test_report_links_and_recreates(renamed, tmp_path):
     assert again.results.equals(outcome.results)
 
 
-def test_mended_marked_and_upgraded(renamed, tmp_path):
-    """Mended files keep the names of their sheets; a new template takes everything over."""
-    outcome, fixes = mend(renamed, tmp_path / "mended.xlsx", marked_copy=tmp_path / "marked.xlsx")
+def test_fixed_marked_and_upgraded(renamed, tmp_path):
+    """Fixed files keep the names of their sheets; a new template takes everything over."""
+    outcome, fixes = fix(renamed, tmp_path / "fixed.xlsx", marked_copy=tmp_path / "marked.xlsx")
     assert [certain_value.sheet for certain_value in fixes] == [NAMES["Variants"]]
     assert outcome.counts["computed"] == 2
     check(renamed, marked_copy=tmp_path / "checked.xlsx")

@@ -135,8 +135,8 @@ def test_a_folder_and_a_large_table_in_it_are_computed(folder):
     }
 
 
-def test_a_faulty_submission_is_checked_marked_and_mended(folder):
-    """Every fault of the faulty example is told by code; the marked copy and the mended file can be opened."""
+def test_a_faulty_submission_is_checked_marked_and_fixed(folder):
+    """Every fault of the faulty example is told by code; the marked copy and the fixed file can be opened."""
     path = regenerate.ROOT / "data" / "needs-fixing.xlsx"
     done = _flexlash(folder, "check", str(path), "--annotate", "--apply-fixes", "-o", ".")
     assert done.returncode == 3

@@ -133,14 +133,14 @@ class _Class:
     ) -> dict[Pair, float]:
         """Return the measured correlations that hold, and say which do, and which do not as they were measured."""
         values = {pair: found.correlation for pair, found in measured.items() if not self.crossed(pair)}
-        mended = without_contradiction(values)
+        fixed = without_contradiction(values)
         used = [pair for pair in values if pair not in entered]
         lost = [pair for pair in measured if self.crossed(pair) and pair not in entered]
-        changed = [pair for pair in used if abs(mended[pair] - values[pair]) > _SHARP]
+        changed = [pair for pair in used if abs(fixed[pair] - values[pair]) > _SHARP]
         self._tell("I531", used, lambda pair: f"{_named(pair)} {_told(measured[pair])}")
         self._tell("W449", lost, lambda pair: f"{_named(pair)} left out, since one scatters between lots")
-        self._tell("W449", changed, lambda pair: f"{_named(pair)} {mended[pair]:.3g} instead of {values[pair]:.3g}")
-        return {pair: mended[pair] for pair in used}
+        self._tell("W449", changed, lambda pair: f"{_named(pair)} {fixed[pair]:.3g} instead of {values[pair]:.3g}")
+        return {pair: fixed[pair] for pair in used}
 
     def _tell(self, code: str, pairs: Sequence[Pair], words: Callable[[Pair], str]) -> None:
         """Record what becomes of measured pairs, once a sample, at the first row of the class that takes it."""

@@ -37,7 +37,7 @@ Pair: TypeAlias = tuple[str, str]
 def contradictions(entered: Collection[Pair], correlations: Mapping[Pair, float]) -> Iterator[tuple[Pair, float, bool]]:
     """Yield each entered correlation that has to change, its nearest admissible value, and whether it has to alone.
 
-    Where one of several that contradict one another can mend it, the one that has to change least is named. Of each set
+    Where one of several that contradict one another can fix it, the one that has to change least is named. Of each set
     of dimensions that a part can have at once the first fault is told.
 
     Arguments: the pairs that are entered; all correlations by pairs, of which the others are measured and
@@ -66,8 +66,8 @@ def without_contradiction(measured: Mapping[Pair, float]) -> dict[Pair, float]:
 
     >>> without_contradiction({("a", "b"): 0.9, ("a", "c"): 0.9, ("b", "c"): 0.8})
     {('a', 'b'): 0.9, ('a', 'c'): 0.9, ('b', 'c'): 0.8}
-    >>> mended = without_contradiction({("a", "b"): 0.9, ("a", "c"): -0.9, ("b", "c"): 0.9})
-    >>> {pair: round(value, 6) for pair, value in mended.items()}
+    >>> fixed = without_contradiction({("a", "b"): 0.9, ("a", "c"): -0.9, ("b", "c"): 0.9})
+    >>> {pair: round(value, 6) for pair, value in fixed.items()}
     {('a', 'b'): 0.5, ('a', 'c'): -0.5, ('b', 'c'): 0.5}
     """
     matrix = _matrix(measured)

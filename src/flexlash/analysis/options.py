@@ -68,7 +68,7 @@ class Options:
     """What the caller decides; None leaves it to the submission's settings. `of` makes them and checks each.
 
     `marked_copy` is where the submission goes with its errors and warnings marked, when there are any; `given` are the
-    submissions that are given together: a mended one is skipped when its original is among them. With `from_report`
+    submissions that are given together: a fixed one is skipped when its original is among them. With `from_report`
     what is None is as it was in the run that made the report.
     """
 

@@ -58,8 +58,8 @@ __all__ = [
 SHOWN_MESSAGES = 3
 """Findings of a rule that are told one by one."""
 
-_NO_MEND = "Nothing to do"
-"""How the mend begins of a finding that needs none."""
+_NO_FIX = "Nothing to do"
+"""How the fix begins of a finding that needs none."""
 
 _NAME = 30
 """Most characters of a name in a sentence."""
@@ -125,7 +125,7 @@ def group_lines(groups: Iterable[FindingGroup], all_listed: str) -> Iterator[tup
             whole = "" if group.level == "info" else f"; {all_listed}"
             yield "", f"    … and {group.count - len(group.first)} more of the same kind{whole}"
         for fix in dict.fromkeys(found.fix for found in group.first):
-            if not fix.startswith(_NO_MEND):
+            if not fix.startswith(_NO_FIX):
                 yield "", f"    Fix: {fix}"
 
 
@@ -137,7 +137,7 @@ def summary_lines(outcome: Outcome, name: str, *, ran: bool) -> Iterator[str]:
 
 
 def state_words(outcome: Outcome, *, ran: bool) -> str:
-    """Return how much of a submission was computed, or is ready to be, and what is to mend."""
+    """Return how much of a submission was computed, or is ready to be, and what is to fix."""
     return words_of_state(outcome.counts, to_fix_words(outcome.findings), _waiting_words(outcome), ran=ran)
 
 

@@ -19,7 +19,7 @@ from flexlash.schema.number_words import share_words
 
 __all__ = ["Answer", "Command", "FileBytes", "RuleTotal", "Stage", "Task", "Told", "Travelling", "WorstVariant"]
 
-Command = Literal["check", "mend", "run"]
+Command = Literal["check", "fix", "run"]
 
 Stage = Literal["checking", "computing", "writing"]
 """What is being done with a submission: its cells are checked, its rows computed, its files written."""
@@ -143,12 +143,12 @@ class Answer(Travelling):
     """What came of a submission.
 
     `told` is what `--json` prints of it but its outputs, `finding_lines` and `details` are lines for the screen,
-    `words` how much was computed, `by_rule` the number of findings of each code. `file` is the report or the mended
+    `words` how much was computed, `by_rule` the number of findings of each code. `file` is the report or the fixed
     submission, `exports` are the samples and pictures that were wanted. `refused` says that it is no readable
     submission, `skipped` that flexlash wrote it, `fault` that the program failed. `exit_code` is that of a command for
     this submission alone whose files could all be written.
 
-    Where a page is wanted, `results` is Results as CSV, `mended` the submission with the certain fixes, None where
+    Where a page is wanted, `results` is Results as CSV, `fixed` the submission with the certain fixes, None where
     there are none, `page` what a page shows, as JSON (`report.page.shape.PageFacts`), and `rules` are the findings by
     rule and column.
     """
@@ -168,6 +168,6 @@ class Answer(Travelling):
     skipped: bool = False
     fault: Fault | None = None
     results: FileBytes | None = None
-    mended: FileBytes | None = None
+    fixed: FileBytes | None = None
     page: bytes = b""
     rules: tuple[RuleTotal, ...] = ()

@@ -189,7 +189,7 @@ class Totals:
         return to_fix(chain(self.before, self.after))[0] + self._to_fix
 
     def state_words(self, *, ran: bool) -> str:
-        """Return how much of the table was computed, or is ready to be, and what is to mend."""
+        """Return how much of the table was computed, or is ready to be, and what is to fix."""
         others = to_fix(chain(self.before, self.after))[1]
         fixes = words_of_fixes(self.cells_to_fix, others)
         return words_of_state(self.counts, fixes, self._waiting_words(), ran=ran)

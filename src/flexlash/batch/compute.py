@@ -44,7 +44,7 @@ def compute(task: bytes) -> bytes:
 
 
 def _answered(task: Task) -> Answer:
-    if task.command == "mend":
+    if task.command == "fix":
         found = fixed(task.source, task.options, task.tables)
         file = FileBytes(data=found.data, role=found.role) if found.fixes else None
         return answer_of(found.outcome, ran=False, file=file, copy=copy_of(found.outcome, task), fixes=found.fixes)

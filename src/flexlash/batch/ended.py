@@ -40,7 +40,7 @@ class Ended:
 
     `below` is its sub-folder of the folder that was given, `in_folder` says that there was one. `code` is its own
     among all of them. `told` is what `--json` prints of it but outputs, time and end; `error` the sentence that says
-    why nothing of it was computed or a file is missing, `mend` what helps where that is all that is known. Lines,
+    why nothing of it was computed or a file is missing, `fix` what helps where that is all that is known. Lines,
     words, rules, worst variants and fixes are those of an `Answer`. `fault` is one of the program's own. `seconds` is
     how long it took; `done_before` says that an earlier run has written its files.
     """
@@ -51,7 +51,7 @@ class Ended:
     in_folder: bool = False
     told: Mapping[str, Any] = field(default_factory=dict)
     error: str = ""
-    mend: str = ""
+    fix: str = ""
     finding_lines: tuple[tuple[str, str], ...] = ()
     words: str = ""
     details: tuple[str, ...] = ()
@@ -103,12 +103,12 @@ class Ended:
     def failing(cls, path: Path, code: ExitCode, error: str, found: Finding | None = None) -> Ended:
         """Return how a submission ended of which nothing is known but why; `found` says what helps."""
         by_rule = {found.code: 1} if found else {}
-        told, mend = _told_of(path, found), found.fix if found else ""
-        return cls(path=path, code=code, error=error, told=told, mend=mend, by_rule=by_rule)
+        told, fix = _told_of(path, found), found.fix if found else ""
+        return cls(path=path, code=code, error=error, told=told, fix=fix, by_rule=by_rule)
 
     @property
     def name(self) -> str:
-        """The file that the closing lines speak of: the mended one, where there is one."""
+        """The file that the closing lines speak of: the fixed one, where there is one."""
         return shown(self.written.paths[0] if self.fixes and self.written.paths else self.path, 4096)
 
     @property

@@ -32,19 +32,19 @@ def answer_with_page(task: Task) -> Answer:
         outcome = spread_out(found, replace(task.options, progress=telling.advance))
     telling.writing()
     data = report_data(outcome) if ran and outcome.computed else None
-    mended = _mended(checked, task)
-    fixes = mended.fixes if mended else ()
+    fixed = _fixed(checked, task)
+    fixes = fixed.fixes if fixed else ()
     answer = answer_of(outcome, ran=ran, file=report_of(outcome, task, data), copy=copy_of(outcome, task), data=data)
     return replace(
         answer,
         results=file_of(outcome, ".csv") if data else None,
-        mended=FileBytes(data=mended.data, role=mended.role) if mended else None,
+        fixed=FileBytes(data=fixed.data, role=fixed.role) if fixed else None,
         page=page_bytes(outcome, Found.of(outcome, ran=ran, fixes=fixes), ran=ran, data=data),
         rules=RuleTotal.all_of(outcome.findings),
     )
 
 
-def _mended(checked: Outcome, task: Task) -> Fixed | None:
+def _fixed(checked: Outcome, task: Task) -> Fixed | None:
     """Return the submission with the certain fixes, None where there are none."""
     if not certain_fixes(checked.findings):
         return None

@@ -49,7 +49,7 @@ Advance = Callable[[Ended], None]
 
 @dataclass(frozen=True, kw_only=True)
 class Wanted:
-    """A submission and where its report, or the mended one, its marked copy, and its samples and pictures go.
+    """A submission and where its report, or the fixed one, its marked copy, and its samples and pictures go.
 
     None for what is not wanted.
     """
@@ -172,7 +172,7 @@ class _SideBySide:
     def _is_large(self, index: int) -> bool:
         """Whether a submission is computed in chunks, for which this process is busy until it has ended."""
         batch, given = self._batch, self._batch.wanted[index].given
-        computed = batch.command != "mend" and not given.skipped and given.fault is None
+        computed = batch.command != "fix" and not given.skipped and given.fault is None
         return computed and large_tables(batch.options, [given.path])
 
     def _guarded(

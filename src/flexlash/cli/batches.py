@@ -29,7 +29,7 @@ __all__ = ["Planned", "carried_out", "to_be_told", "workers"]
 
 @dataclass(frozen=True, kw_only=True)
 class Planned:
-    """Where outputs go: report or mended file, marked copy, samples and pictures of each submission, summary of all."""
+    """Where outputs go: report or fixed file, marked copy, samples and pictures of each submission, summary of all."""
 
     files: Mapping[Path, Output] = field(default_factory=dict)
     copies: Mapping[Path, Output] = field(default_factory=dict)
@@ -87,7 +87,7 @@ def carried_out(
     resume: bool = False,
     scheduler: str | None = None,
 ) -> ExitCode:
-    """Compute, check or mend submissions side by side, write what is wanted, tell how each ended; return the code."""
+    """Compute, check or fix submissions side by side, write what is wanted, tell how each ended; return the code."""
     # Workers load their libraries while this process loads its own.
     with workers(_side_by_side(options, given.submissions), scheduler) as executor:
         from flexlash.batch.side_by_side import Batch, Wanted, side_by_side, tables_or_why

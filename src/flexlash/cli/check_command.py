@@ -1,4 +1,4 @@
-"""`flexlash check`: what is wrong with submissions, marked or mended on demand; nothing is sampled."""
+"""`flexlash check`: what is wrong with submissions, marked or fixed on demand; nothing is sampled."""
 
 from __future__ import annotations
 
@@ -75,4 +75,4 @@ def check(
     outputs = Planned(files=dict(zip(paths, fixed, strict=False)), copies=dict(zip(paths, copies, strict=False)))
     told = to_be_told(given, recursive=recursive, as_json=as_json, quiet=quiet, verbose=verbose)
     chosen = Options.of("check()", options)
-    sys.exit(carried_out("mend" if apply_fixes else "check", given, outputs, chosen, told))
+    sys.exit(carried_out("fix" if apply_fixes else "check", given, outputs, chosen, told))

@@ -47,7 +47,7 @@ def schema(*, as_json: bool) -> None:
 @click.command()
 @click.argument("code", required=False)
 def explain(code: str | None) -> None:
-    """Say what a finding means and how to mend it; without CODE, list all codes."""
+    """Say what a finding means and how to fix it; without CODE, list all codes."""
     if code is None:
         for rule in CATALOGUE.values():
             click.echo(f"{rule.code}  {rule.level:8} {rule.title}")

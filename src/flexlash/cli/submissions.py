@@ -156,8 +156,8 @@ class Submissions:
             files = ", ".join(map(named, ended.written.paths)) if ended.refused else ""
             where = f" Written: {files}" if files else ""
             complain(f"{'' if named(ended.path) in ended.error and not code else name}{code}{ended.error}{where}")
-        if ended.mend:
-            click.echo(f"{name if self.several else ''}Fix: {ended.mend}", err=True)
+        if ended.fix:
+            click.echo(f"{name if self.several else ''}Fix: {ended.fix}", err=True)
 
     def _one_line(self, ended: Ended) -> Iterator[_Line]:
         """Yield what the screen shows of one submission among several: how much was computed, and what was written."""
@@ -221,7 +221,7 @@ class Submissions:
 
 
 def _fix_lines(fixes: Sequence[Fix]) -> Iterator[str]:
-    """Yield what was changed in a mended submission, the first cells of it by name."""
+    """Yield what was changed in a fixed submission, the first cells of it by name."""
     yield (f"{counted(len(fixes), 'cell')} fixed:" if fixes else "Nothing can be fixed with certainty.")
     for fix in fixes[:_SHOWN_FIXES]:
         yield f'    {shown(fix.place)}: "{shown(fix.found)}" → {shown(fix.written)} ({fix.code})'

@@ -47,7 +47,7 @@ def complain(text: str) -> None:
 
 
 def print_refusal(found: Finding, file: str) -> None:
-    """Print why a file was refused, and the mend."""
+    """Print why a file was refused, and the fix."""
     complain(f"{'' if file in found.message else f'{named(file)}: '}{found.code} {found.message}")
     click.echo(f"Fix: {found.fix}", err=True)
 

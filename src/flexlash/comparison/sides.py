@@ -86,12 +86,12 @@ class Side:
     def entries(self) -> dict[Name, dict[str, Any]]:
         """Return what was entered for each variant: blank cells with their default, faulty ones as entered."""
         table = self.validated.table
-        mends = {
+        fixes = {
             (finding.address, finding.column): finding.certain_value
             for finding in self._findings
             if table and finding.sheet == table.sheet and finding.certain_value is not None
         }
-        return {name: _entered(record, table, mends) for name, record in self.records.items() if table}
+        return {name: _entered(record, table, fixes) for name, record in self.records.items() if table}
 
     def hindrance(self, name: Name) -> str:
         """Return why a variant cannot be computed, an empty text where nothing is in its way."""
@@ -250,17 +250,17 @@ def _named(names: Iterable[str]) -> list[Name]:
 
 
 def _entered(
-    record: Mapping[str, Any], table: Table, mends: Mapping[tuple[CellAddress | None, str], str | float | None]
+    record: Mapping[str, Any], table: Table, fixes: Mapping[tuple[CellAddress | None, str], str | float | None]
 ) -> dict[str, Any]:
     """Return a row of Variants as it is compared."""
     entered = {}
     for key, column in columns_of("Variants").items():
         value = record[key]
         if (record["row"], key) in table.faulty:
-            mend = mends.get((table.address(record["row"], key), key))
+            fix = fixes.get((table.address(record["row"], key), key))
             value = shown(table.entered(record["row"], key))
-            if isinstance(mend, float):
-                value = mend * table.heading.factors.get(key, 1.0)
+            if isinstance(fix, float):
+                value = fix * table.heading.factors.get(key, 1.0)
         elif value is None and not column.is_number:
             value = column.default
         entered[key] = None if value == 0 and column.zero_is_blank else value

@@ -1,4 +1,4 @@
-"""What goes back to the sender: the submission with its findings marked in it, or with the certain ones mended."""
+"""What goes back to the sender: the submission with its findings marked in it, or with the certain ones fixed."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from flexlash.schema.findings import Finding
 __all__ = ["Fixed", "certain_fixes", "fixed", "fixed_from", "marked", "worth_marking"]
 
 _PASSES = 3
-"""Most times that a mended submission is looked at again, since one fix may uncover another fault."""
+"""Most times that a fixed submission is looked at again, since one fix may uncover another fault."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fixed:
     """A submission with the certain fixes made, what came out of checking that, and the fixes.
 
-    `role` is what a workbook says of itself: that it is mended, and of which submission.
+    `role` is what a workbook says of itself: that it is fixed, and of which submission.
     """
 
     data: bytes
@@ -52,7 +52,7 @@ def fixed_from(
 ) -> Fixed:
     """Return the same of a submission by what came of checking it.
 
-    `numbers` says whether the outcome of the mended one has nominal numbers and Results. Bytes and fixes do not depend
+    `numbers` says whether the outcome of the fixed one has nominal numbers and Results. Bytes and fixes do not depend
     on that: validation alone knows what is certain.
     """
     original = outcome.submission

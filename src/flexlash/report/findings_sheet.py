@@ -46,7 +46,7 @@ _STYLES = {"error": "error", "warning": "warning", "info": "text"}
 _PER_LINE = {"message": 51, "fix": 44, "value": 21, "suggestion": 14}
 """Characters of a column's text on one line."""
 
-_MEND_PER_LINE = 105
+_FIX_PER_LINE = 105
 _LINE = 15.5
 _RULES_HEADER = 3
 _LABELS = {(schema, column.key): column.label for schema, columns in ENTRY_SHEETS.items() for column in columns}
@@ -125,7 +125,7 @@ def _write_rules(book: Book, sheet: Any, outcome: Outcome, listed: int) -> int:
     sheet.merge_range(row, 7, row, last, "Fix", book.format("header"))
     for row, (code, group) in enumerate(rules.items(), start=_RULES_HEADER + 1):
         fixes = {finding.fix for finding in group}
-        mend = fixes.pop() if len(fixes) == 1 and len(group) == counts[code] else explanation_of(code, {}).mend
+        fix = fixes.pop() if len(fixes) == 1 and len(group) == counts[code] else explanation_of(code, {}).fix
         level = CATALOGUE[code].level
         sheet.write_string(row, 0, level, book.format(_STYLES[level]))
         sheet.write_string(row, 1, code, book.format("text"))
@@ -134,8 +134,8 @@ def _write_rules(book: Book, sheet: Any, outcome: Outcome, listed: int) -> int:
         sheet.write_string(row, 3, CATALOGUE[code].title, book.format("indented"))
         sheet.write_string(row, 6, f"flexlash explain {code}", book.format("text"))
         sheet.merge_range(row, 7, row, last, "", book.format("wrap"))
-        sheet.write_string(row, 7, mend, book.format("wrap"))
-        sheet.set_row(row, _LINE * (1 + len(mend) // _MEND_PER_LINE))
+        sheet.write_string(row, 7, fix, book.format("wrap"))
+        sheet.set_row(row, _LINE * (1 + len(fix) // _FIX_PER_LINE))
     header = FIRST_FINDING - 1 + len(rules)
     heading = "Every finding" if listed == sum(counts.values()) else "The first findings"
     sheet.write_string(header - 1, 0, heading, book.format("label"))

@@ -15,7 +15,7 @@ Level = Literal["error", "warning", "info"]
 
 @dataclass(frozen=True, kw_only=True)
 class Rule:
-    """A code of the catalogue: its title, message and mend, and what it means at length.
+    """A code of the catalogue: its title, message and fix, and what it means at length.
 
     `message` and `fix` are format strings; `{place}` and `{name}` are the address and the column's name.
     """

@@ -46,7 +46,7 @@ class Explanation:
     title: str
     pattern: str
     meaning: str
-    mend: str
+    fix: str
     example: str
 
     def lines(self) -> Iterator[str]:
@@ -56,7 +56,7 @@ class Explanation:
         yield self.pattern
         yield self.meaning
         yield ""
-        yield f"Fix: {self.mend}"
+        yield f"Fix: {self.fix}"
         if self.example:
             yield f"Example: {self.example}"
 
@@ -75,13 +75,13 @@ def explanation_of(code: str, examples: Mapping[str, str] | None = None) -> Expl
         title=rule.title,
         pattern=_generally(rule.message),
         meaning=rule.explanation,
-        mend=_generally(rule.fix),
+        fix=_generally(rule.fix),
         example=(real_examples() if examples is None else examples).get(code, ""),
     )
 
 
 def _generally(text: str) -> str:
-    """Return a message or mend without a cell at hand.
+    """Return a message or fix without a cell at hand.
 
     >>> _generally("{place} {name} = {value}: less than {other:g} mm is required.")
     'Sheet!Cell Column = …: less than … mm is required.'
@@ -110,7 +110,7 @@ def _section(explanation: Explanation) -> str:
         f"### {explanation.code} {explanation.title}",
         f"`{explanation.pattern}`",
         explanation.meaning,
-        f"Fix: {explanation.mend}",
+        f"Fix: {explanation.fix}",
         f"Example: `{explanation.example}`\n" if explanation.example else "",
     )
     return "\n\n".join(filter(None, parts)).rstrip() + "\n"

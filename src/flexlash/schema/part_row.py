@@ -137,7 +137,7 @@ class PartRule:
     counts as 0 stands beside `given`. `after` are codes of rules that say it already when they are broken: they stand
     before this one, and it is silent. `facts` are what the finding names beside the entry; `compares_lengths` tells
     that a mistaken unit breaks it; `reached` is what the dimension reaches where limits of tolerance break it.
-    `demands` tells a rule that an entry of the dimension mends, or none of it; one in `instead` mends it as well.
+    `demands` tells a rule that an entry of the dimension fixes, or none of it; one in `instead` fixes it as well.
     """
 
     code: str

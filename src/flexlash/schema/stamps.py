@@ -41,7 +41,7 @@ def stamped(data: bytes, role: str) -> bytes:
     """Return a file's bytes with its stamp, where they have room for one; the same bytes for the same bytes.
 
     `role` says what the file is: `report`, `results`, `levers`, `distribution`, `checked`, `recreated`, `summary`,
-    `picture`, or `mended` and the SHA-256 of the submission that was mended.
+    `picture`, or `mended` and the SHA-256 of the submission that was fixed.
     """
     file = io.BytesIO(data)
     stamp(file, role)

@@ -106,10 +106,10 @@ def _files(submission: StoredSubmission, answer: Answer, reason: str) -> Iterato
         yield KeptFile(role="results", ending="-results.csv", data=answer.results.data)
     if answer.copy is not None:
         yield KeptFile(role="checked", ending=f"{CHECKED_NAME}.xlsx", data=_stamped(answer.copy))
-    if answer.mended is not None:
+    if answer.fixed is not None:
         ending = PurePath(submission.name).suffix.lower()
-        ending = ending if ending in _SUBMISSIONS else ".xlsx" if answer.mended.data.startswith(b"PK") else ".csv"
-        yield KeptFile(role="mended", ending=f"{FIXED_NAME}{ending}", data=_stamped(answer.mended))
+        ending = ending if ending in _SUBMISSIONS else ".xlsx" if answer.fixed.data.startswith(b"PK") else ".csv"
+        yield KeptFile(role="fixed", ending=f"{FIXED_NAME}{ending}", data=_stamped(answer.fixed))
     if answer.exit_code not in {ExitCode.FINE, ExitCode.OVER_LIMIT} or answer.copy is not None:
         text = reasons_text(answer, submission.name, submission=submission.id, reason=reason)
         yield KeptFile(role="reasons", ending="-reasons.txt", data=text)

@@ -27,10 +27,10 @@ STATES: tuple[State, ...] = get_args(State)
 Door = Literal["page", "folder"]
 """How a submission came in."""
 
-FileRole = Literal["report", "results", "findings", "checked", "mended", "reasons", "outcome", "page"]
+FileRole = Literal["report", "results", "findings", "checked", "fixed", "reasons", "outcome", "page"]
 """What a file of a result is.
 
-`report`, `results` (.csv or .parquet), `findings` (.csv, of a large table), `checked` (the marked copy), `mended` and
+`report`, `results` (.csv or .parquet), `findings` (.csv, of a large table), `checked` (the marked copy), `fixed` and
 `reasons` (a plain text) go to people; `outcome` is the object that `--json` prints, `page` what the page shows, both
 JSON.
 """

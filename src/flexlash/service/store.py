@@ -291,7 +291,8 @@ class Store(Outbox):
 
 
 def _named(database: Database) -> None:
-    """Give a new store a name of its own; one that was a backup is a store from now on."""
+    """Give a new store a name of its own; one that was a backup is a store from now on, one of before 0.10 as well."""
     with database.transaction():
         database.run("INSERT OR IGNORE INTO meta VALUES ('name', ?)", secrets.token_hex(8))
         database.run("DELETE FROM meta WHERE key = 'backup'")
+        database.run("UPDATE file SET role = ? WHERE role = ?", "fixed", "mended")

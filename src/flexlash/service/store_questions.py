@@ -151,7 +151,7 @@ class StoreQuestions:
         return [(row["sha256"], row["size"]) for row in self._database.all(_NAMED)]
 
     def warnings(self) -> Sequence[str]:
-        """Return what whoever looks after the service should mend, in sentences."""
+        """Return what whoever looks after the service should fix, in sentences."""
         free = shutil.disk_usage(self.folder).free
         return [f"the disk of the store has only {free // 2**20} MiB left"] if free < _LOW else []
 

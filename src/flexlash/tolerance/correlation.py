@@ -41,7 +41,7 @@ class CorrelationFault:
     `kind` says what: `name` that an input does not scatter, `alone` that it is correlated with itself, `twice` that the
     pair was entered before, `range` that the correlation is none from −1 to 1, `matrix` that no scores have these
     correlations. Of the latter `nearest` holds the nearest admissible values: of the one entry that has to change least
-    if the others are kept, or of all entries of the cluster where no single one can mend it.
+    if the others are kept, or of all entries of the cluster where no single one can fix it.
     """
 
     kind: Literal["name", "alone", "twice", "range", "matrix"]
@@ -116,8 +116,8 @@ class CorrelationMatrix:
         entered = np.zeros(matrix.shape, dtype=bool)
         for first, second in inside.values():
             entered[first, second] = entered[second, first] = True
-        mended = nearest_correlations(matrix, entered)
-        values = {index: float(mended[pair]) for index, pair in inside.items()}
+        fixed = nearest_correlations(matrix, entered)
+        values = {index: float(fixed[pair]) for index, pair in inside.items()}
         return CorrelationFault(kind="matrix", entries=tuple(inside), nearest=values)
 
 

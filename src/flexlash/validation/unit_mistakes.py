@@ -165,7 +165,7 @@ def _unit_mistake(table: Table, record: Mapping[str, Any], mistaken: tuple[str, 
 
 
 def _variant_factors(record: Mapping[str, Any]) -> Iterator[tuple[str, float, str]]:
-    """Yield the mistaken cells of a Variants row, each with the factor that mends it."""
+    """Yield the mistaken cells of a Variants row, each with the factor that fixes it."""
     mistaken = _length_factors(record)
     for key, factor in mistaken.items():
         yield key, factor, "beside the other lengths of the row"
@@ -176,9 +176,9 @@ def _variant_factors(record: Mapping[str, Any]) -> Iterator[tuple[str, float, st
     in_doubt = 1 / _THOUSAND in mistakes.values() and radius * _TENFOLD <= _GREATEST_RADIUS
     if in_doubt:
         yield key, _TENFOLD, "for this torque: check the unit of all lengths, or of the torque"
-    for name, mend in mistakes.items():
-        if mend is not None and not in_doubt:
-            yield name, mend, "for this wall" if mend < 1 else "for this radius"
+    for name, by in mistakes.items():
+        if by is not None and not in_doubt:
+            yield name, by, "for this wall" if by < 1 else "for this radius"
 
 
 def _torque_factor(torque: float | None, radius: float, wall: float) -> float | None:
@@ -201,7 +201,7 @@ def _radius(record: Mapping[str, Any]) -> tuple[str, float | None]:
 
 
 def _length_factors(record: Mapping[str, Any]) -> dict[str, float]:
-    """Return the factors that mend the lengths of a row, none where it cannot be told which are wrong.
+    """Return the factors that fix the lengths of a row, none where it cannot be told which are wrong.
 
     The radius is what most of the lengths agree with: as entered, else a thousandfold or a thousandth of it.
     """
@@ -230,7 +230,7 @@ def _factor(key: str, share: float) -> float | None:
 
 
 def _material_factors(record: Mapping[str, Any]) -> Iterator[tuple[str, float, str]]:
-    """Yield the mistaken cells of a Materials row, each with the factor that mends it."""
+    """Yield the mistaken cells of a Materials row, each with the factor that fixes it."""
     for key, span in _MATERIAL.items():
         value = record[key]
         if value is not None and not span.below <= value <= span.above:

@@ -1,4 +1,4 @@
-"""The Findings sheet of a marked copy: what was found, where, and how to mend it, worst first."""
+"""The Findings sheet of a marked copy: what was found, where, and how to fix it, worst first."""
 
 from __future__ import annotations
 

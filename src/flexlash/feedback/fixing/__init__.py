@@ -1,1 +1,1 @@
-"""A submission and what is certain about its faults → a new submission in which they are mended, each one listed."""
+"""A submission and what is certain about its faults → a new submission in which they are fixed, each one listed."""

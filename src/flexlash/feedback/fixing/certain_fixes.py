@@ -1,4 +1,4 @@
-"""Which findings can be mended without asking: the value to write where nothing else can be meant."""
+"""Which findings can be fixed without asking: the value to write where nothing else can be meant."""
 
 from __future__ import annotations
 

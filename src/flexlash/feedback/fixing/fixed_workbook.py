@@ -19,7 +19,7 @@ from flexlash.schema.unused_names import numbered_names
 __all__ = ["FIXES_SHEET", "fixed_workbook"]
 
 FIXES_SHEET = "Fixes"
-"""Sheet of a mended submission that lists what was changed."""
+"""Sheet of a fixed submission that lists what was changed."""
 
 _HEADINGS = ("Cell", "Found", "Now", "Finding")
 

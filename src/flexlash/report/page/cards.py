@@ -43,7 +43,7 @@ def _card(group: FindingGroup, findings: Sequence[Finding], sheets: Sheets) -> C
         cells=group.cells,
         places=f"{shown(group.sheet)}!{group.ranges}" if group.cells else shown(group.sheet),
         message=first.message,
-        fix=first.fix if is_one else explanation_of(group.code, {}).mend,
+        fix=first.fix if is_one else explanation_of(group.code, {}).fix,
         suggestion=first.suggestion if len(suggestions) == 1 else "",
         grid=sheets.grid(findings),
         findings=[finding_facts(found) for found in listed],

@@ -1,4 +1,4 @@
-"""The first cells of a rule drawn like the sheet: letters, headers, row numbers, what was entered and its mend."""
+"""The first cells of a rule drawn like the sheet: letters, headers, row numbers, what was entered and its fix."""
 
 from __future__ import annotations
 
@@ -87,11 +87,11 @@ class Sheets:
         }
 
     @cached_property
-    def _mends(self) -> dict[tuple[str, str], str]:
+    def _fixes(self) -> dict[tuple[str, str], str]:
         return {(fix.sheet, fix.cell): self._written(fix) for fix in self.fixes}
 
     def _written(self, fix: Fix) -> str:
-        """Return a mend as it stands in the mended submission."""
+        """Return a fix as it stands in the fixed submission."""
         dialect = self.submission.dialect
         comma = bool(dialect and dialect.comma_number) and not isinstance(fix.value, str)
         return fix.written.replace(".", ",") if comma else shown(fix.written, _LONGEST)
@@ -134,12 +134,12 @@ class Sheets:
         """Return a row of the sheet, and what it becomes."""
         cells = sheet.rows.get(number, {})
         addresses = [CellAddress(row=number, column=column) for column in columns]
-        mended = [self._mends.get((sheet.name, str(cell)), "") if cell in guilty else "" for cell in addresses]
+        fixed = [self._fixes.get((sheet.name, str(cell)), "") if cell in guilty else "" for cell in addresses]
         return GridRow(
             row=number,
             cells=[_text(cells.get(column)) for column in columns],
             marked=[place for place, cell in enumerate(addresses) if cell in guilty],
-            mended=mended if any(mended) else None,
+            fixed=fixed if any(fixed) else None,
         )
 
 

@@ -55,14 +55,14 @@ class Refused(TypedDict):
 class GridRow(TypedDict):
     """Cells of one row as entered, one for each column of the grid, an empty text where blank or left out.
 
-    `marked` are the places in it, from 0, of guilty cells; `mended` are the cells after the certain fixes, an empty
+    `marked` are the places in it, from 0, of guilty cells; `fixed` are the cells after the certain fixes, an empty
     text where nothing changes, and null for a row without any.
     """
 
     row: int
     cells: list[str]
     marked: list[int]
-    mended: list[str] | None
+    fixed: list[str] | None
 
 
 class Grid(TypedDict):
@@ -92,7 +92,7 @@ class FindingFacts(TypedDict):
 class Card(TypedDict):
     """The findings of one rule in one sheet: `count` of them at so many `cells`, whose `places` are told as ranges.
 
-    `message` is that of the first, `fix` mends all of them; `findings` are the first, `more` how many there are beside.
+    `message` is that of the first, `fix` fixes all of them; `findings` are the first, `more` how many there are beside.
     `grid` has the first cells, null where they cannot be drawn.
     """
 

@@ -39,7 +39,7 @@ def offered(
     unread = submission.state == "rejected" and bool(facts and facts["refused"])
     words = {
         "checked": "Reasons" if unread else "Marked copy",
-        "mended": f"File with {grouped(fixes)} certain fix{'' if fixes == 1 else 'es'}",
+        "fixed": f"File with {grouped(fixes)} certain fix{'' if fixes == 1 else 'es'}",
         "report": f"Report of the {counted(computed, 'row')}" if partly and computed > 1 else "Report",
         "results": "Results",
         "findings": "All findings",
@@ -48,7 +48,7 @@ def offered(
     order = (
         list(words)
         if partly or submission.state == "rejected"
-        else ["report", "results", "findings", "checked", "mended", "reasons"]
+        else ["report", "results", "findings", "checked", "fixed", "reasons"]
     )
     there = [role for role in order if role in files and (role != "reasons" or not _SAID & set(files))]
     return [
