@@ -192,7 +192,7 @@ def test_a_lost_worker_is_counted_and_three_are_too_many(store, held):
             assert time.monotonic() - begun < 1
         (found,) = ended(store, id_)
         assert (found.state, found.exit_code) == ("rejected", 4)
-        assert found.reason == "p.csv stopped the worker 3 times, so that nothing of it was computed."
+        assert found.reason == "p.csv stopped the worker 3 times, so it was not computed."
         assert "stopped the worker 3 times" in store.blobs.read(store.files(id_)["reasons"].sha256).decode()
         again = hand_in(store, name="p.csv")
         assert not store.submission(again).same_as

@@ -56,7 +56,7 @@ def test_r4_poison_costs_three_tries_and_the_others_are_done(store, processes, m
     assert time.monotonic() - begun < 60
     assert {one.state for one in found.values()} == {"rejected"}
     for name in ("kills-1.csv", "kills-2.csv"):
-        assert found[name].reason == f"{name} stopped the worker 3 times, so that nothing of it was computed."
+        assert found[name].reason == f"{name} stopped the worker 3 times, so it was not computed."
         assert dispatcher.lines.getvalue().count(f"worker lost {ids[name]}") == 3
     assert "the time for reading" in found["hangs-1.csv"].reason
     assert "time for reading" in found["loops-1.csv"].reason

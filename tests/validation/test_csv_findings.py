@@ -26,7 +26,7 @@ def _told(content):
         ("a,b\n".encode("utf-16"), ["a.csv was read as UTF-16 text with columns separated by comma."]),
         (
             "a,b\nx,Müller\n".encode("cp1252"),
-            ['a.csv was read as Windows-1252 text, since it is no Unicode; Variants!B2 shows "Müller".'],
+            ['a.csv was read as Windows-1252 text, since it is not Unicode; Variants!B2 shows "Müller".'],
         ),
         (
             b"a;b\nx; 1,6\ny;2,5\n",

@@ -123,7 +123,7 @@ CATALOGUE = _rules(
     (
         "E112",
         "misspelt header",
-        "{place}: the header {value} is unknown but probably means {name}.",
+        '{place}: the header "{value}" is unknown.',
         "Write {label}, or a name that does not resemble a column of the template.",
         "A misspelt optional column would otherwise be left out of the calculation silently; a required one would be "
         "missing. Rows that hold a value under it are not computed.",
@@ -131,7 +131,7 @@ CATALOGUE = _rules(
     (
         "E113",
         "unknown unit",
-        "{place}: the unit in the header {value} is unknown; {name} is measured in {unit}.",
+        '{place}: the unit in the header "{value}" is unknown; {name} is measured in {unit}.',
         "Write {label} and enter the values in {unit}.",
         "Units that measure the same quantity are converted; flexlash does not guess at others. "
         "Rows that hold a value under it are not computed.",
@@ -182,14 +182,14 @@ CATALOGUE = _rules(
         "E121",
         "report without its inputs",
         "{file} carries no inputs: an older version made it, or its hidden sheet Carried was deleted.",
-        "Run the submission that it was made from; its name stands on the report's sheet About.",
+        "Run the submission that it was made from; its name is on the report's sheet About.",
         "A report carries what was read on a hidden sheet, with every digit, so that the report alone is enough.",
     ),
     (
         "E122",
         "inputs of a report unreadable",
         "{file} carries inputs that cannot be read: {found}.",
-        "Take the report as flexlash wrote it, or run the submission that it was made of.",
+        "Take the report as flexlash wrote it, or run the submission that it was made from.",
         "The hidden sheet Carried is checked as every submission is; nothing of it is used when one part is wrong.",
     ),
     (
@@ -203,7 +203,7 @@ CATALOGUE = _rules(
     (
         "E128",
         "diameter instead of a radius",
-        "{place}: the header {value} names a diameter, but flexlash takes the {name}.",
+        '{place}: the header "{value}" names a diameter, but flexlash takes the {name}.',
         "Enter half of each value under {label}{detail}.",
         "Cylinder and disk are entered by their radii; the bore alone may be given as a diameter. Rows that hold a "
         "value under such a header are not computed.",
@@ -230,7 +230,7 @@ CATALOGUE = _rules(
         "date or time instead of an entry",
         "{place} {name} holds the {kind} {value}: {requirement} is required.",
         "Format the cell as Number (or Text for a name), then type the entry again.",
-        "Excel turns entries such as 1/4 or 1-2 into dates unless the cell is formatted before.",
+        "Excel turns entries such as 1/4 or 1-2 into dates unless the cell was formatted beforehand.",
     ),
     (
         "E204",
@@ -271,7 +271,7 @@ CATALOGUE = _rules(
         "E209",
         "not in the list",
         '{place} {name} = "{value}": {requirement} is required.',
-        "Write an entry of the list: {choices}.",
+        "Choose one of these: {choices}.",
         "Letter case and spaces do not matter; the word must be on the list.",
     ),
     (
@@ -328,7 +328,7 @@ CATALOGUE = _rules(
     (
         "E217",
         "nothing but a name",
-        '{place}: the row "{value}" holds no number, so that it is no variant.',
+        '{place}: the row "{value}" holds no number, so it is not a variant.',
         "Fill the row, or delete it.",
         "A variant needs a torque, a length, a radius and a wall. A row that lacks them all is reported once, not "
         "cell by cell.",
@@ -379,7 +379,7 @@ CATALOGUE = _rules(
         '{place} {name} = "{value}" is not a class of Tolerances.',
         "Write the name of a class as Tolerances has it, or add rows for it.",
         "A class takes over every row of the class it is based on that it does not have itself. Class standard is "
-        "built in and may be named though no row stands for it.",
+        "built in and may be named even though it has no rows.",
     ),
     (
         "E301",
@@ -583,7 +583,7 @@ CATALOGUE = _rules(
         "wrong unit, contradictory row",
         "{place} {name} = {value} is about {other} and contradicts {contradicted}.",
         "Enter the value in the unit of the header, or correct the unit in the header.",
-        "Metres in a column of millimetres, for instance. Because of this one value the row makes no part, so it is "
+        "Metres in a column of millimetres, for instance. This one value makes the row a part that cannot be, so it is "
         "not computed; the cell that it contradicts is probably right.",
     ),
     (
@@ -605,7 +605,7 @@ CATALOGUE = _rules(
     (
         "E334",
         "row that stops its process",
-        "{place}: computing this row stopped its process three times, so that nothing of it was computed.",
+        "{place}: computing this row stopped its process three times, so it was not computed.",
         "Look for an implausible value; if the row is right, compute it alone and report the fault.",
         "A large table is computed in chunks. A chunk that loses its process three times is halved until the row is "
         "found; all other rows are computed. This is a fault of the program or of the machine, such as too little "
@@ -702,7 +702,7 @@ CATALOGUE = _rules(
     (
         "E347",
         "correlation of an exact dimension",
-        "{place} {name} = {value}: class {other} leaves this dimension exact, so that it scatters with no other.",
+        "{place} {name} = {value}: class {other} leaves this dimension exact, so it cannot scatter with another.",
         "Add its row to Tolerances, or delete this row.",
         "Only dimensions that scatter can scatter together. A variant that lacks one of the two, or takes it from "
         "another, such as a blank disk thickness, does without the pair.",
@@ -719,7 +719,7 @@ CATALOGUE = _rules(
     (
         "E349",
         "lot correlated with a part",
-        "{place}: in class {other} {value} scatters between lots, {detail} between parts.",
+        "{place}: in class {other}, {value} scatters between lots and {detail} between parts.",
         "Let both scatter between lots or both between parts (Tolerances, Scatters between), or delete the row.",
         "A dimension that all parts of a lot share cannot follow one that each of them has for itself.",
     ),
@@ -774,7 +774,7 @@ CATALOGUE = _rules(
         "E366",
         "unknown variant",
         '{place} {name} = "{value}" is not a row of Variants.',
-        "Write the name of a variant as Variants has it; leave the cell blank for every variant.",
+        "Write the name as Variants has it; leave the cell blank for every variant.",
         "The name must be that of a row of Variants; letter case and spaces do not matter. The study of this row is "
         "left out.",
     ),
@@ -820,7 +820,7 @@ CATALOGUE = _rules(
         "W401",
         "disk does not meet the wall",
         "{place} {name} = {value} mm differs from the mean radius {other} mm.",
-        "Leave the cell blank, unless the model of a source is to be repeated.",
+        "Leave the cell blank, unless a published model is to be reproduced.",
         "A cup's disk ends where the wall begins, and a hat's flange begins there. The value is used as entered.",
     ),
     (
@@ -902,7 +902,7 @@ CATALOGUE = _rules(
         "W413",
         "no elasticity check",
         "{place} {name} = {value}: not checked by elasticity, since {detail}.",
-        "Check the value; the wind-up by the formula stands without a check.",
+        "Check the value; the wind-up by the formula is reported without a check.",
         "The check by two-dimensional elasticity needs a part that could be made: disk, wall and fillets must meet, "
         "and no thickness may be a foil.",
     ),
@@ -1007,12 +1007,12 @@ CATALOGUE = _rules(
         "hidden sheet",
         "{place}: the sheet is hidden, but its rows with data ({value}) are used.",
         "Show the sheet and check it, or delete it.",
-        "Nobody sees what a hidden sheet says, yet its entries hold.",
+        "Nobody sees what a hidden sheet says, yet its entries count.",
     ),
     (
         "W427",
         "row far below",
-        "{place} stands {detail} empty rows below row {other}; it is used like the others.",
+        "{place} is {detail} empty rows below row {other}; it is used like the others.",
         "Check that the row was meant; delete it, or move it up.",
         "A forgotten row below the visible end of a table is easily submitted by accident.",
     ),
@@ -1037,11 +1037,11 @@ CATALOGUE = _rules(
         '{place} {name} = "{value}": this column holds only a few digits a row, as split decimal commas leave behind.',
         "Write decimal points, or separate the columns by semicolons; if the digits are meant, add a word.",
         "In a table separated by commas 40,5 without quotes fills two cells. Where the last cell of a row was left "
-        "out, the row has as many cells as there are headers, and the digits of the decimals stand in its last column.",
+        "out, the row has as many cells as there are headers, and the digits of the decimals are in its last column.",
     ),
     (
         "W433",
-        "no row of the table",
+        "not a row of the table",
         '{place}: this row was not read, since it looks like {detail}: "{value}".',
         "Nothing to do; if it is an entry, complete the row or give it another name.",
         "Sums and means below a table, notes and legends are not entries. A row is taken for one of these only when "
@@ -1050,7 +1050,7 @@ CATALOGUE = _rules(
     (
         "W434",
         "column takes no part",
-        "{place}: the column {value} looks like {detail}, but takes no part in the calculation.",
+        '{place}: the column "{value}" looks like {detail}, but takes no part in the calculation.',
         "Enter lower and upper deviation, or a grade, on Tolerances (beside a text table: --tolerances FILE.csv).",
         "Scatter comes from the sheet Tolerances alone: one row per class and dimension, with the limits of the "
         "drawing and, where it is known, the process between them: Limits at ± sigma, Mean shift, Standard deviation, "
@@ -1059,7 +1059,7 @@ CATALOGUE = _rules(
     (
         "W435",
         "misspelt header, empty column",
-        "{place}: the header {value} is not understood, but its column is empty.",
+        '{place}: the header "{value}" is not understood, but its column is empty.',
         "Write {label}, or leave it: nothing is lost.",
         "A header that is nearly that of the template, or with an unknown unit. Over values it would be an error.",
     ),
@@ -1068,7 +1068,7 @@ CATALOGUE = _rules(
         "empty column twice",
         "{place}: {name} is already in column {other}; this one is empty and was not read.",
         "Delete the empty column.",
-        "With values in both columns flexlash could not know which holds, and would compute nothing.",
+        "With values in both columns flexlash could not know which one applies, and would compute nothing.",
     ),
     (
         "W438",
@@ -1179,7 +1179,7 @@ CATALOGUE = _rules(
         '{place} {name} = "{value}": no class uses this sample.',
         "Correct the spelling in every row of the sample, or delete these rows.",
         "Rows of a misspelt sample are missing from the one that was meant. A sample with a name of its own that no "
-        "class uses is no fault.",
+        "class uses is not a fault.",
     ),
     (
         "W454",
@@ -1242,8 +1242,8 @@ CATALOGUE = _rules(
     (
         "W466",
         "system limit without sources",
-        "{place}: {name} is given, but no source is entered in Other sources, so that it is not judged.",
-        "Enter the other sources of backlash of the drive (flexlash template --with other-sources), or take this as "
+        "{place}: {name} is given, but Other sources has no source, so it is not judged.",
+        "Enter the drive's other sources of backlash (flexlash template --with other-sources), or take this as "
         "the Backlash limit of the wind-up alone.",
         "The system limit is that of the whole drive: the wind-up of the flexspline and the sheet Other sources "
         "together.",
@@ -1283,14 +1283,14 @@ CATALOGUE = _rules(
     (
         "I502",
         "extra column",
-        "{place}: the column {value} is not part of the template; it is carried to the report's Submission sheet.",
+        '{place}: the column "{value}" is not one of the template; the report carries it on its sheet Submission.',
         "Nothing to do.",
         "Extra columns do not take part in the calculation.",
     ),
     (
         "I503",
         "unit assumed",
-        "{place}: the header {value} names no unit; {unit} was assumed.",
+        '{place}: the header "{value}" names no unit; {unit} was assumed.',
         "Write the unit in brackets: {label}.",
         "Without a unit the template's own is taken.",
     ),
@@ -1348,7 +1348,7 @@ CATALOGUE = _rules(
     (
         "I511",
         "encoding assumed",
-        '{file} was read as Windows-1252 text, since it is no Unicode; {place} shows "{value}".',
+        '{file} was read as Windows-1252 text, since it is not Unicode; {place} shows "{value}".',
         "Check accents and symbols. In Excel: Save As, type CSV UTF-8, keeps every letter.",
         "A plain CSV from Excel does not say which encoding it uses. Numbers are the same in any case; names, notes "
         "and symbols of units may be shown wrongly.",

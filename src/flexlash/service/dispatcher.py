@@ -228,7 +228,7 @@ class Dispatcher(Questions):
             elif tries < _MOST_LOST:
                 self._hand_back(submission, lost=lost.losses)
             else:
-                self._end_lost(submission, f"stopped the worker {tries} times, so that nothing of it was computed")
+                self._end_lost(submission, f"stopped the worker {tries} times, so it was not computed")
         else:
             self._end(submission, answer)
 
