@@ -191,7 +191,7 @@ def test_an_unreadable_file_is_one_problem(tmp_path):
     path = tmp_path / "a.xlsx"
     path.write_bytes(b"PK\x03\x04half")
     assert list(summary_lines(check(path), "a.xlsx", ran=False)) == [
-        "a.xlsx: nothing to compute; 1 problem of the file to fix.",
+        "a.xlsx: nothing to compute; 1 problem with the file.",
         "Next: fix that, then: flexlash check a.xlsx",
     ]
 
@@ -206,13 +206,13 @@ def _error(cell, sheet="Variants"):
         ([], ""),
         ([_error("D6")], "1 cell to fix"),
         ([_error("D6"), _error("D6"), _error("D7"), _error("D6", "Materials")], "3 cells to fix"),
-        ([_error("")], "1 problem of the file to fix"),
-        ([_error("D6"), _error("", "Tolerance"), _error("")], "1 cell and 2 problems of the file to fix"),
+        ([_error("")], "1 problem with the file"),
+        ([_error("D6"), _error("", "Tolerance"), _error("")], "1 cell to fix and 2 problems with the file"),
         ([Finding(level="warning", code="W402", message="", fix="")], ""),
     ],
 )
 def test_cells_are_counted_once(findings, words):
-    """However many errors a cell has, it is one cell to fix; errors without a cell are problems of the file."""
+    """However many errors a cell has, it is one cell to fix; errors without a cell are problems with the file."""
     assert to_fix_words(findings) == words
 
 

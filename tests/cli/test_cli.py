@@ -203,7 +203,7 @@ def test_unreadable_submissions_end_with_four(tmp_path, content, code, main_in, 
 def test_a_missing_file_ends_with_five(tmp_path, capsys, main_in):
     """A file that cannot be opened ends with 5, by name."""
     assert main_in("check", tmp_path / "none.xlsx") == 5
-    assert "none.xlsx could not be opened or written" in capsys.readouterr().err
+    assert "none.xlsx could not be opened: there is no such file" in capsys.readouterr().err
 
 
 def test_an_unwritable_output_ends_with_five(table, sound, tmp_path, capsys, main_in):
@@ -382,7 +382,7 @@ def test_template_upgrade_overwrites_neither_old_nor_new(tmp_path, table, sound,
     [
         (b"PK\x03\x04 damaged", 4, "E102 old.xlsx is damaged"),
         (b"%PDF-1.4", 4, "E101 old.xlsx cannot be read as a submission"),
-        (None, 5, "old.xlsx: No such file or directory"),
+        (None, 5, "old.xlsx: there is no such file"),
     ],
 )
 def test_template_upgrade_refuses_in_words(tmp_path, capsys, main_in, content, code, words):  # noqa: PLR0917

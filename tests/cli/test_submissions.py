@@ -257,7 +257,7 @@ def test_a_table_beside_is_named_with_the_submission_that_needs_it(table, sound,
     path = table([sound])
     done = _call("check", path, "--tolerances", tmp_path / "none.csv")
     assert done.exit_code == 5
-    assert done.stderr.startswith(f"{path}: {tmp_path / 'none.csv'} could not be opened or written: ")
+    assert done.stderr.startswith(f"{path}: {tmp_path / 'none.csv'} could not be opened: there is no")
 
 
 def test_what_was_left_alone_is_said_under_its_submission(table, sound, tmp_path):

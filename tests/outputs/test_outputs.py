@@ -780,7 +780,7 @@ def _too_long(folder):
 FAULTY = {
     "a name too long": (_too_long, "its name is too long"),
     "no folder": (lambda folder: folder / "none" / "out.xlsx", "there is no folder"),
-    "a file for a folder": (lambda folder: folder / "submission.csv" / "out.xlsx", "is no folder"),
+    "a file for a folder": (lambda folder: folder / "submission.csv" / "out.xlsx", "is not a folder"),
 }
 
 
@@ -832,7 +832,7 @@ def test_a_folder_without_permission_is_told():
         Path(name).chmod(0o555)
         told = _refused_by(Path(name))
         Path(name).chmod(0o700)
-    assert "nothing may be written in the folder" in told
+    assert "you have no permission to write in the folder" in told
     assert told.endswith(f"{name}/out.json'")
 
 

@@ -236,7 +236,9 @@ def test_a_file_that_may_not_be_read_waits_and_hinders_no_other(service, monkeyp
     service.put("good.csv")
     service.pass_time(30)
     assert [one.name for one in service.submissions()] == ["good.csv"]
-    assert [line for line in service.said if line.startswith("fault")] == ["fault what=bad.csv why=Permission denied"]
+    assert [line for line in service.said if line.startswith("fault")] == [
+        "fault what=bad.csv why=you have no permission"
+    ]
     assert not service.folder.is_idle
     monkeypatch.setattr("flexlash.service.settling.is_whole", is_whole)
     service.pass_time(300)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -239,11 +240,14 @@ def to_fix(findings: Iterable[Finding]) -> tuple[int, int]:
 def words_of_fixes(cells: int, others: int) -> str:
     """Return in words how many cells and other problems there are to fix.
 
-    >>> words_of_fixes(5, 0), words_of_fixes(0, 0)
-    ('5 cells to fix', '')
+    >>> words_of_fixes(5, 0), words_of_fixes(1, 2), words_of_fixes(0, 0)
+    ('5 cells to fix', '1 cell to fix and 2 problems with the file', '')
     """
-    words = [counted(cells, "cell") if cells else "", f"{counted(others, 'problem')} of the file" if others else ""]
-    return f"{' and '.join(filter(None, words))} to fix" if cells or others else ""
+    words = (
+        f"{counted(cells, 'cell')} to fix" * bool(cells),
+        f"{counted(others, 'problem')} with the file" * bool(others),
+    )
+    return " and ".join(filter(None, words))
 
 
 def counted(count: int, what: str) -> str:
@@ -286,6 +290,7 @@ def lines_of_limits(
     """Yield the same of counts and of the worst rows of Results, worst first."""
     judged = sum(counts[verdict] for verdict in VERDICTS)
     if not judged:
+        yield from _without_limits(worst)
         return
     most_over, most_marginal = (f"{100 * share:.10g} %" for share in (bounds.meets, bounds.marginal))
     marginal = f"marginal: {counts['marginal']} (at most {most_marginal}); " if bounds.any_marginal else ""
@@ -300,6 +305,15 @@ def lines_of_limits(
         lots = f"; {lots_words(row, 'fails', 'fail')}" if some_lots_fail(row) else ""
         variant, limit = shown(row["variant"], longest=200), f"{row['backlash_limit_arcmin']:g}′"
         yield f"  {variant}: {units} are over {limit}{lots}{_left_open(row)}."
+
+
+def _without_limits(worst: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+    """Yield that nothing is judged, and what the variant with most backlash has."""
+    for row in islice(worst, 1):
+        yield "No variant has a backlash limit, so there is no verdict. The most backlash:"
+        nominal = angle_words(row["backlash_arcmin"])
+        most = angle_words(row["p97_5_arcmin"], row["p97_5_standard_error_arcmin"])
+        yield f"  {shown(row['variant'], longest=200)}: nominal {nominal}; 97.5 % of units stay below {most}."
 
 
 def _left_open(row: Mapping[str, Any]) -> str:

@@ -50,9 +50,10 @@ _NAMED = 3
 """Worst variants that are told by name."""
 
 _TOLD = (
-    "variant", "p99_865_arcmin", "backlash_limit_arcmin", "probability_over_limit", "probability_over_limit_low",
-    "probability_over_limit_high", "between_lots_sd_arcmin", "lots_failing", "lots_failing_standard_error",
-    "probability_over_limit_sample_low", "probability_over_limit_sample_high",
+    "variant", "backlash_arcmin", "p97_5_arcmin", "p97_5_standard_error_arcmin", "p99_865_arcmin",
+    "backlash_limit_arcmin", "probability_over_limit", "probability_over_limit_low", "probability_over_limit_high",
+    "between_lots_sd_arcmin", "lots_failing", "lots_failing_standard_error", "probability_over_limit_sample_low",
+    "probability_over_limit_sample_high",
 )  # fmt: skip
 """What is told of a variant that is among the worst."""
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
+from typing import Any
 
 import click
 
@@ -27,7 +29,19 @@ from flexlash.schema.file_faults import reason
 __all__ = ["cli", "main"]
 
 
+class _Commands(click.Group):
+    """The commands by name; a file in the place of one is a slip that has its own answer."""
+
+    def resolve_command(self, context: click.Context, given: list[str]) -> Any:
+        """Return what click does; where there is no such command but a file, say how it is computed."""
+        if given and given[0] not in self.commands and Path(given[0]).exists():
+            quoted = f'"{given[0]}"' if " " in given[0] else given[0]
+            raise click.UsageError(f"{named(given[0])} is a file, not a command. To compute it: flexlash run {quoted}")
+        return super().resolve_command(context, given)
+
+
 @click.group(
+    cls=_Commands,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="Exit codes of run and check: 0 every row fine, 3 some rows had errors, 4 nothing computable or no "
     "readable submission, 5 a file could not be opened or written, 6 a variant does not meet its limit (with "
@@ -64,8 +78,7 @@ def main() -> None:
         if lost := lost_output():
             complain(f"Standard output could not be written: {reason(lost)}.")
             code = code or ExitCode.NO_FILE
-        if code:
-            keep_window_open()
+        keep_window_open(failed=bool(code))
     sys.exit(code)
 
 

@@ -1,8 +1,9 @@
-"""The program that needs no Python: started without a command, as by a double click, it opens the page."""
+"""The program that needs no Python: a double click opens its page, files dropped on it are computed."""
 
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
 import click
 
@@ -13,16 +14,24 @@ _PAGE = ["serve", "--open", "--port", "0"]
 
 
 def command_given() -> list[str] | None:
-    """Return what opens the page where no command was given; None leaves it to click, which knows each system."""
+    """Return what opens the page, or computes what was dropped; None leaves it to click, which knows each system."""
+    if dropped := _dropped():
+        return ["run", *dropped]
     return _PAGE if _is_clicked() else None
 
 
-def keep_window_open() -> None:
-    """Wait for a key where a window was opened for the program, which would close on what went wrong."""
-    if _is_clicked():
+def keep_window_open(*, failed: bool) -> None:
+    """Wait for a key where a window was opened for the program, which would close on what it says."""
+    if (failed and _is_clicked()) or _dropped():
         click.pause("Any key closes this window.", err=True)
 
 
 def _is_clicked() -> bool:
     """Whether the program was started by itself, with nothing said; Python is never started so."""
     return bool(getattr(sys, "frozen", False)) and len(sys.argv) == 1
+
+
+def _dropped() -> list[str]:
+    """Return the files and folders that were dropped on the program's icon: whole paths, and nothing else."""
+    given = sys.argv[1:] if getattr(sys, "frozen", False) else []
+    return given if all(Path(one).is_absolute() and Path(one).exists() for one in given) else []

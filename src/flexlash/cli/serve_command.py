@@ -100,7 +100,7 @@ def _or_the_running_one(store: Path, *, opens: bool) -> Iterator[None]:
         opening = f"{page}{new_key(folder)}" if page.endswith(OPENING) else page
         click.echo(f"flexlash runs already.\nPage:  {opening}")
         if not open_browser(opening, folder):
-            keep_window_open()
+            keep_window_open(failed=True)
 
 
 def _say(server: PageServer, service: Service, *, opens: bool) -> None:

@@ -63,7 +63,8 @@ def template(output: Path | None, *, example: bool, old: Path | None, optional: 
     data = _upgraded(old, optional) if old else template_bytes(filling)
     written = target.write(data).path
     click.echo(f"Template written: {named(written)}")
-    follow = "Look it over, then: flexlash check" if old else "Fill it in, then: flexlash run"
+    fresh = "It is filled already. Next: flexlash run" if example else "Fill it in, then: flexlash run"
+    follow = "Look it over, then: flexlash check" if old else fresh
     click.echo(f"{follow} {named(written)}", err=True)
 
 

@@ -257,15 +257,15 @@ def _by_identity(paths: Iterable[Path]) -> dict[Identity, set[Path]]:
 
 def _require_folder(folder: Path) -> None:
     """Raise OSError where no file can be made in a folder."""
-    where = shown(folder, 4096)
+    where = shown(folder.absolute(), 4096)
     try:
         is_folder = stat.S_ISDIR(folder.stat().st_mode)
     except FileNotFoundError as fault:
         raise FileNotFoundError(errno.ENOENT, f"there is no folder {where}", str(folder)) from fault
     if not is_folder:
-        raise NotADirectoryError(errno.ENOTDIR, f"{where} is no folder", str(folder))
+        raise NotADirectoryError(errno.ENOTDIR, f"{where} is not a folder", str(folder))
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise PermissionError(errno.EACCES, f"nothing may be written in the folder {where}", str(folder))
+        raise PermissionError(errno.EACCES, f"you have no permission to write in the folder {where}", str(folder))
 
 
 _WORDS = {
