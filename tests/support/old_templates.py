@@ -27,6 +27,12 @@ _TOP = {
     "Settings": "Settings",
 }
 
+_HINTS = {
+    "Variants": "Fill the yellow cells of a row: its type decides which. White cells may stay blank. Help: the note "
+    "on a header, the sheet Sketch.",
+}
+"""What version 6 had below its titles."""
+
 
 def rows_of(name, rows):
     """Return rows given by key as lists in the order of version 1."""
@@ -48,6 +54,7 @@ def old_workbook(variants, *, version=1, headers=LABELS["Variants"], settings=No
     for name, table in tables.items():
         sheet = book.create_sheet(name)
         sheet["A1"] = _TOP[name]
+        sheet["A2"] = _HINTS.get(name)
         for row, values in enumerate(table, start=4):
             for place, value in enumerate(values, start=1):
                 put(sheet.cell(row, place), value)

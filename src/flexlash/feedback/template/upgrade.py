@@ -37,7 +37,9 @@ _ABOVE = re.compile(
     r"Template version \d+|\d+ of \d+ rows complete|No row entered yet"
     r"|Yellow columns are required\. Each header has a note; each cell says what it takes\."
     r"|One row per class and dimension: a grade, or lower and upper deviation\. No row: exact(\.|, or that of the "
-    r"class which it is based on\.)|Blank values take the default\.",
+    r"class which it is based on\.)|Blank values take the default\."
+    r"|flexlash: one row per flexspline variant"
+    r"|Fill the yellow cells of a row: its type decides which\..* Help: the note on a header, the sheet Sketch\.",
     re.IGNORECASE,
 )
 """What this and former versions of the template write above a header row beside title and hint."""
