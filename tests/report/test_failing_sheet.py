@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+import warnings
 import zipfile
 
 import openpyxl
@@ -96,6 +97,19 @@ def test_a_page_draws_part_density_causes_and_segments(study, pages):
     texts = re.findall(r'descr="([^"]+)"', drawing)
     assert len(texts) == 4 * len(variants)
     assert sum(text.startswith("Half-section of ") for text in texts) == len(variants)
+
+
+def test_a_script_is_warned_of_the_drawings_alone(study, pages):
+    """Opened by openpyxl to be changed, a report warns once for each drawing that is left out; read alone, of nothing."""
+    pytest.importorskip("PIL")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        openpyxl.load_workbook(study[1])
+    told = [str(one.message) for one in caught]
+    assert told == ["wmf image format is not supported so the image is being dropped"] * len(pages[1])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        openpyxl.load_workbook(study[1], read_only=True).close()
 
 
 def test_the_density_has_limit_nominal_and_mean(pages, study):

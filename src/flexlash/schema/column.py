@@ -191,7 +191,7 @@ class Column:
         bounds = [self.rules[name].words for name in ("minimum", "maximum") if name in self.rules]
         if len(bounds) > 1 and not self.exclusive_minimum:
             return f"from {self.minimum:.15g} to {self.maximum:.15g}"
-        return " and ".join(bounds)
+        return " and ".join(bounds) if self.minimum is not None else "".join(f"of {words}" for words in bounds)
 
     def as_dictionary(self) -> dict[str, Any]:
         """Return the entry of `flexlash schema --json`: the fields that scripts rely on first."""

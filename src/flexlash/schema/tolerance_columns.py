@@ -101,7 +101,7 @@ TOLERANCES = (
         "requirement",
         "mean_shift",
         "Mean shift",
-        "Normal distributions: what the mean of the process lies above the middle of the limits, signed, in the "
+        "Normal distributions: how far the mean of the process lies above the middle of the limits, signed, in the "
         "deviation unit.",
         since=4,
         group="Process",

@@ -246,7 +246,7 @@ VARIANTS = (
     _requirement(
         "backlash_limit_arcmin",
         "Backlash limit [arcmin]",
-        "Greatest backlash allowed. Gives probability over limit, ppm and Ppk.",
+        "Greatest backlash allowed. Gives verdict, share of units over it, ppm and Ppk.",
         quantity="angle",
         **POSITIVE,
         group="Requirements",
