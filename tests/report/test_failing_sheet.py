@@ -100,7 +100,7 @@ def test_a_page_draws_part_density_causes_and_segments(study, pages):
 
 
 def test_a_script_is_warned_of_the_drawings_alone(study, pages):
-    """Opened by openpyxl to be changed, a report warns once for each drawing that is left out; read alone, of nothing."""
+    """Opened by openpyxl to be changed, a report warns of each drawing that is left out; only read, of nothing."""
     pytest.importorskip("PIL")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
