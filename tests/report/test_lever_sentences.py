@@ -27,7 +27,7 @@ def test_the_three_questions_are_answered(told):
     )
     assert said[RELAX] == (
         "Holding the wall and disk thickness of “B3-160 case 1” so tight buys nothing: ± 29 µm instead of ± 2.5 µm "
-        "still keeps 99.865 % within 3.8′; 99.6 % of the spread is the material's."
+        "still keeps 99.865 % within 3.8′; 99.6 % of the spread comes from the material."
     )
     assert said[LENGTH] == "Cylinder length may grow from 160 to 161.5 mm in “B3-160 case 1”."
 

@@ -54,14 +54,14 @@ def test_the_study_in_words(outcome):
     # Its 95 % interval is narrower than the digits that words tell, so that none is told.
     assert re.search(r"“B3-160 case 4 r_m 80” 99\.452 %\.$", told["How sure"])
     assert told["Worst case"].startswith(
-        "With every dimension at a limit the backlash of “B3-160 case 5” lies between "
+        "With every dimension at its worst limits the backlash of “B3-160 case 5” lies between "
     )
     shares = (100 * worst["main_contributor_share"], "Young's modulus")
     assert told["Why"].startswith(f"The spread of “B3-160 case 5” comes from {shares[1]} {shares[0]:.0f} % and ")
     assert told["Why"].endswith("Main contributor of all 11 variants: Young's modulus.")
     ratio = worst["cylinder_only_backlash_arcmin"] / worst["backlash_arcmin"]
     assert told["Cylinder-only formula"].startswith(
-        f"The classical formula, without the disk, would have said {worst['cylinder_only_backlash_arcmin']:.3f}′ for "
+        f"The classical formula, without the disk, would have given {worst['cylinder_only_backlash_arcmin']:.3f}′ for "
         f"“B3-160 case 5” instead of {worst['backlash_arcmin']:.3f}′: {100 * (1 - ratio):.0f} % too low."
     )
 
@@ -117,7 +117,7 @@ def test_nothing_to_change_without_a_limit(told):
     said = told({"backlash_limit_arcmin": ""})
     assert not {*LEVER_TOPICS} & said.keys()
     assert "How sure" not in said
-    assert said["Worst case"].startswith("With every dimension at a limit the backlash of “v0” lies between ")
+    assert said["Worst case"].startswith("With every dimension at its worst limits the backlash of “v0” lies between ")
 
 
 @pytest.mark.parametrize(("limit", "share"), [(5, "none"), (3.6, "all"), ("", None)])
@@ -182,7 +182,7 @@ def test_all_variants_are_counted_not_only_those_drawn(told, monkeypatch):
     said = told(*({"backlash_limit_arcmin": 3.5} for _ in range(5)))
     assert said["Which fail"].startswith("5 of 5 variants with a limit fail: ")
     assert said["Why"].endswith("Main contributor of all 5 variants: Young's modulus.")
-    assert "Over all 5 cups and hats" in said["Cylinder-only formula"]
+    assert "Over the 5 cups and hats" in said["Cylinder-only formula"]
 
 
 def test_a_given_shear_modulus_without_tolerance_is_said(told, tmp_path):

@@ -444,7 +444,9 @@ def test_requirement_of_a_setting(key, words):
 
 def test_requirement_with_an_upper_bound_alone():
     """A column that only has a greatest value says so without 'and'."""
-    assert Column(sheet="x", role="result", key="x", label="x", help="x", maximum=5).requirement == "a number of at most 5"
+    assert (
+        Column(sheet="x", role="result", key="x", label="x", help="x", maximum=5).requirement == "a number of at most 5"
+    )
 
 
 @for_each("column", EVERY)

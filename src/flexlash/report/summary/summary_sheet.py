@@ -65,7 +65,7 @@ _LINES = 5
 
 _COMPARED = (
     "What is compared with the limit is 2U, the elastic lag of the flexspline when its whole torque reverses; no "
-    "catalogue defines backlash so. Clearances and hysteresis come on top; sheet Drive combines them where they are "
+    "catalogue defines backlash this way. Clearances and hysteresis come on top; sheet Drive combines those that are "
     "entered."
 )
 _SIGNED = "Reviewed by ______________________________   Date ____________________"

@@ -215,7 +215,7 @@ def _relaxed(facts: SummaryFacts, row: Row, lever: Lever, shares: Mapping[str, f
     now, then = f"± {_told(lever, 'from_value')}{unit}", f"± {_told(lever, 'drawing_value')}{unit}"
     kept = f"{facts.outcome.settings.target_percent:.10g} % within {_limit(row)}"
     of_material = sum(share for cause, share in shares.items() if DIMENSIONS[cause].sheet == "Materials")
-    why = f"; {min(100 * of_material, 100):.1f} % of the spread is the material's" if of_material >= _MOST else ""
+    why = f"; {min(100 * of_material, 100):.1f} % of the spread comes from the material" if of_material >= _MOST else ""
     what = lever_name(lever)
     if shares.get(lever["dimension"], 0.0) < _IDLE:
         return f"Holding the {what} of {name} so tight buys nothing: {then} instead of {now} still keeps {kept}{why}."

@@ -176,7 +176,7 @@ def _parts(row: Row, shares: dict[str, float]) -> str:
 
 
 def _classical(facts: SummaryFacts) -> Iterator[str]:
-    """Yield what the classical formula would have said of the worst cup or hat, and its range over all of them."""
+    """Yield what the classical formula would have given for the worst cup or hat, and its range over all of them."""
     with_disk = facts.ranked.filter(pl.col("hub_shear_MPa").is_not_null())
     if with_disk.is_empty():
         return
@@ -184,7 +184,7 @@ def _classical(facts: SummaryFacts) -> Iterator[str]:
     classical, own = worst["cylinder_only_backlash_arcmin"], worst["backlash_arcmin"]
     said, meant = angle_words(classical), angle_words(own)
     yield (
-        f"The classical formula, without the disk, would have said {said} for {facts.named(worst['variant'])} "
+        f"The classical formula, without the disk, would have given {said} for {facts.named(worst['variant'])} "
         f"instead of {meant}: {_off(classical / own)}."
     )
     ratios = (with_disk["cylinder_only_backlash_arcmin"] / with_disk["backlash_arcmin"]).to_list()
@@ -192,7 +192,7 @@ def _classical(facts: SummaryFacts) -> Iterator[str]:
         least, most = _off(max(ratios)), _off(min(ratios))
         if least != most and least.split("%")[1] == most.split("%")[1]:
             least = least.split(" %")[0]
-        yield f"Over all {grouped(len(ratios))} cups and hats: {least if least == most else f'{least} to {most}'}."
+        yield f"Over the {grouped(len(ratios))} cups and hats: {least if least == most else f'{least} to {most}'}."
 
 
 def _off(ratio: float) -> str:

@@ -88,7 +88,7 @@ def extremes_of_worst(facts: SummaryFacts) -> Iterator[str]:
     if row["first_order_sd_arcmin"] is not None:
         high = angle_words(row["mean_arcmin"] + 3 * row["first_order_sd_arcmin"])
         yield (
-            f"Mean + 3 first-order standard deviations (RSS) make {high}; by Monte Carlo 99.865 % of units stay below "
+            f"Mean + 3 first-order standard deviations (RSS) give {high}; by Monte Carlo 99.865 % of units stay below "
             f"{_tail(row, 'p99_865')}, from a nominal {angle_words(row['backlash_arcmin'])}."
         )
 
@@ -99,7 +99,7 @@ def extremes(facts: SummaryFacts, row: Row) -> Iterator[str]:
     if low < high:
         low, high = angle_words(low), angle_words(high)
         name = facts.named(row["variant"])
-        yield f"With every dimension at a limit the backlash of {name} lies between {low} and {high}."
+        yield f"With every dimension at its worst limits the backlash of {name} lies between {low} and {high}."
 
 
 def judged(facts: SummaryFacts, row: Row) -> Iterator[str]:
