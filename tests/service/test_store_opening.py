@@ -46,6 +46,17 @@ def test_a_second_server_is_refused_and_the_store_named(folder):
         assert store.totals()["waiting"] == 1
 
 
+def test_fixed_files_of_a_store_of_before_are_still_offered(folder):
+    """Before version 0.10 the file with the certain fixes was kept as `mended`; served again, it is `fixed`."""
+    with Store(folder, serving=True) as store:
+        (handed,) = store.queue()
+    with sqlite3.connect(folder / "flexlash.sqlite") as database:
+        database.execute("INSERT INTO file VALUES (?, 'mended', '0', 1, 'a-mended.csv')", (handed.id,))
+    database.close()
+    with Store(folder, serving=True) as store:
+        assert store.files(handed.id)["fixed"].name == "a-mended.csv"
+
+
 def test_a_lock_is_free_whichever_thread_closes_the_store(folder):
     """A store that was opened in one thread and closed in another can be served again."""
     store = Store(folder, serving=True)
