@@ -260,6 +260,16 @@ def test_a_table_beside_is_named_with_the_submission_that_needs_it(table, sound,
     assert done.stderr.startswith(f"{path}: {tmp_path / 'none.csv'} could not be opened: there is no")
 
 
+def test_a_workbook_that_is_open_in_excel_is_told(table, sound, tmp_path):
+    """Excel's lock file beside a submission says that it may hold more than was saved; nobody else hears of it."""
+    path, said = table([sound]), "it seems to be open in Excel: what is not saved there was not read"
+    assert said not in _call("check", path).stderr
+    (tmp_path / f"~${path.name}").touch()
+    done = _call("check", path)
+    assert (done.exit_code, done.stderr.count(f"{path}: {said}")) == (0, 1)
+    assert said not in _call("check", path, "--quiet").stderr
+
+
 def test_what_was_left_alone_is_said_under_its_submission(table, sound, tmp_path):
     """Of several submissions, the remark that a report took another name says whose report it is, even with --quiet."""
     paths = [table([{**sound, "torque_Nm": 8000}], name) for name in ("a.csv", "b.csv")]

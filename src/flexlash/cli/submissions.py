@@ -32,6 +32,9 @@ __all__ = ["Attempt", "Submissions"]
 _NOT_OURS = (click.ClickException, click.Abort, KeyboardInterrupt, SystemExit, GeneratorExit)
 """What ends the whole command, not one submission."""
 
+_OPEN_IN_EXCEL = "~$"
+"""What the file is called beside a workbook that Excel has open, before its name."""
+
 _SHOWN_FIXES = 10
 _SHOWN_SKIPPED = 3
 _COLOURS = {"error": "red", "warning": "yellow", "info": "cyan"}
@@ -149,6 +152,10 @@ class Submissions:
         name = f"{named(ended.path)}: "
         for remark in ended.written.remarks:
             click.echo(click.style(f"{name if self.several else ''}{remark}", fg="yellow"), err=True)
+        lock = ended.path.parent / f"{_OPEN_IN_EXCEL}{ended.path.name}"
+        if not (ended.skipped or self.quiet) and os.path.exists(lock):  # noqa: PTH110 - a name may be too long
+            unsaved = "it seems to be open in Excel: what is not saved there was not read"
+            click.echo(click.style(f"{name}{unsaved}", fg="yellow"), err=True)
         if ended.fault is not None and os.environ.get("FLEXLASH_DEBUG") == "1":
             click.echo(ended.fault.trace, err=True)
         if ended.error and not (ended.refused and (self.verbose or self.as_json)):
