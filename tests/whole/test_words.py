@@ -26,6 +26,12 @@ FORBIDDEN = {
     r"\bwithout a word\b": "silently",
     r"\bis no (file|number|limit|address|grade|report)\b": "is not a …",
     r"\binformations\b": "notes",
+    r"\bgray\b": "grey",
+    r"\bMind:": "Note:",
+    r"\bvery file\b": "file",
+    r"\bnone to all\b": "0 to 100 %",
+    r"\balone can:": "is enough",
+    r"\bentry of the list\b": "one of these",
 }
 """Words that no message, sheet, page or help has, by the words to write instead."""
 
@@ -34,10 +40,21 @@ _ALLOWED = re.compile(r"-mended\b")
 
 
 def _code_and_docstrings(tree: ast.Module) -> set[int]:
-    """Return the identities of string constants that are no text for users: docstrings and bare strings."""
-    return {
+    """Return the identities of string constants that are no text for users: bare strings and most docstrings.
+
+    The docstring of a command is its help.
+    """
+    hidden = {
         id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
     }
+    return hidden - {id(node.body[0].value) for node in ast.walk(tree) if _is_command(node)}
+
+
+def _is_command(node: ast.AST) -> bool:
+    """Whether a node is a function that click calls as a command."""
+    return isinstance(node, ast.FunctionDef) and any(
+        re.match(r"click\.(command|group)\b", ast.unparse(one)) for one in node.decorator_list
+    )
 
 
 def _texts() -> Iterator[tuple[str, str]]:
@@ -73,3 +90,11 @@ def test_the_guard_sees_what_it_forbids():
     """Each forbidden word is found in a sentence, and names of code are left alone."""
     assert len(list(_offences("x", "How to mend it: all but 3 are alike."))) == 3
     assert list(_offences("x", "mended")) == list(_offences("x", "a name such as a-mended.xlsx")) == []
+
+
+def test_the_help_of_commands_is_read():
+    """The docstring of a command is what its help says; that of another function is for programmers."""
+    command = '@click.command()\ndef a():\n    """Help of a."""\n'
+    tree = ast.parse(f'{command}def b():\n    """Return b."""\n')
+    texts = {id(node): node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)}
+    assert [text for key, text in texts.items() if key not in _code_and_docstrings(tree)] == ["Help of a."]
