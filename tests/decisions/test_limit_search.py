@@ -11,7 +11,8 @@ from lever_terms import presents_of, terms_of
 import flexlash
 from flexlash.decisions.changes import Change
 from flexlash.decisions.drawing_steps import on_drawing
-from flexlash.decisions.limit_search import LimitSearch, tail_of
+from flexlash.decisions.known_tail import tail_of
+from flexlash.decisions.limit_search import LimitSearch
 from flexlash.decisions.nominal_levers import changed_alike
 from flexlash.decisions.part_range import makes_a_part
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
-__all__ = ["Bracket", "Turn", "crossings", "past_turns"]
+__all__ = ["Bracket", "Turn", "closed", "crossings", "past_turns"]
 
 Whose = TypeVar("Whose")
 
@@ -30,6 +30,11 @@ class Bracket(Generic[Whose]):
     high: float
     at_low: float
     at_high: float
+
+    @property
+    def nearer(self) -> float:
+        """The end at which the number is nearer to 0."""
+        return self.low if abs(self.at_low) <= abs(self.at_high) else self.high
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,32 +117,38 @@ def crossings(
 ) -> list[float | None]:
     """Return the value at which each bracket's number is 0, None where the number is missing on the way.
 
-    `evaluate` returns the numbers at values, None where there is none; a number of at most `small` counts as 0. Found
-    by false position with the Illinois rule, by halves where a number is infinite or three steps did not halve the
-    bracket; each bracket goes its own way, so that none depends on the others.
-
     >>> line = Bracket(whose=2.0, low=1.0, high=3.0, at_low=-1.0, at_high=7.0)
     >>> crossings([line], lambda asked: [value**2 - whose for whose, value in asked], 1e-12)
     [1.414213562373...]
     """
+    return [None if one is None else one.nearer for one in closed(brackets, evaluate, small)]
+
+
+def closed(
+    brackets: Sequence[Bracket[Whose]],
+    evaluate: Callable[[Sequence[tuple[Whose, float]]], Sequence[float | None]],
+    small: float,
+) -> list[Bracket[Whose] | None]:
+    """Return brackets so narrow that nothing more is told, or an end of which is on 0; None where a number is missing.
+
+    `evaluate` returns the numbers at values, None where there is none; a number of at most `small` counts as 0. Found
+    by false position with the Illinois rule, by halves where a number is infinite or three steps did not halve the
+    bracket; each bracket goes its own way, so that none depends on the others.
+    """
     open_ones = {place: _Open(bracket) for place, bracket in enumerate(brackets)}
-    found: list[float | None] = [None] * len(brackets)
-    for place, one in list(open_ones.items()):
-        if (known := one.ended(small)) is not None:
-            found[place] = known
-            del open_ones[place]
-    for _ in range(_STEPS):
-        if not open_ones:
+    found: list[Bracket[Whose] | None] = [None] * len(brackets)
+    for steps in range(_STEPS + 1):
+        for place, one in list(open_ones.items()):
+            if one.has_ended(small):
+                found[place] = open_ones.pop(place).bracket
+        if not open_ones or steps == _STEPS:
             break
         asked = [(one.bracket.whose, one.next_value()) for one in open_ones.values()]
         for (place, one), (_, value), number in zip(list(open_ones.items()), asked, evaluate(asked), strict=True):
             if number is None:
                 del open_ones[place]
-                continue
-            one.narrow(value, number)
-            if (known := one.ended(small)) is not None:
-                found[place] = known
-                del open_ones[place]
+            else:
+                one.narrow(value, number)
     return found
 
 
@@ -183,11 +194,9 @@ class _Open(Generic[Whose]):
             self.weights = (at_low / 2 if self.kept == "low" else at_low, number)
             self.kept = "low"
 
-    def ended(self, small: float) -> float | None:
-        """Return where the number is 0, None where that is not known yet."""
+    def has_ended(self, small: float) -> bool:
+        """Return whether the number is known to be 0 at an end, or the ends are as near as they need be."""
         bracket = self.bracket
-        near, least = min(((bracket.low, bracket.at_low), (bracket.high, bracket.at_high)), key=lambda end: abs(end[1]))
-        if abs(least) <= small:
-            return near
-        closed = self.width <= _NEAR * max(abs(bracket.low), abs(bracket.high))
-        return near if closed else None
+        if min(abs(bracket.at_low), abs(bracket.at_high)) <= small:
+            return True
+        return self.width <= _NEAR * max(abs(bracket.low), abs(bracket.high))

@@ -2,14 +2,14 @@
 
 The prediction of `predicted_scores` says where to look; the engine then says which share is over the limit there and at
 the drawing value. Between two such points the scores rise in proportion to the levels of Φ, which tells the value to
-some parts in ten million. What does not yield to that, a grade that jumps, is found by halving on the engine alone.
+some parts in ten million. What does not yield to that, a grade that jumps or a tail that ends, is found between a value
+on each side of the target, on the engine alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -17,22 +17,28 @@ from scipy.special import ndtri
 
 from flexlash.decisions.changed_rows import limits_as_submitted, run_plan, toleranced
 from flexlash.decisions.changes import with_sizes
+from flexlash.decisions.crossings import Bracket, closed
+from flexlash.decisions.known_tail import Tail
 from flexlash.decisions.lever import Present, Terms
-from flexlash.decisions.predicted_scores import ChangedAlike, Moments
+from flexlash.decisions.predicted_scores import ChangedAlike
 from flexlash.schema.arrays import Array
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.units import as_entered
 from flexlash.schema.variant_arrays import Indices
 from flexlash.tolerance.row_probabilities import OverLimits, probabilities_over
 
-__all__ = ["LimitSearch", "Solution", "Tail", "tail_of"]
+__all__ = ["LimitSearch", "Solution"]
 
 Bools = npt.NDArray[np.bool_]
 Rounded = Callable[[float, bool], float]
 """The drawing value next to a value, upwards or downwards, both in the unit of the column."""
 
 _RAREST = 1e-15
-_ROUNDS, _HALVINGS, _MORE_STEPS = 5, 36, 3
+_ROUNDS, _MORE_STEPS = 5, 3
+
+_ON_TARGET = 1e-9
+"""Distance from the target, in levels of Φ, that counts as none."""
+
 _INTERVAL = 2 * 1.96
 """Standard errors that an interval spans."""
 
@@ -54,32 +60,6 @@ _SLOPES = (0.5, 2.0)
 
 _SAME = 1e-9
 """Part of a value by which it no longer moves."""
-
-
-class Tail(NamedTuple):
-    """How scores follow levels z of Φ about the wanted one as they are now: score + rise (z − z₀) + bend (z − z₀)²."""
-
-    score: Array
-    rise: Array
-    bend: Array
-
-
-def tail_of(presents: Sequence[Present], unchanged: ChangedAlike, wanted: float) -> Tail:
-    """Return the scores (variants,) about a wanted level of Φ, by the parabola through the three nearest quantiles."""
-    moments = Moments(*(one[:, 0] for one in unchanged.moments(unchanged.present[:, None])))
-    known = np.array(sorted(presents[0].quantiles))
-    levels = ndtri(known)
-    middle = int(np.clip(np.argmin(np.abs(levels - wanted)), 1, len(levels) - 2))
-    near = slice(middle - 1, middle + 2)
-    outputs = np.array([[one.quantiles[probability] for probability in known[near].tolist()] for one in presents])
-    scores = ((outputs - moments.mean[:, None]) / moments.sd[:, None]).T
-    first, second, third = levels[near]
-    slopes = np.diff(scores, axis=0) / np.diff(levels[near])[:, None]
-    bend = (slopes[1] - slopes[0]) / (third - first)
-    score = scores[1] + (wanted - second) * (slopes[1] + (wanted - third) * bend)
-    rise = slopes[1] + (2 * wanted - second - third) * bend
-    scatters = rise > 0
-    return Tail(score - moments.bend(wanted), np.where(scatters, rise, 1.0), np.where(scatters, bend, 0.0))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -205,7 +185,7 @@ class LimitSearch:
         return np.where(told, slope, rise), told
 
     def _halve(self, rows: Indices, beyond: Array, found: dict[str, Array], rounded: Rounded) -> None:
-        """Put down what halving between the present values and some beyond the target finds."""
+        """Put down what is found between the present values and some beyond the target."""
         if not len(rows):
             return
         near, far = self._alike.present[rows].copy(), beyond[rows]
@@ -214,17 +194,44 @@ class LimitSearch:
         astray = np.flatnonzero(~reached)
         far[astray], over[astray] = self._looked_for(rows[astray], far[astray], over[astray])
         reached = self._crossed(rows, over)
-        for _ in range(_HALVINGS):
-            middle = (near + far) / 2
-            crossed = self._crossed(rows, self._shares(rows, middle))
-            near, far = np.where(crossed, near, middle), np.where(crossed, middle, far)
-        value = np.where(self._wanted[rows], far, near)
+        value = np.full(len(rows), np.nan)
+        value[reached] = self._closed(rows[reached], near[reached], far[reached], over[reached])
         drawing = self._drawn(rows, value, rounded)
         shares = self._shares(rows, drawing * self._unit, by_lines=False)
         for name, numbers in (("value", value), ("drawing", drawing), ("over", shares)):
             found[name][rows[reached]] = numbers[reached]
         missed = rows[~reached]
         found["extreme"][missed], found["over"][missed] = far[~reached], over[~reached]
+
+    def _closed(self, rows: Indices, near: Array, far: Array, over: Array) -> Array:
+        """Return where the target is met just so between values [SI] on its two sides, on the safe one where it jumps.
+
+        `over` are the shares at the far values.
+        """
+
+        def distances(asked: Sequence[tuple[int, float]]) -> list[float | None]:
+            own, values = np.array([row for row, _ in asked]), np.array([value for _, value in asked])
+            shares = self._shares(own, values)
+            levels = self._levels(shares) - self._target
+            # What makes no part is as far from the target as can be, on the side of the present value.
+            lost = np.where(self._wanted[own], -np.inf, np.inf)
+            return [*np.where(np.isnan(shares), lost, levels).tolist()]
+
+        present = np.array([self._presents[row].over for row in rows])
+        ends = zip(
+            near.tolist(), far.tolist(), *(self._levels(one) - self._target for one in (present, over)), strict=True
+        )
+        brackets = [
+            Bracket(whose=row, low=low, high=high, at_low=float(at_low), at_high=float(at_high))
+            for row, (low, high, at_low, at_high) in zip(rows.tolist(), ends, strict=True)
+        ]
+        found = closed(brackets, distances, _ON_TARGET)
+        return np.array([
+            np.nan if one is None
+            else one.nearer if min(abs(one.at_low), abs(one.at_high)) <= _ON_TARGET
+            else one.high if self._wanted[one.whose] else one.low
+            for one in found
+        ])  # fmt: skip
 
     def _looked_for(self, rows: Indices, values: Array, over: Array) -> tuple[Array, Array]:
         """Return values [SI] beyond the target and their shares, as the engine finds them going outwards on both sides.

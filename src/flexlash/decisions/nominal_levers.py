@@ -12,8 +12,9 @@ import numpy as np
 
 from flexlash.decisions.changes import Change, changes_of, with_sizes
 from flexlash.decisions.drawing_steps import drawing_step, on_drawing, relative_cost
+from flexlash.decisions.known_tail import tail_of
 from flexlash.decisions.lever import Lever, Present, Terms
-from flexlash.decisions.limit_search import LimitSearch, Solution, tail_of
+from flexlash.decisions.limit_search import LimitSearch, Solution
 from flexlash.decisions.predicted_scores import ChangedAlike
 from flexlash.decisions.why_not import always_kept, never_met, no_step, unmoved
 from flexlash.schema.columns import DIMENSIONS
