@@ -171,6 +171,23 @@ def test_two_reports_of_one_submission_do_not_differ(reports, sound):
 
 
 @pytest.mark.slow
+def test_another_cheapest_change_is_told(sound, workbook, tmp_path):
+    """Where the hub may no longer change, the cheapest change that meets the limit is another one, of both in words."""
+    sides = []
+    for name, levers in (("a", []), ("b", [{"dimension": "disk_inner_radius", "may_change": "no"}])):
+        rows = [{**sound, "backlash_limit_arcmin": 3.6}, {**sound, "variant": "fine", "backlash_limit_arcmin": 3.9}]
+        run(workbook(rows, f"{name}.xlsx", levers=levers), tmp_path / f"{name}-report.xlsx", samples=64)
+        sides.append(side_of(tmp_path / f"{name}-report.xlsx", LIMITS))
+    soft, *_ = difference(*sides).variants
+    (change,) = soft.results
+    assert (soft.name.text, change.label) == (sound["variant"], "Cheapest single change")
+    assert change.old.startswith("Hub radius 40 → ")
+    assert change.new.startswith(("Cylinder length 160 → ", "Disk thickness", "Wall and disk", "Mean radius 80 → "))
+    assert sides[0].changes.keys() == {sound["variant"]}
+    assert difference(sides[0], replace(sides[1], changes={})).variants[0].results == []
+
+
+@pytest.mark.slow
 def test_results_are_told_verdict_first(reports, sound):
     """Of two reports the results are compared, those of the verdict first, and a limit that was crossed is told."""
     old = reports("a", [sound | {"backlash_limit_arcmin": 3.9}])

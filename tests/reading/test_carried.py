@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from openpyxl.packaging.custom import StringProperty
 
 from flexlash.pipeline import check, run
-from flexlash.reading.carried import FORM, carried_submission
+from flexlash.reading.carried import FORM, carried_changes, carried_submission
 from flexlash.reading.limited_process import ask
 from flexlash.reading.read import Source, limits_of_reports, report_of
 from flexlash.reading.reading_limits import ReadingLimits
@@ -119,6 +119,16 @@ def test_nonsense_is_refused(what):
     """Whatever is not as reading yields it refuses the whole, with the same code."""
     path, value = WRONG[what]
     assert _refused(_changed(path, value) if path else value).code == "E122"
+
+
+def test_changes_are_texts_by_variant():
+    """The cheapest changes that a report tells are taken as they are; without any there are none."""
+    assert carried_changes(GOOD) == {}
+    assert carried_changes(GOOD | {"changes": {"a": "Hub radius 40 → 46 mm"}}) == {"a": "Hub radius 40 → 46 mm"}
+    for changes in ([], "text", None, {"a": 1}, {"a": "x" * 256}):
+        with pytest.raises(Refusal) as refusal:
+            carried_changes(GOOD | {"changes": changes})
+        assert refusal.value.code == "E122"
 
 
 KEYS = st.sampled_from(["form", "version", "submission", "options", "cells", "sheets", "rows", "name"])

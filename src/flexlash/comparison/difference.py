@@ -20,9 +20,9 @@ __all__ = ["FIRST", "Difference", "Differing", "changed_results", "difference"]
 
 FIRST = (
     "status", "backlash_arcmin", "p97_5_arcmin", "probability_over_limit", "lots_failing", "main_contributor",
-    "system_mean_arcmin", "system_p99_865_arcmin", "system_probability_over_limit",
+    "system_mean_arcmin", "system_p99_865_arcmin", "system_probability_over_limit", "cheapest_change",
 )  # fmt: skip
-"""Results on which a verdict rests, how many lots fail, and what the whole drive comes to, as a reader wants them."""
+"""Results on which a verdict rests, how many lots fail, what the whole drive comes to and which change costs least."""
 
 _RESULTS = {column.key: column for column in result_columns(cross_check=True, elasticity=True)}
 
@@ -208,7 +208,15 @@ def _results(old: Side, new: Side, name: Name, tolerance: float) -> list[Change]
         words = ["missing" if row is None else "there" for row in (before, after)]
         change = Change(sheet="Results", key="status", label="Row of Results", old=words[0], new=words[1])
         return [] if before is after else [change]
-    return changed_results(before, after, tolerance)
+    return [*_cheapest(old, new, name), *changed_results(before, after, tolerance)]
+
+
+def _cheapest(old: Side, new: Side, name: Name) -> list[Change]:
+    """Return that the cheapest single change that meets the limit is another one, where both reports tell it."""
+    before, after = (side.changes.get(name.text) for side in (old, new))
+    if before is None or after is None or before == after:
+        return []
+    return [Change(sheet="Levers", key="cheapest_change", label="Cheapest single change", old=before, new=after)]
 
 
 def _is_within(old: Side, new: Side, name: Name, results: list[Change]) -> bool:

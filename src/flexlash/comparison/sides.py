@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -54,7 +54,8 @@ class Name:
 class Side:
     """A report or submission as it is compared.
 
-    `results` are a report's by variant, None for a submission; `version` is that of the flexlash that made the report.
+    `results` are a report's by variant, None for a submission; `version` is that of the flexlash that made the report;
+    `changes` its cheapest single changes in words, by the name of the variant.
     """
 
     file: str
@@ -62,6 +63,7 @@ class Side:
     validated: Validated
     version: str = ""
     results: Mapping[Name, Mapping[str, Any]] | None = None
+    changes: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def is_report(self) -> bool:
@@ -215,7 +217,8 @@ def _side(source: Source, limits: ReadingLimits) -> Side:
     side = Side(file=source.name, submission=submission, validated=validated)
     if report is None:
         return side
-    return replace(side, results=by_variant(result_rows(report.results), side.records), version=report.version)
+    results = by_variant(result_rows(report.results), side.records)
+    return replace(side, results=results, version=report.version, changes=report.changes)
 
 
 def by_variant(rows: Mapping[Name, Mapping[str, Any]], names: Iterable[Name]) -> dict[Name, Mapping[str, Any]]:

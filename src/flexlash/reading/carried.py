@@ -19,7 +19,7 @@ from flexlash.schema.columns import SETTINGS
 from flexlash.schema.findings import shown
 from flexlash.schema.variant import OVERRIDDEN
 
-__all__ = ["FORM", "SHEET", "SWITCHES", "carried_submission", "read_report"]
+__all__ = ["FORM", "SHEET", "SWITCHES", "carried_changes", "carried_submission", "read_report"]
 
 SHEET = "Carried"
 """The sheet of a report that holds, in pieces below each other, the text that it carries."""
@@ -42,8 +42,10 @@ _ALTERED = "they were altered or damaged"
 
 def read_report(
     data: bytes, limits: ReadingLimits, limits_of_file: ReadingLimits
-) -> tuple[Submission, RawSheet | None, str]:
-    """Return the submission that a report carries, its Results and its version; nothing else of it is read.
+) -> tuple[Submission, RawSheet | None, str, dict[str, str]]:
+    """Return the submission that a report carries, its Results, its version, the cheapest changes by variant.
+
+    Nothing else of it is read.
 
     `limits` hold for the submission, `limits_of_file` for the report.
 
@@ -54,7 +56,17 @@ def read_report(
     if SHEET not in sheets:
         raise Refusal("E121" if cells.role == "report" else "E120")
     carried = _parsed(sheets[SHEET])
-    return carried_submission(carried, limits), sheets.get(RESULTS), carried["version"]
+    return carried_submission(carried, limits), sheets.get(RESULTS), carried["version"], carried_changes(carried)
+
+
+def carried_changes(carried: Any) -> dict[str, str]:
+    """Return the cheapest changes that a report tells, none of one of before 0.10; raise Refusal for what are none."""
+    try:
+        changes = carried.get("changes", {})
+        _require(all(isinstance(text, str) and len(text) <= _LONGEST_NAME for text in changes.values()))
+        return dict(changes)
+    except _NONSENSE as fault:
+        raise Refusal("E122", found=_ALTERED) from fault
 
 
 def _parsed(sheet: RawSheet) -> Any:

@@ -6,9 +6,9 @@ All of this is done in the limited process.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from flexlash.reading.carried import read_report
@@ -58,12 +58,16 @@ class Source:
 
 @dataclass(frozen=True, kw_only=True)
 class ReadReport:
-    """A report as read: the submission that it carries, its Results, the version of the flexlash that made it."""
+    """A report as read: the submission that it carries, its Results, the version of the flexlash that made it.
+
+    `changes` are the cheapest single changes of variants that miss their limit, in words, by the variant's name.
+    """
 
     name: str
     submission: Submission
     results: RawSheet | None
     version: str
+    changes: Mapping[str, str] = field(default_factory=dict)
     data: bytes = b""
     path: Path | None = None
 
@@ -117,8 +121,10 @@ def report_of(source: Source, limits: ReadingLimits) -> ReadReport:
     with _refusing():
         if kind_of(source.data) != "workbook":
             raise Refusal("E120")
-        submission, results, version = read_report(source.data, limits, limits_of_reports(limits))
-    return ReadReport(name=source.name, path=source.path, submission=submission, results=results, version=version)
+        submission, results, version, changes = read_report(source.data, limits, limits_of_reports(limits))
+    return ReadReport(
+        name=source.name, path=source.path, submission=submission, results=results, version=version, changes=changes
+    )
 
 
 def limits_of_reports(limits: ReadingLimits) -> ReadingLimits:

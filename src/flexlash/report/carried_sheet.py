@@ -33,18 +33,21 @@ _TOP = 15
 _NOTE = "What flexlash read, for flexlash run --from-report and flexlash diff. Please leave it as it is."
 
 
-def write_carried(book: Book, outcome: Outcome) -> None:
-    """Write the sheet, last of all and hidden from the list of hidden sheets."""
+def write_carried(book: Book, outcome: Outcome, changes: Mapping[str, str]) -> None:
+    """Write the sheet, last of all and hidden from the list of hidden sheets.
+
+    `changes` are the cheapest single changes, in words, of variants that miss their limit.
+    """
     sheet = book.workbook.add_worksheet(SHEET)
-    text = carried_text(outcome)
+    text = carried_text(outcome, changes)
     for row, start in enumerate(range(0, len(text), _PIECE)):
         sheet.write_string(row, 0, text[start : start + _PIECE])
     sheet.write_string(0, 1, _NOTE)
     sheet.very_hidden()
 
 
-def carried_text(outcome: Outcome) -> str:
-    """Return what was read and the options that shaped the numbers, as JSON in plain letters."""
+def carried_text(outcome: Outcome, changes: Mapping[str, str] | None = None) -> str:
+    """Return what was read and the options that shaped the numbers, as JSON in plain letters, with these changes."""
     submission, settings = outcome.submission, outcome.settings
     worst_of = outcome.whole.rows if outcome.whole else submission.worst_of
     carried = {
@@ -62,7 +65,7 @@ def carried_text(outcome: Outcome) -> str:
                 template_version=submission.template_version,
             )
         ),
-    }
+    } | ({"changes": dict(changes)} if changes else {})
     # Readers of workbooks take _x0041_ for a letter, and some leave out x005F_ wherever it stands.
     text = json.dumps(carried, separators=(",", ":"))
     return text.replace("_x", "_\\u0078").replace("x005F_", "\\u0078005F_")

@@ -28,6 +28,7 @@ from flexlash.report.findings_sheet import write_findings
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
 from flexlash.report.levers_sheet import write_levers
+from flexlash.report.page.lever_cells import cheapest_changes
 from flexlash.report.report_data import ReportData, report_data
 from flexlash.report.results_sheet import write_results
 from flexlash.report.samples_sheet import write_samples
@@ -49,6 +50,7 @@ from flexlash.report.trace.trace_spread import trace_spread_sheet, write_trace_s
 from flexlash.report.trace.trace_steps import STEPS
 from flexlash.report.tradeoffs.trade_offs_sheet import write_trade_offs
 from flexlash.report.used_sheet import write_used
+from flexlash.report.wording.lever_words import hats_of, shown_levers
 
 __all__ = ["report_bytes"]
 
@@ -94,7 +96,7 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
         stored.write(book, f"{part}{note}")
     lines = write_trace(book, trace, inputs, extent.total)
     write_trace_spread(book, trace_spread, inputs, (scatter, tied), lines.get("number"))
-    write_carried(book, outcome)
+    write_carried(book, outcome, cheapest_changes(shown_levers(data.levers, hats_of(outcome))))
     workbook.close()
     return buffer.getvalue()
 
