@@ -41,7 +41,8 @@ def _sheet(path):
 
 def _read(outcome):
     """Return what was read, of the sheets that a report carries."""
-    sheets = {name: sheet for name, sheet in outcome.submission.sheets.items() if name not in {"Dictionary", "Lists"}}
+    left = {"Dictionary", "Lists", "Sketch"}
+    sheets = {name: sheet for name, sheet in outcome.submission.sheets.items() if name not in left}
     return replace(outcome.submission, data=b"", sheets=sheets)
 
 

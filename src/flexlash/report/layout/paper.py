@@ -101,7 +101,8 @@ def print_one_page(
     if high[-1] * least <= _ROOM * height:
         end = last
     else:
-        scale = max(least, min(1.0, width / wide[columns - 1]))
+        # Of what begins hidden nothing is wide.
+        scale = max(least, min(1.0, width / max(wide[columns - 1], 1.0)))
         fitting = [row for row in range(last) if high[row] * scale <= _ROOM * height] or [0]
         end = max(set(ends).intersection(fitting), default=fitting[-1])
     sheet.fit_to_pages(1, 1)
