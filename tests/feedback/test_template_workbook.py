@@ -237,7 +237,7 @@ def test_lists_come_from_defined_names(empty):
         "fl_flexspline_types", "fl_materials", "fl_tolerance_classes", "fl_dimensions", "fl_grades",
         "fl_deviation_units", "fl_distributions", "fl_methods", "fl_samples", "fl_scatters_between", "fl_uses",
         "fl_enter_as", "fl_source_distributions", "fl_sides", "fl_kinds", "fl_levers", "fl_answers", "fl_sizes",
-        "fl_variant_names",
+        "fl_variant_names", "fl_angle_units",
     }  # fmt: skip
     assert used <= set(empty.defined_names)
     assert empty["Lists"].sheet_state == "hidden"

@@ -240,11 +240,12 @@ def test_settings_out_of_order_unknown_and_doubled(tmp_path):
     sheet["D4"], sheet["D6"] = "Why", "agreed"
     old = _saved(book, tmp_path)
     new, _ = _moved(old)
-    after = [[cell.value for cell in row] for row in _cells(new, "Settings")["A5:B16"]]
+    after = [[cell.value for cell in row] for row in _cells(new, "Settings")["A5:B17"]]
     assert after == [
         ["Seed ", 3], ["coverage_percent", 95], ["method", "sobol"], ["samples", None], ["lost_motion_percent", 4],
         ["cylinder_calibration", 1], ["disk_calibration", 0.9], ["acceptable_ppm", 1350],
-        ["target_percent", 99.865], ["mean_shift_factor", 0.3], ["colour", "red"], ["seed", 4],
+        ["target_percent", 99.865], ["mean_shift_factor", 0.3], ["angle_unit", "arcmin"],
+        ["colour", "red"], ["seed", 4],
     ]  # fmt: skip
     assert [_cells(new, "Settings")[cell].value for cell in ("D4", "D5", "D6")] == ["Why", "agreed", None]
     assert {one.code for one in check(old).findings} == {one.code for one in check(new).findings}

@@ -73,6 +73,7 @@ WRONG = {
     "seed huge": (("options", "seed"), 2**64),
     "method unknown": (("options", "method"), "guess"),
     "method a list": (("options", "method"), []),
+    "unit unknown": (("options", "angle_unit"), "degrees"),
     "samples 0": (("options", "samples"), 0),
     "samples a fraction": (("options", "samples"), 1.5),
     "a switch between": (("options", "strict"), 1),

@@ -58,9 +58,11 @@ def _saved_by_openpyxl(path, folder):
 @pytest.mark.parametrize("name", ["b3-160-study", "needs-fixing"])
 def test_what_was_read_comes_back(name, tmp_path):
     """The report's sheet holds exactly the sheets that were read, their dates and properties, and the run's options."""
-    outcome = run(regenerate.ROOT / "data" / f"{name}.xlsx", tmp_path / "r.xlsx", seed=3, **OPTIONS)
+    outcome = run(
+        regenerate.ROOT / "data" / f"{name}.xlsx", tmp_path / "r.xlsx", seed=3, angle_unit="arcsec", **OPTIONS
+    )
     found = _carried(tmp_path / "r.xlsx")
-    options = {"seed": 3, "method": "line", "samples": 64, "target_percent": 99.865}
+    options = {"seed": 3, "method": "line", "samples": 64, "target_percent": 99.865, "angle_unit": "arcsec"}
     options |= {"cross_check": False, "elasticity": False, "strict": False}
     assert found.run_with == options
     assert replace(found, run_with=None) == _read(outcome)

@@ -20,6 +20,7 @@ from flexlash.report.compare.contributions_sheet import write_contributions
 from flexlash.report.compare.ranking_sheet import write_ranking
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import drawn_variants
+from flexlash.schema.angle_unit import ARC_MINUTES
 
 AROUND = "Spread around the median of each variant"
 
@@ -120,7 +121,7 @@ def test_charts_are_described(study):
 def _alone(outcome, path):
     """Write the three sheets of the comparison and what they lead to, which are printed sooner than a whole report."""
     drawn = drawn_variants(outcome)
-    compared = compared_variants(drawn)
+    compared = compared_variants(drawn, ARC_MINUTES)
     with xlsxwriter.Workbook(path) as workbook:
         book = Book(workbook)
         write_compare(book, outcome, drawn, compared)

@@ -9,6 +9,7 @@ from scipy.special import ndtri
 from flexlash.pipeline import run
 from flexlash.report.compare.compared import compared_variants, percentile_between, share_heading
 from flexlash.report.report_data import drawn_variants
+from flexlash.schema.angle_unit import ARC_MINUTES
 from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.distribution_curves import CURVE_SCORES
 
@@ -26,7 +27,7 @@ def drawn(study):
 
 def test_figures_are_those_of_results(drawn):
     """Every figure is the variant's own number in Results, bit for bit."""
-    for one, stored in zip(drawn, compared_variants(drawn).rows, strict=True):
+    for one, stored in zip(drawn, compared_variants(drawn, ARC_MINUTES).rows, strict=True):
         assert {heading: stored[heading] for heading in RESULTS} == {
             heading: one.row[key] for heading, key in RESULTS.items()
         }
@@ -35,7 +36,7 @@ def test_figures_are_those_of_results(drawn):
 
 def test_the_parts_of_a_box_add_up(drawn):
     """Whiskers and halves of a box lead from P2.5 to P97.5, none of them negative."""
-    for stored in compared_variants(drawn).rows:
+    for stored in compared_variants(drawn, ARC_MINUTES).rows:
         parts = [stored[part] for part in ("P2.5 to P25", "P25 to P50", "P50 to P75", "P75 to P97.5")]
         assert min(parts) > 0
         assert stored["P2.5"] + sum(parts) == pytest.approx(stored["P97.5"], rel=1e-14)
@@ -44,7 +45,7 @@ def test_the_parts_of_a_box_add_up(drawn):
 
 def test_quartiles_are_the_curve_between_its_points(drawn):
     """P25 and P75 lie on the stored distribution, where its scores are ∓ 0.6745."""
-    for one, stored in zip(drawn, compared_variants(drawn).rows, strict=True):
+    for one, stored in zip(drawn, compared_variants(drawn, ARC_MINUTES).rows, strict=True):
         for heading, share in (("P25", 0.25), ("P75", 0.75)):
             line = np.interp(ndtri(share), CURVE_SCORES, one.curve.outputs) / ARCMIN
             assert stored[heading] == pytest.approx(line, abs=2e-3 * stored["sd"])
@@ -67,7 +68,7 @@ def test_a_percentile_stays_between_its_neighbours():
 
 def test_points_of_the_disk_share_stand_under_their_type(drawn):
     """A cup's disk share stands under cups, a hat's under hats, a cylinder's under neither; l/r is length by radius."""
-    compared = compared_variants(drawn)
+    compared = compared_variants(drawn, ARC_MINUTES)
     by_name = {row["Variant"]: row for row in compared.rows}
     cups, hats = (share_heading(kind) for kind in ("cup", "hat"))
     assert (by_name["B3-160 hat"][cups], by_name["B3-160 hat"][hats]) == (None, by_name["B3-160 hat"]["Disk share"])
@@ -85,6 +86,8 @@ def test_without_scatter_a_box_is_a_line(table, sound, tmp_path):
         "tolerance_class,dimension,lower_deviation,upper_deviation\nstandard,rim_length,-1,1\n", encoding="utf-8"
     )
     path = table([{**sound, "backlash_limit_arcmin": ""}])
-    (row,) = compared_variants(drawn_variants(run(path, tmp_path / "report.xlsx", tolerances=tolerances))).rows
+    (row,) = compared_variants(
+        drawn_variants(run(path, tmp_path / "report.xlsx", tolerances=tolerances)), ARC_MINUTES
+    ).rows
     assert row["P2.5"] == row["P25"] == row["P75"] == row["P97.5"]
     assert row["Limit"] is row["Margin"] is None

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexlash.report.wording.distances import distance, distance_format, distance_words
+from flexlash.schema.angle_unit import ARC_MINUTES
 
 
 def _row(value, limit, error):
@@ -32,8 +33,8 @@ DISTANCES = {
 def test_a_distance_in_words_and_in_a_cell(case):
     """Two digits at least, as many as the percentile has, none beyond its standard error."""
     numbers, words, look = DISTANCES[case]
-    assert distance_words(_row(*numbers), "p97_5") == words
-    assert distance_format(_row(*numbers), "p97_5") == look
+    assert distance_words(_row(*numbers), "p97_5", ARC_MINUTES) == words
+    assert distance_format(_row(*numbers), "p97_5", ARC_MINUTES) == look
 
 
 @pytest.mark.slow
@@ -42,7 +43,8 @@ def test_a_distance_in_words_and_in_a_cell(case):
 def test_words_and_cell_agree(value, part, error):
     """The sentence has as many decimals as the cell shows, and is right to half of the last one."""
     row = _row(value, value * (1 + part), error)
-    words, places = distance_words(row, "p97_5"), distance_format(row, "p97_5").split(";")[0].partition(".")[2]
+    words = distance_words(row, "p97_5", ARC_MINUTES)
+    places = distance_format(row, "p97_5", ARC_MINUTES).split(";")[0].partition(".")[2]
     if words == "right at" or words.startswith("less than"):
         return
     told = re.match(r"[\d.]+", words)[0]

@@ -15,6 +15,7 @@ from flexlash.report.failing.failing_places import variant_targets
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import ROW, drawn_variants
 from flexlash.report.wording.verdict import verdict_word
+from flexlash.schema.angle_unit import ARC_MINUTES
 from flexlash.schema.entry_words import dimension_words
 
 KEYS = {
@@ -28,7 +29,7 @@ OF_DIFFERENCE = {"P50": "p50_arcmin", "P97.5": "p97_5_arcmin", "sd": "sd_arcmin"
 def _alone(outcome, path):
     """Write the Ranking with its data and what it leads to, which are recalculated sooner than a whole report."""
     drawn = drawn_variants(outcome)
-    compared = compared_variants(drawn)
+    compared = compared_variants(drawn, ARC_MINUTES)
     with xlsxwriter.Workbook(path) as workbook:
         book = Book(workbook)
         write_ranking(book, outcome, drawn, compared)

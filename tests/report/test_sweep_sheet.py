@@ -16,6 +16,7 @@ from flexlash.pipeline import check, run
 from flexlash.report.sweeps.sweep_curves import grid_of
 from flexlash.report.wording.sweep_words import allowed_sentence, allowed_words, study_sentences, study_title
 from flexlash.report.workbook import report_bytes
+from flexlash.schema.angle_unit import ARC_MINUTES
 
 THIRD = "B3-160 case 3"
 LENGTHS = ("cylinder_length_mm", (100, 200, 20))
@@ -183,8 +184,8 @@ def test_what_is_allowed_is_said(submission):
     """Nothing, all, up to a value, from a value on: rounded so that the value told is allowed itself."""
     for (variant, dimension), sentence in SENTENCES.items():
         (study,) = swept(submission, sweep_row(variant, dimension))
-        assert allowed_sentence(study, TARGET) == sentence
-        assert sentence in study_sentences(study, TARGET)
+        assert allowed_sentence(study, TARGET, ARC_MINUTES) == sentence
+        assert sentence in study_sentences(study, TARGET, ARC_MINUTES)
 
 
 @pytest.mark.slow
@@ -192,5 +193,7 @@ def test_two_dimensions_say_how_to_read_them(submission):
     """The sentence names the number in the cells; the cell below each column what is allowed."""
     (study,) = swept(submission, sweep_row(THIRD, HUBS, ("wall_thickness_mm", (1.6, 2.4, 0.8))))
     assert study_title(study) == f"{THIRD}: disk inner radius from 40 to 60 mm and wall thickness from 1.6 to 2.4 mm"
-    assert study_sentences(study, TARGET)[0].startswith("Each cell is P99.865, the backlash that 99.865 % of units")
+    assert study_sentences(study, TARGET, ARC_MINUTES)[0].startswith(
+        "Each cell is P99.865, the backlash that 99.865 % of units"
+    )
     assert [allowed_words(study, TARGET, second) for second in (1.6, 2.4)] == ["≥ 45.836", "all"]

@@ -91,6 +91,7 @@ SETTING_DEFAULTS = {
     "acceptable_ppm": 1350,
     "target_percent": 99.865,
     "mean_shift_factor": 0.3,
+    "angle_unit": "arcmin",
 }
 DIMENSION_NAMES = [
     "torque",

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from flexlash.report.formula.functions import decimals_to
 from flexlash.report.formula.live import live
 from flexlash.report.layout.styles import decimals_of
-from flexlash.schema.number_words import angle_words, places, range_words, rounded, share_words
+from flexlash.schema.number_words import places, range_words, rounded, share_words
 from flexlash.tolerance.capability import clopper_pearson
 
 thorough = settings(deadline=None, max_examples=300, derandomize=True)
@@ -163,15 +163,6 @@ def test_a_number_without_an_error_keeps_its_usual_digits():
     """Where nothing is known of the error, the usual digits are told, in formulas too."""
     for error in (live(0.0), live("")):
         assert decimals_to(error, 4.0).value == 4
-
-
-@pytest.mark.parametrize(
-    ("value", "error", "words"),
-    [(6.261963, 1e-6, "6.262′"), (6.261963, 0.02, "6.26′"), (0.0123456, None, "0.01235′"), (0.0, None, "0′")],
-)
-def test_an_angle_in_words(value, error, words):
-    """An angle is told in four digits, or in fewer where its standard error is greater."""
-    assert angle_words(value, error) == words
 
 
 _ENDS = (0.0, 1e-12, 1e-9, 3e-6, 0.0123, 0.5, 0.9994, 0.99999932, 1 - 1e-9, 1 - 1e-12, 1.0)

@@ -1,4 +1,4 @@
-"""The settings of what is decided: the target of the limit, and how far means drift alike."""
+"""The settings of what is decided: the target of the limit, how far means drift alike, the unit of angles."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ SETTINGS = [
     ("mean_shift_factor", 1.0, []),
     ("mean_shift_factor", -0.1, [("E207", "mean_shift_factor", 2)]),
     ("mean_shift_factor", 30.0, [("E208", "mean_shift_factor", 2)]),
+    ("angle_unit", "arcsec", []),
+    ("angle_unit", "degrees", [("E209", "angle_unit", 2)]),
 ]
 
 
@@ -33,10 +35,11 @@ def test_each_is_held_to_its_bounds(name, value, findings):
 
 
 def test_blank_ones_take_their_default():
-    """Without a value, or without the row, the target is 99.865 % and the factor 0.3."""
-    for rows in ([], [{"setting": "target_percent"}, {"setting": "mean_shift_factor"}]):
+    """Without a value, or without the row, the target is 99.865 %, the factor 0.3, the unit arcmin."""
+    names = ("target_percent", "mean_shift_factor", "angle_unit")
+    for rows in ([], [{"setting": name} for name in names]):
         found = validated(settings=rows)
-        assert (found.settings.target_percent, found.settings.mean_shift_factor) == (99.865, 0.3)
+        assert [getattr(found.settings, name) for name in names] == [99.865, 0.3, "arcmin"]
 
 
 def test_a_fault_of_the_settings_is_not_told_as_one_of_the_sheets():

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.findings import shown
-from flexlash.schema.number_words import angle_words, grouped
+from flexlash.schema.number_words import grouped
 
 if TYPE_CHECKING:
     import polars as pl
@@ -61,8 +62,8 @@ class DriveNotes:
             target=(later if later.told else self).target,
         )
 
-    def lines(self) -> Iterator[str]:
-        """Yield one line, nothing where no variant has a budget."""
+    def lines(self, angles: AngleUnit) -> Iterator[str]:
+        """Yield one line with its angle in a unit, nothing where no variant has a budget."""
         if not self.told:
             return
         whose = f", the greatest, of {shown(self.variant, longest=_NAME)}" if self.told > 1 else ""
@@ -70,4 +71,4 @@ class DriveNotes:
         if self.judged:
             met = f"{grouped(self.meets)} of {grouped(self.judged)}"
             limit = f"system limit met by {met} ({self.target:g} % of drives within it)"
-        yield f"Whole drive, wind-up and other sources: worst case {angle_words(self.most)}{whose}; {limit}."
+        yield f"Whole drive, wind-up and other sources: worst case {angles.words(self.most)}{whose}; {limit}."

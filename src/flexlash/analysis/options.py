@@ -79,6 +79,9 @@ class Options:
         default=None,
         metadata=_setting("target_percent", "Share of units in per cent that shall be within their backlash limit."),
     )
+    angle_unit: str | None = field(
+        default=None, metadata=_setting("angle_unit", "Unit of angles in report, page and on the screen.")
+    )
     strict: bool | None = field(default=None, metadata=_declared(flag, "Compute nothing when any row has an error."))
     fail_over_limit: bool = field(
         default=False, metadata=_declared(flag, "End with exit code 6 when a variant does not meet its limit.")

@@ -16,19 +16,20 @@ from flexlash.analysis.written_files import is_picture, picture_words
 from flexlash.schema.cell_addresses import CellAddress, cell_ranges
 from flexlash.schema.finding_catalogue import Level
 from flexlash.schema.findings import CATALOGUE, Finding, shown
-from flexlash.schema.limit_verdict import VERDICTS, VerdictBounds
+from flexlash.schema.limit_verdict import VERDICTS
 from flexlash.schema.lot_words import lots_words, some_lots_fail
-from flexlash.schema.number_words import ALL_UNITS, angle_words, grouped, range_words, rounded, share_words
+from flexlash.schema.number_words import ALL_UNITS, grouped, range_words, rounded, share_words
 from flexlash.validation.blocking_errors import Waiting, waiting_rows
 
 if TYPE_CHECKING:
     import polars as pl
 
+    from flexlash.schema.variant import Settings
+
 __all__ = [
     "SHOWN_MESSAGES",
     "FindingGroup",
     "SpreadNotes",
-    "angle_words",
     "are",
     "by_rule",
     "closing_lines",
@@ -156,7 +157,7 @@ def detail_lines(outcome: Outcome, *, ran: bool) -> list[str]:
     if not (ran and outcome.counts["rows"]):
         return []
     drives = DriveNotes.of(outcome.results, outcome.settings.target_percent)
-    return [*limit_lines(outcome), *drives.lines(), *spread_notes(outcome)]
+    return [*limit_lines(outcome), *drives.lines(outcome.settings.angles), *spread_notes(outcome)]
 
 
 def closing_lines(
@@ -281,14 +282,14 @@ def listed(words: Sequence[str], most: int, count: int = 0) -> str:
 
 def limit_lines(outcome: Outcome, most: int = 3) -> Iterator[str]:
     """Yield how many variants meet their limits, and by name the worst of those that do not."""
-    yield from lines_of_limits(outcome.counts, worst_first(outcome, most), outcome.settings.verdict_bounds, most)
+    yield from lines_of_limits(outcome.counts, worst_first(outcome, most), outcome.settings, most)
 
 
 def lines_of_limits(
-    counts: Mapping[str, int], worst: Iterable[Mapping[str, Any]], bounds: VerdictBounds, most: int = 3
+    counts: Mapping[str, int], worst: Iterable[Mapping[str, Any]], settings: Settings, most: int = 3
 ) -> Iterator[str]:
     """Yield the same of counts and of the worst rows of Results, worst first."""
-    judged = sum(counts[verdict] for verdict in VERDICTS)
+    judged, bounds = sum(counts[verdict] for verdict in VERDICTS), settings.verdict_bounds
     if not judged:
         yield from _without_limits(worst)
         return
@@ -303,7 +304,7 @@ def lines_of_limits(
         words = share_words(row)
         units = f"{words} units" if words in ALL_UNITS else f"{words} of units"
         lots = f"; {lots_words(row, 'fails', 'fail')}" if some_lots_fail(row) else ""
-        variant, limit = shown(row["variant"], longest=200), f"{row['backlash_limit_arcmin']:g}′"
+        variant, limit = shown(row["variant"], longest=200), settings.angles.entered(row["backlash_limit_arcmin"])
         yield f"  {variant}: {units} are over {limit}{lots}{_left_open(row)}."
 
 

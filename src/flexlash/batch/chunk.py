@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 from flexlash.analysis.drive_notes import DriveNotes
 from flexlash.analysis.options import Options
@@ -97,6 +97,7 @@ class ChunkSummary:
     seed: int = 0
     method: str = ""
     target_percent: float = Settings.target_percent
+    angle_unit: Literal["arcmin", "arcsec"] = "arcmin"
     columns: tuple[str, ...] = ()
     verdicts: Mapping[Verdict, int] = field(default_factory=dict)
     unsettled: Mapping[Verdict, int] = field(default_factory=dict)

@@ -73,6 +73,7 @@ def answered(task: ChunkTask) -> ChunkAnswer:
         seed=outcome.settings.seed,
         method=outcome.settings.method,
         target_percent=outcome.settings.target_percent,
+        angle_unit=outcome.settings.angle_unit,
         rules=dict(Counter(found.code for found in own)),
         groups=tuple(replace(one, addresses=one.addresses[:FIRST_CELLS]) for one in by_rule(own)),
         before=before,

@@ -26,8 +26,9 @@ from flexlash.analysis.whole_batch import DRAWN, WholeBatch
 from flexlash.batch.answer import Answer, RuleTotal, WorstVariant
 from flexlash.batch.chunk import FIRST_CELLS, FIRST_FINDINGS, ChunkSummary, WorstRow
 from flexlash.schema.findings import Finding
-from flexlash.schema.limit_verdict import VERDICTS, Verdict, VerdictBounds
+from flexlash.schema.limit_verdict import VERDICTS, Verdict
 from flexlash.schema.spellings import plain
+from flexlash.schema.variant import Settings
 from flexlash.validation.blocking_errors import Waiting, with_waiting
 from flexlash.validation.consolidation import shared_by_excerpts
 
@@ -45,7 +46,7 @@ class Totals:
     def __init__(self) -> None:
         self.rows = self.computed = self.seed = 0
         self.method = ""
-        self._bounds = VerdictBounds()
+        self._settings = Settings()
         self.columns: tuple[str, ...] = ()
         self.worst: list[WorstRow] = []
         self._before: list[Finding] = []
@@ -65,7 +66,7 @@ class Totals:
         self.rows += chunk.rows
         self.computed += chunk.computed
         self.seed, self.method = chunk.seed, chunk.method or self.method
-        self._bounds = VerdictBounds.of(chunk.target_percent)
+        self._settings = Settings(target_percent=chunk.target_percent, angle_unit=chunk.angle_unit)
         self.columns = self.columns or chunk.columns
         self._verdicts.update(chunk.verdicts)
         self._unsettled.update(chunk.unsettled)
@@ -154,8 +155,8 @@ class Totals:
         counts = self.counts
         groups = self.groups
         listed = f"{findings_file or 'the table beside a marked copy (--annotate)'} lists them all"
-        limits = lines_of_limits(counts, self._named(), self._bounds)
-        details = [*limits, *self._drives.lines(), *self._note_lines()] if ran else []
+        limits = lines_of_limits(counts, self._named(), self._settings)
+        details = [*limits, *self._drives.lines(self._settings.angles), *self._note_lines()] if ran else []
         return Answer(
             exit_code=exit_code_of(counts, fail_over_limit=fail_over_limit),
             told={

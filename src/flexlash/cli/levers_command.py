@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexlash.analysis.options import TABLES
-from flexlash.cli.click_types import SUBMISSION, planned, spread_options
+from flexlash.cli.click_types import SUBMISSION, option, planned, spread_options
 from flexlash.cli.submissions import Submissions
 from flexlash.cli.terminal import progress
 from flexlash.outputs.naming import table_output
@@ -34,6 +34,7 @@ _NARROWEST = 60
     help="The table as .csv, .parquet or .json. Without it the table is printed.",
 )  # fmt: skip
 @spread_options
+@option("angle_unit")
 def levers(submission: Path, output: Path | None, *, as_json: bool, quiet: bool, **options: Any) -> None:
     """Say which single change brings each variant within its backlash limit, and how far those of a sound one may go.
 
@@ -60,6 +61,6 @@ def _lines(outcome: Outcome, table: pl.DataFrame) -> Iterator[str]:
     from flexlash.report.wording.lever_words import hats_of
 
     width = max(shutil.get_terminal_size((100, 24)).columns, _NARROWEST)
-    for text, look in levers_lines(outcome.results, table, width, hats_of(outcome)):
+    for text, look in levers_lines(outcome.results, table, width, outcome.settings.angles, hats_of(outcome)):
         style = {"bold": True} if look == "bold" else {"fg": look or None}
         yield click.style(text, **style) if look else text

@@ -12,6 +12,7 @@ import polars as pl
 from flexlash.report.page.excel_texts import number_text
 from flexlash.report.wording.lever_table import LEVER_COLUMNS, LeverColumn
 from flexlash.report.wording.lever_words import Lever, change_words, followers_words, sentence_start, shown_levers
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.findings import shown
 from flexlash.schema.number_words import share_words
 
@@ -28,7 +29,7 @@ _NAME, _MATERIAL = 200, 60
 
 
 def levers_lines(
-    results: pl.DataFrame, levers: pl.DataFrame, width: int, hats: Collection[str] = ()
+    results: pl.DataFrame, levers: pl.DataFrame, width: int, angles: AngleUnit, hats: Collection[str] = ()
 ) -> Iterator[tuple[str, str]]:
     """Yield lines, each with its colour or an empty text: the variants in the order of Results, each with its changes.
 
@@ -37,16 +38,18 @@ def levers_lines(
     rows = {row["variant"]: row for row in results.iter_rows(named=True)}
     for variants in shown_levers(levers, hats).partition_by("variant", maintain_order=True):
         changes = variants.to_dicts()
-        yield from _block(rows[changes[0]["variant"]], changes, width)
+        yield from _block(rows[changes[0]["variant"]], changes, width, angles)
     without = results.filter(pl.col("p97_5_arcmin").is_not_null() & pl.col("backlash_limit_arcmin").is_null()).height
     if without:
         have = "variant has" if without == 1 else "variants have"
         yield f"{without} {have} no backlash limit: there is nothing to meet.", ""
 
 
-def _block(row: Mapping[str, Any], changes: Sequence[Lever], width: int) -> Iterator[tuple[str, str]]:
+def _block(
+    row: Mapping[str, Any], changes: Sequence[Lever], width: int, angles: AngleUnit
+) -> Iterator[tuple[str, str]]:
     """Yield the lines of one variant."""
-    name, limit = shown(row["variant"], longest=_NAME), f"{row['backlash_limit_arcmin']:g}′"
+    name, limit = shown(row["variant"], longest=_NAME), angles.entered(row["backlash_limit_arcmin"])
     meets = changes[0]["direction"] == "relax"
     verdict = f"meets its limit of {limit}; how far one change may go" if meets else f"misses its limit of {limit}"
     text = f"{name} {verdict} (units over it now: {share_words(row)})"

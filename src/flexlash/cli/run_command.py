@@ -32,6 +32,7 @@ __all__ = ["run"]
 @option("method")
 @option("samples")
 @option("target_percent")
+@option("angle_unit")
 @option("cross_check")
 @option("elasticity")
 @option("jobs", default=os.cpu_count() or 1, show_default="all cores")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexlash.analysis.options import TABLES
-from flexlash.cli.click_types import SUBMISSION, planned, spread_options
+from flexlash.cli.click_types import SUBMISSION, option, planned, spread_options
 from flexlash.cli.submissions import Attempt, Submissions
 from flexlash.cli.terminal import progress
 from flexlash.cli.vary_texts import sentence, varied
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from flexlash.decisions.sweep import Study
     from flexlash.reading.read import Source
     from flexlash.reading.reading_limits import ReadingLimits
+    from flexlash.schema.variant import Settings
 
 __all__ = ["sweep"]
 
@@ -47,6 +48,7 @@ _SHOWN = 5
     "Default: <name>-sweep.xlsx beside the submission.",
 )  # fmt: skip
 @spread_options
+@option("angle_unit")
 def sweep(
     submission: Path,
     vary: tuple[str, ...],
@@ -94,7 +96,7 @@ def _carry_out(
     except SweepError as fault:
         raise click.UsageError(sentence(f"Nothing is swept: {fault}")) from fault
     attempt.further = sweep_fields(studies)
-    attempt.closing = list(_lines(studies, attempt.outcome.settings.target_percent))
+    attempt.closing = list(_lines(studies, attempt.outcome.settings))
     attempt.codes = [_code_of(study) for study in studies]
 
 
@@ -121,12 +123,12 @@ def _code_of(study: Study) -> ExitCode:
     return ExitCode.NOTHING if missing == study.results.height else ExitCode.SOME_ROWS
 
 
-def _lines(studies: Sequence[Study], target: float) -> Iterator[str]:
+def _lines(studies: Sequence[Study], settings: Settings) -> Iterator[str]:
     """Yield what the screen says of the studies."""
     from flexlash.report.wording.sweep_words import study_title, told_sentences
 
     for study in studies[:_SHOWN]:
         yield study_title(study)
-        yield from (f"  {sentence}" for sentence in told_sentences(study, target))
+        yield from (f"  {sentence}" for sentence in told_sentences(study, settings.target_percent, settings.angles))
     if len(studies) > _SHOWN:
         yield f"… and {len(studies) - _SHOWN:,} more studies; the output has all of them."

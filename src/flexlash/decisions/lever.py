@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from statistics import NormalDist
 from typing import Literal
 
+from flexlash.schema.angle_unit import ARC_MINUTES, AngleUnit
 from flexlash.schema.decision_rows import LeverRow
 from flexlash.schema.variant import Material, ToleranceRow, Variant
 from flexlash.tolerance.sampling import SamplingPlan
@@ -23,7 +24,8 @@ class Terms:
 
     `classes` are its tolerance classes, `correlations` those of the scores of pairs of dimensions, `materials` the ones
     that a variant may be made of, each by plain name; `rows` the rows of Levers by dimension. `plan` is that of the
-    run, `target` the greatest share of units that may be over the limit.
+    run, `target` the greatest share of units that may be over the limit, `angles` the unit in which reasons tell an
+    angle.
     """
 
     classes: Mapping[str, Sequence[ToleranceRow]]
@@ -32,6 +34,7 @@ class Terms:
     rows: Mapping[str, LeverRow] = field(default_factory=dict)
     plan: SamplingPlan
     target: float
+    angles: AngleUnit = ARC_MINUTES
 
     @property
     def level(self) -> float:

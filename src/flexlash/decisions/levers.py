@@ -90,6 +90,7 @@ def terms_of(computed: Computed, settings: Settings, levers: Mapping[str, LeverR
         rows=levers,
         plan=replace(sampling_plan(settings, options), cross_check=False, shares=False),
         target=settings.verdict_bounds.meets,
+        angles=settings.angles,
     )
 
 

@@ -58,7 +58,7 @@ def _shares(changed: Sequence[Present], terms: Terms) -> list[tuple[float | None
         means = alike.moments(alike.present[:, None]).mean[:, 0].tolist()
         for index, present, mean in zip(indices, group, means, strict=True):
             if mean > present.limit:
-                found[index] = None, softer(present.variant.material, mean, present.limit)
+                found[index] = None, softer(present.variant.material, mean, present.limit, terms.angles)
             else:
                 hopeful.append(index)
     rows = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from flexlash.schema.angle_unit import ARC_MINUTES, AngleUnit
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import spelled_out
@@ -10,6 +11,7 @@ from flexlash.schema.units import ARCMIN
 __all__ = ["always_kept", "never_met", "no_step", "share_of_units", "softer", "still_over", "unmoved"]
 
 _ALL, _RARE, _LEAST = 0.9999, 1e-3, 1e-9
+_DIGITS = 4
 
 
 def share_of_units(share: float) -> str:
@@ -78,14 +80,14 @@ def unmoved(dimension: str) -> str:
     return f"its parts were measured: another {words} on the drawing does not move what the process makes"
 
 
-def softer(material: str, mean: float, limit: float) -> str:
+def softer(material: str, mean: float, limit: float, angles: AngleUnit = ARC_MINUTES) -> str:
     """Return that the mean backlash [rad] in a material is over the limit already.
 
     >>> softer("Ti-6Al-4V", 7.2 * ARCMIN, 3.8 * ARCMIN)
     'with Ti-6Al-4V the mean backlash is 7.2′, over the limit of 3.8′'
     """
-    mean_words, limit_words = (spelled_out(angle / ARCMIN) for angle in (mean, limit))
-    return f"with {material} the mean backlash is {mean_words}′, over the limit of {limit_words}′"
+    mean_words, limit_words = (angles.spelled_out(angle / ARCMIN, _DIGITS) for angle in (mean, limit))
+    return f"with {material} the mean backlash is {mean_words}, over the limit of {limit_words}"
 
 
 def still_over(material: str, over: float) -> str:

@@ -15,6 +15,7 @@ from flexlash.reading.refusal import Refusal
 from flexlash.reading.survey import MOST_ROWS
 from flexlash.reading.worksheet import MAXIMUM_COLUMN, MAXIMUM_ROW
 from flexlash.reading.xlsx import Cells, read_workbook
+from flexlash.schema.angle_unit import ARC_MINUTES
 from flexlash.schema.columns import SETTINGS
 from flexlash.schema.findings import shown
 from flexlash.schema.variant import OVERRIDDEN
@@ -32,7 +33,7 @@ SWITCHES = ("cross_check", "elasticity", "strict")
 _NONSENSE = (ValueError, TypeError, LookupError, AttributeError, RecursionError, OverflowError)
 """What arises where a text is not what it should be."""
 
-_TARGET = "target_percent"
+_TARGET, _UNIT = "target_percent", "angle_unit"
 _DIGEST = re.compile("[0-9a-f]{64}")
 _KINDS = frozenset({"workbook", "csv", "parquet"})
 _DELIMITERS = frozenset(",;\t|")
@@ -129,10 +130,11 @@ def _options(carried: dict[str, Any]) -> dict[str, Any]:
         fits = type(value) is int and (column.minimum or 0) <= value <= (column.maximum or math.inf)
         _require(fits or (name == "samples" and value is None))
     _require(carried["method"] in columns["method"].choices, *(isinstance(carried[name], bool) for name in SWITCHES))
-    # Reports of before 0.10 have the target among the settings of the submission alone.
+    # Reports of before 0.10 have the target among the settings of the submission alone, and no unit of angles.
     target, column = carried.get(_TARGET), columns[_TARGET]
     if target is not None:
         _require(type(target) in {int, float} and (column.minimum or 0) <= target <= (column.maximum or math.inf))
+    _require(carried.get(_UNIT, ARC_MINUTES.name) in columns[_UNIT].choices)
     return {name: carried[name] for name in (*OVERRIDDEN, *SWITCHES) if name in carried}
 
 

@@ -25,9 +25,9 @@ NOTES = (
     "between disk and wall and at the rim have no finite peak; the colours of Stress end below it.",
 )
 _COLUMNS = (
-    ("two_term_backlash_arcmin", "Two-term formula [arcmin]", "arcmin"),
-    ("meridian", "Meridian integral [arcmin]", "arcmin"),
-    ("elasticity", "Elasticity [arcmin]", "arcmin"),
+    ("two_term_backlash_arcmin", "Two-term formula [{angle}]", "angle"),
+    ("meridian", "Meridian integral [{angle}]", "angle"),
+    ("elasticity", "Elasticity [{angle}]", "angle"),
     ("elasticity_difference_percent", "Meridian over elasticity [%]", "0.00"),
     ("elasticity_error_percent", "Error of elasticity [%]", "0.0000"),
     ("hub_shear_MPa", "Disk shear by formula [MPa]", "stress"),
@@ -42,8 +42,8 @@ _LOBE_NOTE = (
 )
 _LOBE_COLUMNS = (
     ("face_width_change_percent", "Change by the tooth face [%]", "0.00"),
-    ("two_lobe_low_arcmin", "Two lobes, low [arcmin]", "arcmin"),
-    ("two_lobe_high_arcmin", "Two lobes, high [arcmin]", "arcmin"),
+    ("two_lobe_low_arcmin", "Two lobes, low [{angle}]", "angle"),
+    ("two_lobe_high_arcmin", "Two lobes, high [{angle}]", "angle"),
 )
 """What stands there where a variant has bounds for two lobes."""
 
@@ -71,7 +71,9 @@ def write_elasticity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> No
         sheet.merge_range(row, 0, row, len(columns), note, book.format("wrap"))
         sheet.set_row(row, 32)
     header = row = len(notes) + 2
-    sheet.write_row(header, 0, ("Variant", *(heading for _, heading, _ in columns)), book.format("header"))
+    sheet.write_row(
+        header, 0, ("Variant", *book.headings(*(heading for _, heading, _ in columns))), book.format("header")
+    )
     sheet.set_row(header, 48)
     if extent.large and extent.note:
         sheet.write_string(header - 1, 0, extent.note, book.format("quiet"))
@@ -88,7 +90,7 @@ def write_elasticity(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> No
         values = {**record, "meridian": meridian, "elasticity": elastic}
         for column, (key, _, number) in enumerate(columns, start=1):
             if values[key] is not None:
-                sheet.write_number(row, column, values[key], book.format("text", number))
+                book.write_figure(sheet, row, column, values[key], number)
     sheet.freeze_panes(header + 1, 1)
     sheet.repeat_rows(header)
 

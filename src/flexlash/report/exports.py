@@ -13,6 +13,7 @@ from flexlash.analysis.whole_batch import DRAWN
 from flexlash.report.exported_file import ExportedFile
 from flexlash.report.extent import extent_of
 from flexlash.report.report_data import ROW, Drawn, ReportData, drawn_variants, ranked
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.findings import shown
 from flexlash.schema.number_words import grouped
 
@@ -87,7 +88,11 @@ def _pictures(outcome: Outcome, worst: pl.DataFrame, drawn: Sequence[Drawn]) -> 
     with_png = is_available()
     labels = _labels([one.row["variant"] for one in drawn], [one.row[ROW] for one in drawn])
     inline = [_comparison(outcome, worst)]
-    inline += [one for variant, label in zip(drawn, labels, strict=True) for one in _of_variant(variant, label)]
+    inline += [
+        one
+        for variant, label in zip(drawn, labels, strict=True)
+        for one in _of_variant(variant, label, outcome.settings.angles)
+    ]
     for name, picture, heading in inline:
         svg = svg_file(picture, heading)
         yield ExportedFile(kind="pictures", name=f"{name}.svg", data=svg, role=ROLE)
@@ -97,21 +102,23 @@ def _pictures(outcome: Outcome, worst: pl.DataFrame, drawn: Sequence[Drawn]) -> 
 
 def _comparison(outcome: Outcome, worst: pl.DataFrame) -> tuple[str, str, str]:
     """Return the picture of all variants: its name, the picture inline, its heading."""
-    from flexlash.report.pictures.chart import UNIT, Spread, spread_chart
+    from flexlash.report.pictures.chart import Spread, spread_chart
 
-    bounds = outcome.settings.verdict_bounds
+    bounds, angles = outcome.settings.verdict_bounds, outcome.settings.angles
+    ends = {"low": "p2_5_arcmin", "median": "p50_arcmin", "high": "p97_5_arcmin", "limit": "backlash_limit_arcmin"}
     spreads = [
         Spread(
-            variant=row["variant"], low=row["p2_5_arcmin"], median=row["p50_arcmin"], high=row["p97_5_arcmin"],
-            limit=row["backlash_limit_arcmin"], verdict=bounds.verdict(row["probability_over_limit"]) or "",
+            variant=row["variant"],
+            verdict=bounds.verdict(row["probability_over_limit"]) or "",
+            **{end: angles.of(row[key]) for end, key in ends.items() if row[key] is not None},
         )
         for row in worst.head(_COMPARED).to_dicts()
-    ]  # fmt: skip
-    picture = spread_chart("comparison", spreads, UNIT, of=extent_of(outcome).total)
+    ]
+    picture = spread_chart("comparison", spreads, angles.sign, of=extent_of(outcome).total)
     return "-comparison", picture.inline(), f"{picture.title}: 95 % of units, median and limit"
 
 
-def _of_variant(variant: Drawn, label: str) -> Iterator[tuple[str, str, str]]:
+def _of_variant(variant: Drawn, label: str, angles: AngleUnit) -> Iterator[tuple[str, str, str]]:
     """Yield the pictures of a variant: names, the pictures inline, headings."""
     from flexlash.mechanics.sketch.part_sketch import part_sketch
     from flexlash.mechanics.sketch.sketch_svg import svg
@@ -121,7 +128,9 @@ def _of_variant(variant: Drawn, label: str) -> Iterator[tuple[str, str, str]]:
     name, part = shown(variant.row["variant"], longest=_NAME), variant.computed.variant
     drawing = part_sketch(part.flexspline_type, part.dimensions, name=name)
     yield f"-{label}-part", svg(drawing), drawing.title
-    charts = variant_charts(density_of(variant), list(shares_of(variant)), list(segments_of(variant)))
+    charts = variant_charts(
+        density_of(variant, angles), list(shares_of(variant, angles)), list(segments_of(variant, angles))
+    )
     for kind, picture in charts.items():
         yield f"-{label}-{kind}", picture.inline(), f"{name}: {picture.title}{_EXPLAINED.get(kind, '')}"
 

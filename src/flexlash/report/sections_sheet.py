@@ -25,10 +25,10 @@ _SEGMENTS = (
     ("hub_fillet", "Hub fillet", PALETTE["red"]),
 )
 _BESIDE = (
-    ("backlash_arcmin", "Backlash [arcmin]", "arcmin"),
+    ("backlash_arcmin", "Backlash [{angle}]", "angle"),
     ("disk_share", "Disk share", "share"),
-    ("two_term_backlash_arcmin", "Two-term formula [arcmin]", "arcmin"),
-    ("cylinder_only_backlash_arcmin", "Cylinder only [arcmin]", "arcmin"),
+    ("two_term_backlash_arcmin", "Two-term formula [{angle}]", "angle"),
+    ("cylinder_only_backlash_arcmin", "Cylinder only [{angle}]", "angle"),
 )
 _FEW = 12
 """Most variants whose table fits below the chart on one page."""
@@ -47,8 +47,9 @@ def write_sections(book: Book, drawn: Sequence[Drawn], extent: Extent) -> None:
     sheet = book.sheet("Sections")
     sheet.write_string(0, 0, "Where the backlash arises", book.format("title"))
     sheet.set_row(0, 28)
-    note = (
-        "Backlash of each segment at the entered dimensions [arcmin], from the open end to the hub; the sum is nominal."
+    (note,) = book.headings(
+        "Backlash of each segment at the entered dimensions [{angle}], from the open end to the hub; the sum is "
+        "nominal."
     )
     if extent.large and extent.note:
         sheet.write_string(2, 0, extent.note, book.format("quiet"))
@@ -57,7 +58,8 @@ def write_sections(book: Book, drawn: Sequence[Drawn], extent: Extent) -> None:
     if len(drawn) > _CHARTED:
         note += f" The chart has the {_CHARTED} worst."
     sheet.write_string(1, 0, note, book.format("quiet"))
-    headings = [*(f"{name} [arcmin]" for _, name, _ in _SEGMENTS), *(heading for _, heading, _ in _BESIDE)]
+    names = [*(f"{name} [{{angle}}]" for _, name, _ in _SEGMENTS), *(heading for _, heading, _ in _BESIDE)]
+    headings = book.headings(*names)
     sheet.set_column(0, 0, 28)
     sheet.set_column(1, len(headings), 13)
     few = len(drawn) <= _FEW
@@ -70,9 +72,9 @@ def write_sections(book: Book, drawn: Sequence[Drawn], extent: Extent) -> None:
         for column, (segment, _, _) in enumerate(_SEGMENTS, start=1):
             angle = getattr(variant.computed.nominal, f"{segment}_windup")
             if isinstance(angle, float):
-                sheet.write_number(row, column, 2 * angle / ARCMIN, book.format("text", "arcmin"))
+                book.write_figure(sheet, row, column, 2 * angle / ARCMIN, "angle")
         for column, (key, _, number) in enumerate(_BESIDE, start=1 + len(_SEGMENTS)):
-            sheet.write_number(row, column, variant.row[key], book.format("text", number))
+            book.write_figure(sheet, row, column, variant.row[key], number)
     if drawn:
         _draw(book, sheet, header, drawn[:_CHARTED], labels)
     sheet.freeze_panes(0, 1)
@@ -84,7 +86,7 @@ def write_sections(book: Book, drawn: Sequence[Drawn], extent: Extent) -> None:
 
 def _draw(book: Book, sheet: Any, header: int, drawn: Sequence[Drawn], labels: Sequence[str]) -> None:
     """Draw the segments of the worst variants as stacked bars."""
-    chart = book.chart("bar", "Backlash by segment, worst variants first [arcmin]", subtype="stacked")
+    chart = book.chart("bar", f"Backlash by segment, worst variants first [{book.angles.name}]", subtype="stacked")
     count = len(drawn)
     last = header + count
     for column, (_, name, colour) in enumerate(_SEGMENTS, start=1):
@@ -97,9 +99,10 @@ def _draw(book: Book, sheet: Any, header: int, drawn: Sequence[Drawn], labels: S
             "gap": 40,
         })  # fmt: skip
     chart.set_y_axis({"reverse": True, "interval_unit": 1, "num_font": {"size": 9}})
-    chart.set_x_axis({"num_format": "0.0", "major_gridlines": GRID})
+    chart.set_x_axis({"num_format": book.angles.decimals(1), "major_gridlines": GRID})
     angles = ((name, getattr(drawn[0].computed.nominal, f"{key}_windup")) for key, name, _ in _SEGMENTS)
-    own = {name: 2 * angle / ARCMIN for name, angle in angles if isinstance(angle, float)}
-    text = f"Nominal backlash of {count} variants by segment, worst first; {labels[0]}: {largest_of(own)}"
+    own = {name: book.angles.of(2 * angle / ARCMIN) for name, angle in angles if isinstance(angle, float)}
+    text = f"Nominal backlash of {count} variants by segment, worst first; "
+    text += f"{labels[0]}: {largest_of(own, book.angles.sign)}"
     size = (_CHART_WIDTH, _ROW_HEIGHT * _CHART_ROWS[count <= _FEW] - _ROW_HEIGHT // 2)
     book.insert(sheet, _CHART_TOP, 0, chart, size=size, text=text)

@@ -14,6 +14,7 @@ from flexlash.report.report_data import Drawn
 from flexlash.report.results_sheet import SHARE_DECIMALS
 from flexlash.report.wording.chart_words import largest_of
 from flexlash.report.wording.correlation_words import shared_out
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import shown
@@ -64,7 +65,8 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn, width: int) -> None:
     if spread is None or not spread.swings:
         return
     name = shown(worst.row["variant"], longest=_NAME)
-    text = f"Worst variant, {name}: backlash [arcmin] with one dimension at its limits, by its share of variance."
+    unit = book.angles.name
+    text = f"Worst variant, {name}: backlash [{unit}] with one dimension at its limits, by its share of variance."
     sheet.write_string(1, 0, text, book.format("quiet"))
     headings = ("Dimension", "At lower limit", "At upper limit", "Share of variance", "Share with interactions")
     sheet.write_row(3, 0, headings, book.format("header"))
@@ -73,25 +75,25 @@ def _write_tornado(book: Book, sheet: Any, worst: Drawn, width: int) -> None:
     swings = sorted(spread.swings.items(), key=lambda item: -spread.shares[item[0]])
     for row, (dimension, (low, high)) in enumerate(swings, start=4):
         sheet.write_string(row, 0, dimension_words(dimension), book.format("text"))
-        sheet.write_number(row, 1, low / ARCMIN, book.format("text", "arcmin"))
-        sheet.write_number(row, 2, high / ARCMIN, book.format("text", "arcmin"))
+        book.write_figure(sheet, row, 1, low / ARCMIN, "angle")
+        book.write_figure(sheet, row, 2, high / ARCMIN, "angle")
         sheet.write_number(row, 3, spread.shares[dimension], share)
         sheet.write_number(row, 4, spread.total_shares[dimension], share)
-    chart = _tornado(book, name, 3 + len(swings), sum(swings[0][1]) / 2 / ARCMIN)
-    size, text = (width, _CHART_HEIGHT), _tornado_words(name, spread)
+    chart = _tornado(book, name, 3 + len(swings), book.angles.of_radians(sum(swings[0][1]) / 2))
+    size, text = (width, _CHART_HEIGHT), _tornado_words(name, spread, book.angles)
     book.insert(sheet, 3, _CHART_PLACE, chart, size=size, text=text)
 
 
-def _tornado_words(name: str, spread: SpreadStatistics) -> str:
+def _tornado_words(name: str, spread: SpreadStatistics, angles: AngleUnit) -> str:
     """Return the alternative text of the tornado."""
-    widths = {dimension_words(key): abs(high - low) / ARCMIN for key, (low, high) in spread.swings.items()}
-    moved = f"between its limits a dimension moves the backlash by {largest_of(widths)}"
+    widths = {dimension_words(key): angles.of_radians(abs(high - low)) for key, (low, high) in spread.swings.items()}
+    moved = f"between its limits a dimension moves the backlash by {largest_of(widths, angles.sign)}"
     return f"Tornado of the worst variant, {name}: {moved}"
 
 
 def _tornado(book: Book, name: str, last: int, middle: float) -> Any:
     """Return the tornado; both bars of a dimension start at the middle."""
-    chart = book.chart("bar", f"Tornado of {name} [arcmin]")
+    chart = book.chart("bar", f"Tornado of {name} [{book.angles.name}]")
     for column, label, colour in (
         (1, "at the lower limit", PALETTE["sky"]),
         (2, "at the upper limit", PALETTE["blue"]),
@@ -105,7 +107,7 @@ def _tornado(book: Book, name: str, last: int, middle: float) -> Any:
             "overlap": 100,
             "gap": 40,
         })  # fmt: skip
-    chart.set_x_axis({"crossing": middle, "num_format": "0.000", "major_gridlines": GRID})
+    chart.set_x_axis({"crossing": middle, "num_format": book.angles.decimals(3), "major_gridlines": GRID})
     # Every bar has its label: at its own choice Excel leaves out each second one of many.
     labels = {"label_position": "low", "interval_unit": 1, "num_font": {"size": 9}}
     chart.set_y_axis({"reverse": True, "crossing": "min", **labels})

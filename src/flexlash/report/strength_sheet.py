@@ -34,8 +34,8 @@ _COLUMNS = (
     ("stiffness_Nm_per_rad", "Stiffness [N·m/rad]", "count"),
     ("catalogue_size", "Nearest catalogue size", "count"),
     ("catalogue_stiffness_Nm_per_rad", "Whole drives [N·m/rad]", "count"),
-    ("lost_motion_arcmin", "Lost motion, flexspline alone [arcmin]", "arcmin"),
-    ("drive_lost_motion_arcmin", "Lost motion, catalogue drive [arcmin]", "arcmin"),
+    ("lost_motion_arcmin", "Lost motion, flexspline alone [{angle}]", "angle"),
+    ("drive_lost_motion_arcmin", "Lost motion, catalogue drive [{angle}]", "angle"),
     ("natural_frequency_Hz", "Natural frequency [Hz]", "stress"),
     ("resonance_speed_rpm", "Resonance at input [rpm]", "count"),
 )
@@ -85,7 +85,9 @@ def write_strength(book: Book, drawn: Sequence[Drawn], extent: Extent) -> None:
     sheet.set_column(0, 0, _NAME_WIDTH)
     sheet.set_column(1, len(columns), _WIDTH)
     print_readably(sheet, [_NAME_WIDTH, *[_WIDTH] * len(columns)], least=SMALL)
-    sheet.write_row(header, 0, ("Variant", *(heading for _, heading, _ in columns)), book.format("header"))
+    sheet.write_row(
+        header, 0, ("Variant", *book.headings(*(heading for _, heading, _ in columns))), book.format("header")
+    )
     sheet.set_row(header, 64 if bends else 48)
     labels = distinct_labels([variant.row["variant"] for variant in drawn], _NAME)
     for row, (variant, label) in enumerate(zip(drawn, labels, strict=True), start=header + 1):
@@ -95,7 +97,7 @@ def write_strength(book: Book, drawn: Sequence[Drawn], extent: Extent) -> None:
             if isinstance(value, str):
                 sheet.write_string(row, column, value, book.format("indented"))
             elif value is not None:
-                sheet.write_number(row, column, value, book.format("text", number))
+                book.write_figure(sheet, row, column, value, number)
     sheet.freeze_panes(header + 1, 1)
     sheet.repeat_rows(header)
 

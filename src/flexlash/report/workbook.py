@@ -63,10 +63,10 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     workbook = _begun(buffer, outcome)
     data = report_data(outcome) if data is None else data
     drawn = data.drawn
-    book = Book(workbook, shown_sheets(outcome, data))
-    extent, compared, curves = extent_of(outcome), compared_variants(drawn), stored_curves(drawn)
+    book = Book(workbook, shown_sheets(outcome, data), outcome.settings.angles)
+    extent, compared, curves = extent_of(outcome), compared_variants(drawn, book.angles), stored_curves(drawn)
     bars = relative_bars(drawn, outcome.settings.verdict_bounds, CHARTED)
-    swept = stored_sweeps(data.studies[:MOST_STUDIES])
+    swept = stored_sweeps(data.studies[:MOST_STUDIES], book.angles)
     unit = write_summary(book, outcome, data, bars)
     pages = write_failing(book, outcome, data)
     write_results(book, outcome, drawn)

@@ -175,6 +175,16 @@ SETTINGS = (
         default=0.3,
         since=6,
     ),
+    _setting(
+        "requirement",
+        "angle_unit",
+        "angle_unit",
+        "Unit in which report, page and screen give angles: arcmin or arcsec. The columns of Results keep theirs.",
+        type="choice",
+        choices=("arcmin", "arcsec"),
+        default="arcmin",
+        since=7,
+    ),
 )
 
 DIMENSIONS: dict[str, Column] = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.findings import spelled_out
 from flexlash.schema.number_words import (
     ALL_UNITS,
@@ -48,13 +49,14 @@ def scatters_within_lots(row: Mapping[str, Any]) -> bool:
     return bool(row.get("within_lot_sd_arcmin"))
 
 
-def reach_words(sd: float) -> str:
+def reach_words(sd: float, angles: AngleUnit) -> str:
     """Return within how much of their middle 95 % lie that scatter with an sd [arcmin], as of a normal.
 
-    >>> reach_words(0.0019357)
+    >>> from flexlash.schema.angle_unit import ARC_MINUTES
+    >>> reach_words(0.0019357, ARC_MINUTES)
     '± 0.0038′'
     """
-    return f"± {spelled_out(INTERVAL * sd, _REACH_DIGITS)}′"
+    return f"± {angles.spelled_out(INTERVAL * sd, _REACH_DIGITS)}"
 
 
 def of_all_units(row: Mapping[str, Any]) -> str:

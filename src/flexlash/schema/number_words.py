@@ -1,4 +1,4 @@
-"""Numbers in words: shares with their interval, angles, and no more digits than are known."""
+"""Numbers in words: shares with their interval, and no more digits than are known."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ __all__ = [
     "INTERVAL",
     "LEAST_SHARE",
     "RARE_SHARE",
-    "angle_words",
     "brief_share",
     "glance",
     "grouped",
@@ -228,15 +227,6 @@ def rounded(value: float, error: float) -> str:
     if not error > 0:
         return f"{value:.5g}"
     return f"{value:.{max(0, min(8, places(error)))}f}"
-
-
-def angle_words(value: float, error: float | None = None) -> str:
-    """Return an angle [arcmin] in four digits, or fewer where its standard error is greater.
-
-    >>> angle_words(6.261963, 1e-6), angle_words(6.261963, 0.02), angle_words(0.0123456)
-    ('6.262′', '6.26′', '0.01235′')
-    """
-    return f"{rounded(value, max(error or 0.0, glance(value)))}′"
 
 
 def glance(value: float) -> float:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, TypeAlias
 
+from flexlash.schema.angle_unit import ANGLE_UNITS, AngleUnit
 from flexlash.schema.columns import SETTINGS
 from flexlash.schema.limit_verdict import VerdictBounds
 
@@ -224,7 +225,7 @@ class CorrelationRow:
     correlation: float
 
 
-OVERRIDDEN = ("seed", "method", "samples", "target_percent")
+OVERRIDDEN = ("seed", "method", "samples", "target_percent", "angle_unit")
 """Settings that an option of a run may give in the place of the sheet's."""
 
 
@@ -240,6 +241,7 @@ class Settings:
     acceptable_ppm: float = 1350.0
     target_percent: float = 99.865
     mean_shift_factor: float = 0.3
+    angle_unit: Literal["arcmin", "arcsec"] = "arcmin"
     calibrations: dict[str, float] = field(
         default_factory=lambda: {column.key: 1.0 for column in SETTINGS if column.role == "dimension"}
     )
@@ -248,3 +250,8 @@ class Settings:
     def verdict_bounds(self) -> VerdictBounds:
         """Which share of units over the limit each verdict allows, by the target."""
         return VerdictBounds.of(self.target_percent)
+
+    @property
+    def angles(self) -> AngleUnit:
+        """The unit in which a reader is told angles."""
+        return ANGLE_UNITS[self.angle_unit]

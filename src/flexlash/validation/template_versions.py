@@ -11,7 +11,7 @@ from flexlash.validation.entry_sheets import sheet_names
 
 __all__ = ["TEMPLATE_VERSION", "check_version", "template_version"]
 
-TEMPLATE_VERSION = 6
+TEMPLATE_VERSION = 7
 """The version that this program writes. It rises whenever the template changes, and never goes down."""
 
 _NUMBER = re.compile(r"0*([1-9]\d*)(?:\.0*)?", re.ASCII)

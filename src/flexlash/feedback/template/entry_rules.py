@@ -152,7 +152,7 @@ def write_lists(workbook: Any, sheet: Any, names: Mapping[str, Sequence[str]]) -
         "fl_dimensions": _choices("Tolerances", "dimension"),
         "fl_grades": _GRADES,
         "fl_deviation_units": _DEVIATION_UNITS,
-        "fl_methods": next(column.choices for column in SETTINGS if column.key == "method"),
+        **{f"fl_{column.key}s": column.choices for column in SETTINGS if column.choices},
         "fl_settings": _choices("Settings", "setting"),
         "fl_graded_dimensions": GRADED,
         "fl_scatters_between": _choices("Tolerances", "scatters_between"),

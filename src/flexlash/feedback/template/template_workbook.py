@@ -296,7 +296,7 @@ class _Template:
             sheet.write_string(row, meaning, f"{column.help} Allowed: {column.requirement}.", self.formats["meaning"])
             rule = cell_rule(column, 1)
             if column.choices:
-                rule |= {"validate": "list", "value": "=fl_methods"}
+                rule |= {"validate": "list", "value": f"=fl_{column.key}s"}
             sheet.data_validation(row, 1, row, 1, rule)
         sheet.set_column(meaning, meaning, 110, self.formats["hint"])
         sheet.protect("", {"format_columns": True})

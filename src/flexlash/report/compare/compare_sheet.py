@@ -65,10 +65,10 @@ def write_compare(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
     for column, target, text in _LINKS:
         write_link(sheet, 3, column, f"{target}!A1", text, style=book.format("link"))
     text = f"Boxes of the backlash of {count} variants, worst first, with their limits: "
-    text += f"{spans_of(drawn[:count])}. {limits_over(drawn[:count])}"
+    text += f"{spans_of(drawn[:count], book.angles)}. {limits_over(drawn[:count])}"
     book.insert(sheet, _TOP, 0, _boxes(book, compared, count), size=(_WIDTH, _HEIGHT), text=text)
     text = f"Boxes of the backlash of {count} variants less the median of each, in the same order: "
-    text += medians_of(drawn[:count])
+    text += medians_of(drawn[:count], book.angles)
     book.insert(sheet, _TOP + _ROWS, 0, _widths(book, compared, count), size=(_WIDTH, _HEIGHT), text=text)
 
 
@@ -96,7 +96,7 @@ def _boxes(book: Book, compared: Stored, count: int) -> Any:
         chart.combine(marks)
     ends = [*_numbers(compared, "P2.5", count), *_numbers(compared, "P97.5", count), *limits]
     chart.set_legend({"position": "bottom", "delete_series": [0]})
-    return _with_axes(chart, ends, count, "Backlash [arcmin]")
+    return _with_axes(chart, ends, count, f"Backlash [{book.angles.name}]")
 
 
 def _widths(book: Book, compared: Stored, count: int) -> Any:
@@ -120,7 +120,7 @@ def _widths(book: Book, compared: Stored, count: int) -> Any:
         for heading in ("P2.5", "P97.5")
         for end, median in zip(_numbers(compared, heading, count), medians, strict=True)
     ]
-    return _with_axes(chart, ends, count, "Backlash less median [arcmin]")
+    return _with_axes(chart, ends, count, f"Backlash less median [{book.angles.name}]")
 
 
 def _with_axes(chart: Any, ends: Sequence[float], count: int, name: str) -> Any:

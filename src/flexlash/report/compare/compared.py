@@ -9,14 +9,14 @@ import numpy as np
 from flexlash.report.formula.stored import Row, Stored
 from flexlash.report.report_data import Drawn
 from flexlash.report.wording.labels import distinct_labels
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.arrays import Array
-from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.distribution_curves import CURVE_SCORES
 
 __all__ = ["COMPARED_NOTE", "CONNECTED", "compared_variants", "percentile_between", "share_heading"]
 
 COMPARED_NOTE = (
-    "Stored figures behind Compare, Ranking and Contributions, worst first [arcmin]; "
+    "Stored figures behind Compare, Ranking and Contributions, worst first, angles in the unit of the report; "
     "l/r: cylinder length over mean radius."
 )
 CONNECTED = ("cup", "hat")
@@ -32,19 +32,19 @@ def share_heading(kind: str) -> str:
     return f"Disk share of {kind}s"
 
 
-def compared_variants(drawn: Sequence[Drawn]) -> Stored:
+def compared_variants(drawn: Sequence[Drawn], angles: AngleUnit) -> Stored:
     """Return the data sheet of the drawn variants."""
     labels = distinct_labels([variant.row["variant"] for variant in drawn], _LABEL)
-    return Stored("Compared", [_figures(variant, label) for variant, label in zip(drawn, labels, strict=True)])
+    return Stored("Compared", [_figures(variant, label, angles) for variant, label in zip(drawn, labels, strict=True)])
 
 
-def _figures(variant: Drawn, label: str) -> Row:
+def _figures(variant: Drawn, label: str, angles: AngleUnit) -> Row:
     """Return a variant's row: what Ranking shows of it, the parts of its box, its points in the disk share chart."""
     row, kind = variant.row, variant.computed.variant.flexspline_type
-    low, median, high = (row[f"{key}_arcmin"] for key in ("p2_5", "p50", "p97_5"))
-    limit = row["backlash_limit_arcmin"]
+    low, median, high = (angles.of(row[f"{key}_arcmin"]) for key in ("p2_5", "p50", "p97_5"))
+    limit = None if row["backlash_limit_arcmin"] is None else angles.of(row["backlash_limit_arcmin"])
     lower, upper = (
-        percentile_between(score, np.array(CURVE_SCORES), variant.curve.outputs) / ARCMIN
+        angles.of_radians(percentile_between(score, np.array(CURVE_SCORES), variant.curve.outputs))
         for score in (-_QUARTILE_SCORE, _QUARTILE_SCORE)
     )
     lower, upper = min(max(lower, low), median), max(min(upper, high), median)
@@ -56,10 +56,10 @@ def _figures(variant: Drawn, label: str) -> Row:
         "P50": median,
         "P75": upper,
         "P97.5": high,
-        "P99.865": row["p99_865_arcmin"],
+        "P99.865": angles.of(row["p99_865_arcmin"]),
         "Limit": limit,
         "Margin": None if limit is None else limit - high,
-        "sd": row["sd_arcmin"],
+        "sd": angles.of(row["sd_arcmin"]),
         "Disk share": row["disk_share"],
         "l/r": _slenderness(variant),
         "P2.5 to P25": lower - low,

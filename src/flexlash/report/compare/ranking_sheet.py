@@ -19,6 +19,7 @@ from flexlash.report.layout.styles import Book, decimals_of
 from flexlash.report.report_data import ROW, Drawn
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.verdict import COLOURS, verdict_rules, verdict_word
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.lot_words import lots_words
 
@@ -52,9 +53,10 @@ _CAUSE = len(_WORDS) + len(_FIGURES)
 _SHAPE = _CAUSE + 2
 _FIRST_DIFFERENCE = _SHAPE + 2
 _COLUMNS = _FIRST_DIFFERENCE + 2 * len(DIFFERENCES)
-_USUAL, _FINEST = "0.000", "0.0000"
+_USUAL, _FINEST = 3, 4
+"""Decimals of an angle [arcmin] without a standard error, and the most that any has."""
+
 _LIMIT = "0.00##"
-_BASE_NUMBERS = {"Limit": _LIMIT, "Margin": "+0.0000;-0.0000;0.0000"}
 _SIGNED_PERCENT = "+0.0%;-0.0%;0.0%"
 
 
@@ -108,8 +110,9 @@ def write_ranking(book: Book, outcome: Outcome, drawn: Sequence[Drawn], compared
 def _write_headings(book: Book, sheet: Any) -> None:
     """Write the headings and, above them, what each group of columns is about."""
     style = book.format("header")
-    units = [f"{name} [arcmin]" if name != "Margin" else "Margin of P97.5 [arcmin]" for name in _FIGURES]
-    changes = [f"{name} [{unit}]" for name in DIFFERENCES for unit in ("arcmin", "%")]
+    unit = book.angles.name
+    units = [f"{name} [{unit}]" if name != "Margin" else f"Margin of P97.5 [{unit}]" for name in _FIGURES]
+    changes = [f"{name} [{of}]" for name in DIFFERENCES for of in (unit, "%")]
     shape = ["Main contributor", "Its share of variance", "Disk share of wind-up", "l/r"]
     headings = [*(name for name, _ in _WORDS), *units, *shape, *changes]
     sheet.write_row(HEADER, 0, headings, style)
@@ -153,7 +156,8 @@ def _write_base(book: Book, sheet: Any, compared: Stored, first: int) -> dict[st
 
     write("Disk share", _SHAPE, "0%")
     write("l/r", _SHAPE + 1, "0.00")
-    figures = {**dict.fromkeys(_FIGURES, _FINEST), **_BASE_NUMBERS}
+    finest = book.angles.decimals(_FINEST)
+    figures = {**dict.fromkeys(_FIGURES, finest), "Limit": _LIMIT, "Margin": _signed(finest)}
     return {heading: write(heading, column_of(heading), number) for heading, number in figures.items()}
 
 
@@ -172,11 +176,12 @@ def _write_words(book: Book, sheet: Any, rank: int, of: tuple[Drawn, str], link:
         sheet.write_number(row, _CAUSE + 1, variant.row["main_contributor_share"], book.format("text", "0%"))
 
 
-def _decimals(variant: Drawn, heading: str) -> str:
-    """Return the number format that shows a figure of a variant down to its standard error, four decimals at most."""
+def _decimals(variant: Drawn, heading: str, angles: AngleUnit) -> str:
+    """Return the number format that shows a figure of a variant down to its standard error, within bounds."""
     if not _FIGURES[heading]:
         return _LIMIT
-    return min(decimals_of(variant.row[_FIGURES[heading]], _USUAL), _FINEST, key=len)
+    error = angles.of(variant.row[_FIGURES[heading]] or 0.0)
+    return min(decimals_of(error, angles.decimals(_USUAL)), angles.decimals(_FINEST), key=len)
 
 
 def _signed(decimals: str) -> str:
@@ -187,7 +192,7 @@ def _write_figures(book: Book, sheet: Any, rank: int, variant: Drawn, compared: 
     """Write the figures of a variant; its margin is worked out in the cell."""
     row, figures = FIRST_ROW + rank, compared.rows[rank]
     for heading in _FIGURES:
-        decimals = _decimals(variant, heading)
+        decimals = _decimals(variant, heading, book.angles)
         if heading == "Margin" and figures["Limit"] is not None:
             margin = _own(row, "Limit", figures) - _own(row, "P97.5", figures)
             put(sheet, row, column_of(heading), margin, book.format("text", _signed(decimals)))
@@ -203,14 +208,14 @@ def _own(row: int, heading: str, figures: Row) -> Live:
 
 
 def _write_differences(book: Book, sheet: Any, rank: int, of: tuple[Drawn, Stored], base: dict[str, Live]) -> None:
-    """Write how a variant differs from the base, in arcmin and in per cent, as formulas."""
+    """Write how a variant differs from the base, in the unit of angles and in per cent, as formulas."""
     variant, compared = of
     row = FIRST_ROW + rank
     for number, heading in enumerate(DIFFERENCES):
         column = _FIRST_DIFFERENCE + 2 * number
         is_known = ISNUMBER(base[heading])
         difference = IF(is_known, _own(row, heading, compared.rows[rank]) - base[heading], "")
-        put(sheet, row, column, difference, book.format("text", _signed(_decimals(variant, heading))))
+        put(sheet, row, column, difference, book.format("text", _signed(_decimals(variant, heading, book.angles))))
         relative = Live(xl_rowcol_to_cell(row, column), difference.value) / base[heading]
         share = IF(is_known, IF(base[heading] > 0.0, relative, ""), "")
         put(sheet, row, column + 1, share, book.format("text", _SIGNED_PERCENT))

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from flexlash.mechanics.catalogue_curve import first_slope, later_slope
-from flexlash.report.drive.drive_page import BESIDE, LETTERS, SHEET, DrivePage, result_label
+from flexlash.report.drive.drive_page import BESIDE, LETTERS, SHEET, DrivePage
+from flexlash.report.drive.stored_drives import result_label
 from flexlash.report.formula.closed_forms import worked
-from flexlash.report.formula.functions import AND, IF, MIN, NOT, OR, PI
+from flexlash.report.formula.functions import AND, IF, MIN, NOT, OR
 from flexlash.report.formula.live import Live, put
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 
@@ -22,7 +23,7 @@ CATALOGUE_NOTES = (
 )
 _LISTED = ("Size", "Ratio from", "T1 [N·m]", "T2 [N·m]", "K1 [N·m/rad]", "K2 [N·m/rad]", "K3 [N·m/rad]")
 _POINTS = ("no torque", "up to T1", "up to T2", "up to T")
-_HEADS = ("Torque", "Whole drive [rad]", "Torque [N·m]", "Whole drive [arcmin]", "Flexspline [arcmin]")
+_HEADS = ("Torque", "Whole drive [rad]", "Torque [N·m]", "Whole drive [{angle}]", "Flexspline [{angle}]")
 _RADIANS, _TORQUE, _DRIVE, _OWN = range(1, 5)
 _WHOLE = "#,##0"
 _HIGH = 48
@@ -45,7 +46,7 @@ def write_catalogue(page: DrivePage, top: int, ratio: float | None) -> int:
     row = page.notes(top + 1, *CATALOGUE_NOTES, which)
     listed = _write_listed(page, row)
     begin = row + 4
-    sheet.write_row(begin - 1, 0, _HEADS, book.format("header"))
+    sheet.write_row(begin - 1, 0, book.headings(*_HEADS), book.format("header"))
     sheet.set_row(begin - 1, _HIGH)
     far = IF(listed.reaches, listed.torque, listed.second)
     ends = (0.0 * listed.torque, MIN(listed.torque, listed.first), MIN(listed.torque, listed.second), far)
@@ -54,8 +55,8 @@ def write_catalogue(page: DrivePage, top: int, ratio: float | None) -> int:
         without = listed.torque if words == _POINTS[-1] else 0.0
         at = put(sheet, row, _TORQUE, IF(listed.is_found, end, without), book.format("text", "plain"))
         turned = put(sheet, row, _RADIANS, IF(listed.is_found, listed.angle(at), 0.0), book.format("text", "rad"))
-        put(sheet, row, _DRIVE, turned / (PI / 10800), book.format("text", "arcmin"))
-        put(sheet, row, _OWN, at / listed.own / (PI / 10800), book.format("text", "arcmin"))
+        put(sheet, row, _DRIVE, turned / page.radians, book.format("text", book.angles.name))
+        put(sheet, row, _OWN, at / listed.own / page.radians, book.format("text", book.angles.name))
     short = IF(listed.reaches, "", "◄ the catalogue lists no third slope: shown up to T2")
     said = IF(listed.is_found, short, "◄ no drive of such a size is listed")
     put(sheet, begin + len(_POINTS) - 1, _OWN + 1, said, book.format("hint"))
@@ -100,7 +101,7 @@ def _write_listed(page: DrivePage, row: int) -> _Listed:
     headings = ("Nearest drive", "Torque T [N·m]", *_LISTED, "Flexspline K [N·m/rad]")
     sheet.write_row(row, 0, headings, book.format("header"))
     sheet.set_row(row, _HIGH)
-    keys = ("Torque [N·m]", *_LISTED, result_label("stiffness_Nm_per_rad"))
+    keys = ("Torque [N·m]", *_LISTED, result_label("stiffness_Nm_per_rad", book.angles))
     torque, size, _, first, second, one, two, three, own = (
         put(sheet, row + 1, column, page.looked_up(key), book.format("text", _WHOLE))
         for column, key in enumerate(keys, start=1)
@@ -133,6 +134,6 @@ def _chart(book: Book, begin: int) -> Any:
         })  # fmt: skip
     look = {"min": 0, "major_gridlines": GRID, "num_font": LETTERS, "name_font": LETTERS | {"bold": False}}
     chart.set_x_axis({"name": "Torque [N·m]", **look})
-    chart.set_y_axis({"name": "Angle [arcmin]", **look})
+    chart.set_y_axis({"name": f"Angle [{book.angles.name}]", **look})
     chart.set_legend({"position": "bottom", "font": LETTERS})
     return chart

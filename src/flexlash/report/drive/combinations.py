@@ -14,11 +14,11 @@ __all__ = ["HEADINGS", "write_combinations"]
 HEADINGS = (
     (0, 0, "Rule"),
     (1, 4, "Equation"),
-    (5, 5, "Deviation [arcmin]"),
-    (6, 6, "Whole drive [arcmin]"),
+    (5, 5, "Deviation [{angle}]"),
+    (6, 6, "Whole drive [{angle}]"),
     (7, 7, "System limit"),
-    (8, 8, "Margin [arcmin]"),
-    (9, 9, "By the program [arcmin]"),
+    (8, 8, "Margin [{angle}]"),
+    (9, 9, "By the program [{angle}]"),
     (10, 10, "Relative difference"),
 )
 """First and last column of each heading."""
@@ -29,7 +29,8 @@ _MARGIN, _DIFFERENCE = 8, 10
 def write_combinations(page: DrivePage, top: int, chain: Chain) -> int:
     """Write the rules below their headings in row `top`, from the sums of the chain; return the row after them."""
     book, sheet = page.book, page.sheet
-    for first, last, heading in HEADINGS:
+    for first, last, name in HEADINGS:
+        (heading,) = book.headings(name)
         if last > first:
             sheet.merge_range(top, first, top, last, heading, book.format("header"))
         else:
@@ -55,7 +56,7 @@ def write_combinations(page: DrivePage, top: int, chain: Chain) -> int:
         ("Monte Carlo, P99.865", "model of the wind-up + every play, drawn", None, "system_p99_865_arcmin"),
     )
     limit = page.result("system_limit_arcmin")
-    style, words = book.format("text", "arcmin"), book.format("indented")
+    style, words = book.format("text", book.angles.name), book.format("indented")
     for row, (rule, equation, deviation, key) in enumerate(rules, start=top + 1):
         sheet.write_string(row, 0, rule, book.format("text"))
         sheet.merge_range(row, 1, row, 4, equation, words)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from flexlash.report.formula.functions import IF, MAX, match_exactly
+from flexlash.report.drive.stored_drives import result_label
+from flexlash.report.formula.functions import IF, MAX, PI, match_exactly
 from flexlash.report.formula.live import Live, fill, put
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, lines_of, merged_width
-from flexlash.schema.result_columns import result_columns
 
-__all__ = ["BESIDE", "COLUMNS", "LETTERS", "SHEET", "TABLE", "DrivePage", "result_label"]
+__all__ = ["BESIDE", "COLUMNS", "LETTERS", "SHEET", "TABLE", "DrivePage"]
 
 SHEET = "Drive"
 
@@ -28,8 +28,8 @@ COLUMNS = (
     ("Distribution", 16),
     ("Limits at ± sigma", 8),
     ("At the output", 11),
-    ("Average [arcmin]", 8),
-    ("T [arcmin]", 8),
+    ("Average [{angle}]", 8),
+    ("T [{angle}]", 8),
     ("c", 6),
     ("(c T)²", 7),
     ("((1 − η) c T)²", 7.5),
@@ -49,12 +49,6 @@ TABLE = 5
 """Row, from 0, of the headings of the first table; above it stand title, hint, variant and η."""
 
 _PICK, _SHIFT = 2, 3
-_LABELS = {column.key: column.label for column in result_columns()}
-
-
-def result_label(key: str) -> str:
-    """Return the heading of a column of Results."""
-    return _LABELS[key]
 
 
 class DrivePage:
@@ -88,9 +82,14 @@ class DrivePage:
         put(sheet, _PICK, 6, IF(place > 0.0, "", "◄ not on the list: the worst is shown"), book.format("hint"))
         return MAX(place, 1.0)
 
+    @property
+    def radians(self) -> Live:
+        """The unit of angles in radians."""
+        return PI / (10800 * self.book.angles.per_arcmin)
+
     def result(self, key: str) -> Live:
         """Return a Result of the picked variant, an empty text where it has none."""
-        return self.looked_up(result_label(key))
+        return self.looked_up(result_label(key, self.book.angles))
 
     def looked_up(self, heading: str) -> Live:
         """Return what Drives holds of the picked variant under a heading."""

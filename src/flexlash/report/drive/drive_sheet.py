@@ -39,14 +39,14 @@ _PINNED = 3
 _NAME = 22
 _COLOURS = ("blue", "orange", "green", "sky", "red", "ink", "grey", "pale")
 _ALL = (
-    ("system_mean_arcmin", "Average [arcmin]"),
-    ("system_rss_high_arcmin", "RSS [arcmin]"),
-    ("system_bender_high_arcmin", "Bender [arcmin]"),
-    ("system_mean_shift_high_arcmin", "Mean shift [arcmin]"),
-    ("system_worst_case_high_arcmin", "Worst case [arcmin]"),
-    ("system_p99_865_arcmin", "P99.865 [arcmin]"),
+    ("system_mean_arcmin", "Average [{angle}]"),
+    ("system_rss_high_arcmin", "RSS [{angle}]"),
+    ("system_bender_high_arcmin", "Bender [{angle}]"),
+    ("system_mean_shift_high_arcmin", "Mean shift [{angle}]"),
+    ("system_worst_case_high_arcmin", "Worst case [{angle}]"),
+    ("system_p99_865_arcmin", "P99.865 [{angle}]"),
     ("system_p99_865_standard_error_arcmin", "Its standard error"),
-    ("system_limit_arcmin", "System limit [arcmin]"),
+    ("system_limit_arcmin", "System limit [{angle}]"),
 )
 _CHART, _CHART_ROWS = (460, 330), 13
 """Size of a chart [px], and the rows that it takes beside a table with high headings."""
@@ -59,7 +59,7 @@ def write_drive(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> Stored 
     if validated is None or budget is None or not drawn:
         return None
     sources = validated.other_sources
-    page = DrivePage(book, stored_drives(drawn, sources), budget.shift)
+    page = DrivePage(book, stored_drives(drawn, sources, book.angles), budget.shift)
     sheet = page.sheet
     sheet.write_string(0, 0, "The whole drive: wind-up and other sources of backlash", book.format("title"))
     sheet.set_row(0, 28)
@@ -103,25 +103,25 @@ def _write_all(page: DrivePage, top: int, drawn: Sequence[Drawn], note: str) -> 
     book, sheet = page.book, page.sheet
     page.section(top, "All variants, by the program")
     top = page.notes(top + 1, note) - 1 if note else top
-    headings = (
+    headings = book.headings(
         "Variant",
         *(heading for _, heading in _ALL),
-        "P99.865 below limit by [arcmin]",
+        "P99.865 below limit by [{angle}]",
         "Drives over the limit",
     )
     sheet.write_row(top + 1, 0, headings, book.format("header"))
     sheet.set_row(top + 1, 64)
     labels = distinct_labels([variant.row["variant"] for variant in drawn], _NAME)
-    row = top + 1
+    row, plain = top + 1, book.angles.decimals(3)
     for row, (variant, label) in enumerate(zip(drawn, labels, strict=True), start=top + 2):
         sheet.write_string(row, 0, label, book.format("text"))
         numbers = variant.row
         for column, (key, _) in enumerate(_ALL, start=1):
             if numbers[key] is not None:
-                look = "0.0E+00" if "standard_error" in key else "plain"
-                sheet.write_number(row, column, numbers[key], book.format("text", look))
+                look = "0.0E+00" if "standard_error" in key else plain
+                sheet.write_number(row, column, book.angles.of(numbers[key]), book.format("text", look))
         limit, high = numbers["system_limit_arcmin"], numbers["system_p99_865_arcmin"]
         if limit is not None:
-            sheet.write_number(row, len(_ALL) + 1, limit - high, book.format("text", "plain"))
+            sheet.write_number(row, len(_ALL) + 1, book.angles.of(limit - high), book.format("text", plain))
             sheet.write_string(row, len(_ALL) + 2, drives_over_limit(numbers), book.format("indented"))
     return row

@@ -35,7 +35,7 @@ _SHAPES = {"uniform": math.sqrt(3), "triangular": math.sqrt(1.5)}
 
 @dataclass(frozen=True, kw_only=True)
 class Chain:
-    """The sums of the table as references [arcmin, arcmin²], and the rows that it takes on the sheet."""
+    """The sums of the table as references, angles and their squares, and the rows that it takes on the sheet."""
 
     mean: Live
     worst: Live
@@ -51,7 +51,8 @@ class Chain:
 
 def write_sources(page: DrivePage, links: Sequence[tuple[OtherSource, OutputPlay]]) -> Chain:
     """Write the table, the wind-up first and the sums last; `links` are the sources as entered and at the output."""
-    for column, (heading, width) in enumerate(COLUMNS):
+    headings = page.book.headings(*(heading for heading, _ in COLUMNS))
+    for column, (heading, (_, width)) in enumerate(zip(headings, COLUMNS, strict=True)):
         page.sheet.set_column(column, column, width)
         page.sheet.write_string(TABLE, column, heading, page.book.format("header"))
     page.sheet.set_row(TABLE, 48)
@@ -69,7 +70,8 @@ class _Table:
     """The table as it grows: the present row, and what stands in its columns of numbers."""
 
     def __init__(self, page: DrivePage, row: int) -> None:
-        self.book, self.sheet, self.shift = page.book, page.sheet, page.shift
+        self.book, self.sheet, self.shift, self.radians = page.book, page.sheet, page.shift, page.radians
+        self.digits = page.book.angles.name
         self.row = row
         self._numbers: dict[int, list[Live]] = {}
 
@@ -99,7 +101,7 @@ class _Table:
         self.link(to_output(middle), to_output((upper - lower) / 2), self._inflation(play))
 
     def _conversion(self, source: OtherSource) -> Callable[[Live], Live]:
-        """Return what turns a play of a source into arcmin at the output, with the numbers in their cells."""
+        """Return what turns a play of a source into an angle at the output, with the numbers in their cells."""
         radius = angle = ratio = None
         if source.radius is not None:
             radius = self._entry(_RADIUS, as_entered(source.radius, _MILLIMETRE))
@@ -112,7 +114,9 @@ class _Table:
             if angle is not None:
                 play = worked(play_from_radial, play, angle * PI / 180)
             if radius is not None:
-                play = worked(play_angle, play, radius) / (PI / 10800)
+                play = worked(play_angle, play, radius) / self.radians
+            elif (times := self.book.angles.per_arcmin) != 1:
+                play = times * play
             return play if ratio is None else worked(angle_at_output, play, ratio)
 
         return to_output
@@ -141,7 +145,7 @@ class _Table:
         self._put(_REST, ((1.0 - self.shift) * factor * reach) ** 2.0)
 
     def _put(self, column: int, value: Live) -> Live:
-        cell = put(self.sheet, self.row, column, value, self.book.format("text", "arcmin"))
+        cell = put(self.sheet, self.row, column, value, self.book.format("text", self.digits))
         self._numbers.setdefault(column, []).append(cell)
         return cell
 
@@ -150,7 +154,7 @@ class _Table:
         self.row += 1
         self.sheet.write_string(self.row, _NAME, "sum", self.book.format("label"))
         found = {
-            name: put(self.sheet, self.row, column, SUM(self._range(column)), self.book.format("label", "arcmin"))
+            name: put(self.sheet, self.row, column, SUM(self._range(column)), self.book.format("label", self.digits))
             for name, column in (("mean", _MEAN), ("worst", _T), ("square", _SQUARE), ("rest", _REST))
         }
         shares = {_OF_MEAN: (_MEAN, "mean"), _OF_VARIANCE: (_SQUARE, "square"), _OF_WORST: (_T, "worst")}

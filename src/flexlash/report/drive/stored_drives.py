@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from flexlash.mechanics.catalogue_curve import CatalogueCurve, catalogue_curve
 from flexlash.report.formula.stored import Stored
 from flexlash.report.report_data import Drawn
+from flexlash.schema.angle_unit import ARC_MINUTES, AngleUnit
 from flexlash.schema.decision_rows import OtherSource
 from flexlash.schema.result_columns import result_columns
 
-__all__ = ["DRIVES_NOTE", "FIGURES", "drive_ratio", "stored_drives"]
+__all__ = ["DRIVES_NOTE", "FIGURES", "drive_ratio", "result_label", "stored_drives"]
 
 DRIVES_NOTE = "The spread of each variant, its whole drive by the program, and the catalogue's; Drive looks it up."
 
@@ -24,10 +25,10 @@ _CURVE = ("Size", "Ratio from", "T1 [N·m]", "T2 [N·m]", "K1 [N·m/rad]", "K2 [
 """Headings of what the catalogue lists, in the order of its record."""
 
 
-def stored_drives(drawn: Sequence[Drawn], sources: Sequence[OtherSource]) -> Stored:
+def stored_drives(drawn: Sequence[Drawn], sources: Sequence[OtherSource], angles: AngleUnit) -> Stored:
     """Return what is looked up of the drawn variants, in their order."""
     ratio = drive_ratio(sources)
-    return Stored("Drives", [_row(variant, ratio) for variant in drawn])
+    return Stored("Drives", [_row(variant, ratio, angles) for variant in drawn])
 
 
 def drive_ratio(sources: Sequence[OtherSource]) -> float | None:
@@ -36,16 +37,25 @@ def drive_ratio(sources: Sequence[OtherSource]) -> float | None:
     return ratios.pop() if len(ratios) == 1 else None
 
 
-def _row(variant: Drawn, ratio: float | None) -> dict[str, str | float | None]:
+def _row(variant: Drawn, ratio: float | None, angles: AngleUnit) -> dict[str, str | float | None]:
     computed = variant.computed
     curve = catalogue_curve(computed.nominal.mean_radius, ratio)
     listed = (None,) * len(_CURVE) if curve is None else _floats(curve)
     return {
         "Variant": variant.row["variant"],
-        **{_RESULTS[key]: variant.row[key] for key in FIGURES},
+        **{result_label(key, angles): _figure(variant.row[key], key, angles) for key in FIGURES},
         "Torque [N·m]": computed.variant.dimensions["torque"],
         **dict(zip(_CURVE, listed, strict=True)),
     }
+
+
+def result_label(key: str, angles: AngleUnit) -> str:
+    """Return the heading of a column of Results, angles in a unit."""
+    return _RESULTS[key].replace(f"[{ARC_MINUTES.name}]", f"[{angles.name}]")
+
+
+def _figure(value: float | None, key: str, angles: AngleUnit) -> float | None:
+    return angles.of(value) if value is not None and key.endswith(f"_{ARC_MINUTES.name}") else value
 
 
 def _floats(curve: CatalogueCurve) -> tuple[float | None, ...]:

@@ -35,12 +35,12 @@ def write_charts(book: Book, sheet: Any, choice: Choice, working: Working, limit
     """Write the cells behind the four charts, and draw them."""
     _write_notes(book, sheet, choice, working, limit)
     name = shown(str(choice.name.value), longest=_NAME)
-    median = choice.angle("P50").value
-    middle = f", median {median:.4g}′" if isinstance(median, float) else ""
+    median, sign = choice.angle("P50").value, book.angles.sign
+    middle = f", median {median:.4g}{sign}" if isinstance(median, float) else ""
     when = f"picked variant (when the report was written, {name}{middle}"
-    at = f"the limit{f' {limit.value:.4g}′' if isinstance(limit.value, float) else ' (none is given)'}"
+    at = f"the limit{f' {limit.value:.4g}{sign}' if isinstance(limit.value, float) else ' (none is given)'}"
     segments = {segment: choice.angle(segment).value for segment in SEGMENTS.values()}
-    arise = largest_of({segment: value for segment, value in segments.items() if isinstance(value, float)})
+    arise = largest_of({segment: value for segment, value in segments.items() if isinstance(value, float)}, sign)
     charts = (
         (_density(book, sheet, choice, limit), f"Histogram of the {when}): units within and over {at}"),
         (_cumulative(book, sheet, working, limit), f"Share of units below each backlash of the {when}), with {at}"),

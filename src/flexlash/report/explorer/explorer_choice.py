@@ -9,13 +9,13 @@ from flexlash.report.formula.functions import AND, CONCATENATE, IF, ISNUMBER, MA
 from flexlash.report.formula.live import Live, fill, live, put
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.styles import Book
+from flexlash.schema.angle_unit import ANGLE_UNITS
 from flexlash.schema.limit_verdict import MARGINAL, VerdictBounds
 
 __all__ = ["NONE", "Choice"]
 
 NONE = "none"
 _FIRST_ROW = 3
-_SECONDS = 60.0
 _RAREST, _COMMONEST = 1e-6, 0.999999
 _DIGITS = 12
 """Decimals of a share: 1 − 0.00135 need not be 0.99865 to the last bit."""
@@ -40,19 +40,19 @@ class Choice:
             sheet.write_string(row, 0, label, book.format("label"))
         self.name = fill(sheet, _FIRST_ROW, 1, str(names.values[0]), entry)
         if unit is None:
-            unit = fill(sheet, _FIRST_ROW + 1, 1, "arcmin", entry)
+            unit = fill(sheet, _FIRST_ROW + 1, 1, book.angles.name, entry)
         else:
             unit = put(sheet, _FIRST_ROW + 1, 1, unit, entry)
         typed = fill(sheet, _FIRST_ROW + 2, 1, "", book.format("input", "general"))
         wanted = fill(sheet, _FIRST_ROW + 3, 1, bounds.meets, entry_of_share)
         _list(sheet, _FIRST_ROW, f"={names.text}", "Variant", "Everything on this sheet follows.")
-        _list(sheet, _FIRST_ROW + 1, ["arcmin", "arcsec"], "Angle unit", "The limit below is read in it, too.")
+        _list(sheet, _FIRST_ROW + 1, list(ANGLE_UNITS), "Angle unit", "The limit below is read in it, too.")
         _number(sheet, _FIRST_ROW + 2, (0, 1e9), "Any limit", "Blank: the limit of the variant.")
         _number(sheet, _FIRST_ROW + 3, (_RAREST, _COMMONEST), "Wanted share", "From 0.0001 % (1 ppm) to 99.9999 %.")
         words = f'"◄ number "0" of {len(names.values)}";;"◄ not in the list: pick one"'
         rank = put(sheet, _FIRST_ROW, 2, match_exactly(self.name, names), book.format("hint", words))
         words = '"◄ arcmin or arcsec (1 arcmin = "0")";;"◄ arcmin or arcsec, nothing else"'
-        factor = IF(unit.equals("arcsec"), _SECONDS, IF(unit.equals("arcmin"), 1.0, 0.0))
+        factor = IF(unit.equals("arcsec"), ANGLE_UNITS["arcsec"].per_arcmin, IF(unit.equals("arcmin"), 1.0, 0.0))
         factor = put(sheet, _FIRST_ROW + 1, 2, factor, book.format("hint", words))
         self.known = AND(rank > 0.0, factor > 0.0)
         self._rank, self._factor = MAX(rank, 1.0), MAX(factor, 1.0)

@@ -128,7 +128,7 @@ class FailingPage:
             shown(self.facts.outcome.submission.name, longest=_NAME),
             shown(one.material, longest=_NAME // 2),
             f"torque {one.dimensions['torque']:g} N·m",
-            f"limit {row['backlash_limit_arcmin']:g}′",
+            f"limit {self.facts.angles.entered(row['backlash_limit_arcmin'])}",
             "compared at full torque (2U)",
         )
         self.sheet.write_string(self.row, 0, " · ".join(facts), self.book.format("page quiet"))
@@ -162,7 +162,7 @@ class FailingPage:
             "object_position": 2,
             "description": f"{drawing.title}. {drawing.description}",
         })  # fmt: skip
-        figures = list(page_figures(self.variant, self.facts.bounds))[:_SKETCH_ROWS]
+        figures = list(page_figures(self.variant, self.facts.bounds, self.facts.angles))[:_SKETCH_ROWS]
         for name, value in [*figures, *[("", "")] * (_SKETCH_ROWS - len(figures))]:
             if name:
                 self.sheet.write_string(self.row, _RIGHT[0], name, self.book.format("page label"))
@@ -200,9 +200,17 @@ class FailingPage:
         density = density_chart(self.book, self.variant, self.pages, self.place, half)
         tornado = tornado_chart(self.book, self.variant, self.pages, self.place)
         size = half, height
-        self.book.insert(self.sheet, self.row, 0, density, size=size, text=density_words(self.variant))
         self.book.insert(
-            self.sheet, self.row, 0, tornado, size=size, text=tornado_words(self.variant), right=whole - half
+            self.sheet, self.row, 0, density, size=size, text=density_words(self.variant, self.facts.angles)
+        )
+        self.book.insert(
+            self.sheet,
+            self.row,
+            0,
+            tornado,
+            size=size,
+            text=tornado_words(self.variant, self.facts.angles),
+            right=whole - half,
         )
         for _ in range(rows):
             self._end_row()

@@ -28,7 +28,7 @@ def write_failing(book: Book, outcome: Outcome, data: ReportData) -> Stored | No
     sheet = book.sheet(FAILING, landscape=False)
     for column, pixels in enumerate(COLUMN_WIDTHS):
         sheet.set_column_pixels(column, column, pixels)
-    facts, pages = summary_facts(outcome, data.levers), stored_pages(variants)
+    facts, pages = summary_facts(outcome, data.levers), stored_pages(variants, book.angles)
     labels: Sequence[str] = distinct_labels([variant.row["variant"] for variant in variants], _NAME)
     for place, (variant, label) in enumerate(zip(variants, labels, strict=True)):
         page = FailingPage(book, sheet, facts, variant=variant, pages=pages, place=place)

@@ -10,7 +10,7 @@ from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.axes import axis_around, axis_over
 from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book
 from flexlash.report.report_data import Drawn
-from flexlash.schema.number_words import angle_words
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.tolerance.distribution_curves import HISTOGRAM_BINS
 
 __all__ = ["density_chart", "density_words", "segments_chart", "segments_words", "tornado_chart", "tornado_words"]
@@ -38,9 +38,11 @@ def density_chart(book: Book, variant: Drawn, pages: Stored, place: int, width: 
     Bins are the error bars of points, so that they and the lines share an axis of numbers. A line that lies beyond that
     axis has its words in the legend alone.
     """
-    chart = _chart(book, "scatter", "Share of units by backlash [arcmin]", subtype="straight")
-    low, high = ends_of_histogram(variant)
-    axis = axis_over([low, high, *(variant.row[key] for line, key in LINES.items() if is_drawn(variant, line))])
+    angles = book.angles
+    chart = _chart(book, "scatter", f"Share of units by backlash [{angles.name}]", subtype="straight")
+    low, high = map(angles.of, ends_of_histogram(variant))
+    lines = [variant.row[key] for line, key in LINES.items() if is_drawn(variant, line)]
+    axis = axis_over([low, high, *map(angles.of, lines)])
     bar = _PLOT * width * _POINT * (high - low) / HISTOGRAM_BINS / (axis.high - axis.low)
     middles = pages.across(place, "Middle 1", f"Middle {HISTOGRAM_BINS}")
     for name, heading, colour in (("within the limit", "Within", "blue"), ("over the limit", "Over", "red")):
@@ -61,7 +63,7 @@ def density_chart(book: Book, variant: Drawn, pages: Stored, place: int, width: 
     for line in (line for line, key in LINES.items() if variant.row[key] is not None):
         colour, dash, weight = _DASHES[line]
         chart.add_series({
-            "name": f"{line} {_line_words(variant, line)}",
+            "name": f"{line} {_line_words(variant, line, book.angles)}",
             "categories": pages.across(place, f"{line} from", f"{line} to"),
             "values": pages.across(place, f"{line} bottom", f"{line} top"),
             "line": {"color": PALETTE.get(colour, _BLACK), "width": weight, "dash_type": dash},
@@ -73,16 +75,16 @@ def density_chart(book: Book, variant: Drawn, pages: Stored, place: int, width: 
     return chart
 
 
-def density_words(variant: Drawn) -> str:
+def density_words(variant: Drawn, angles: AngleUnit) -> str:
     """Return the alternative text of the histogram."""
-    told = ", ".join(f"{line.lower()} {_line_words(variant, line)}" for line in LINES)
+    told = ", ".join(f"{line.lower()} {_line_words(variant, line, angles)}" for line in LINES)
     return f"{_name(variant)}: histogram of the backlash of all units, the part over the limit in red; {told}"
 
 
 def tornado_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any:
     """Return what each dimension does between its limits, the greatest share of the variance on top."""
-    chart = _chart(book, "bar", "What causes the spread [arcmin]")
-    last = max(1, len(causes_of_page(variant)))
+    chart = _chart(book, "bar", f"What causes the spread [{book.angles.name}]")
+    last = max(1, len(causes_of_page(variant, book.angles)))
     for heading, colour in (("At lower limit", "sky"), ("At upper limit", "blue")):
         chart.add_series({
             "name": heading.lower(),
@@ -93,16 +95,17 @@ def tornado_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any:
             "overlap": 100,
             "gap": 40,
         })  # fmt: skip
-    axis = axis_around([half for _, _, half in causes_of_page(variant)])
+    axis = axis_around([half for _, _, half in causes_of_page(variant, book.angles)])
     chart.set_x_axis({**axis.options(), "crossing": 0, "major_gridlines": GRID, "num_font": _LETTERS})
     chart.set_y_axis({"reverse": True, "label_position": "low", "num_font": _LETTERS, "crossing": "max"})
     chart.set_legend({"position": "bottom", "font": _LETTERS})
     return chart
 
 
-def tornado_words(variant: Drawn) -> str:
+def tornado_words(variant: Drawn, angles: AngleUnit) -> str:
     """Return the alternative text of the tornado."""
-    told = "; ".join(f"{name}: {abs(half):.3g}′ to either side" for name, _, half in causes_of_page(variant))
+    causes = causes_of_page(variant, angles)
+    told = "; ".join(f"{name}: {abs(half):.3g}{angles.sign} to either side" for name, _, half in causes)
     told = told or "nothing scatters"
     return f"{_name(variant)}: change of the backlash between the limits of each dimension. {told}"
 
@@ -119,7 +122,7 @@ def segments_chart(book: Book, variant: Drawn, pages: Stored, place: int) -> Any
             "border": OUTLINE,
             "gap": 10,
         })  # fmt: skip
-    whole = variant.row["backlash_arcmin"]
+    whole = book.angles.of(variant.row["backlash_arcmin"])
     chart.set_x_axis({"min": 0, "max": whole, "visible": False, "major_gridlines": {"visible": False}})
     chart.set_y_axis({"visible": False})
     chart.set_legend({"position": "bottom", "font": _LETTERS})
@@ -156,12 +159,12 @@ def _colours(variant: Drawn) -> list[str]:
     return [colour for name, colour in zip(SEGMENTS.values(), _COLOURS, strict=True) if name in own]
 
 
-def _line_words(variant: Drawn, line: str) -> str:
+def _line_words(variant: Drawn, line: str, angles: AngleUnit) -> str:
     """Return where a line stands, and on which side of the picture where it is not drawn."""
     value = variant.row[LINES[line]]
     if value is None:
         return "none"
-    words = f"{value:g}′" if line == "Limit" else angle_words(value)
+    words = angles.entered(value) if line == "Limit" else angles.words(value)
     if is_drawn(variant, line):
         return words
     return f"{words}, off to the {'left' if value < ends_of_histogram(variant)[0] else 'right'}"

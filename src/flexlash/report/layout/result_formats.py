@@ -101,7 +101,7 @@ def number_codes(results: pl.DataFrame, column: Column) -> list[str]:
     if not error:
         return [usual] * results.height
     errors = results[error].to_list()
-    known = "arcmin" if unit else "plain"
+    known = usual if column.unit == "arcsec" else "arcmin" if unit else "plain"
     return _share_codes(values, errors, 1.0) if usual == "share" else [decimals_of(one, known) for one in errors]
 
 

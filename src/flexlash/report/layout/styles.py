@@ -8,6 +8,7 @@ from typing import Any
 import xlsxwriter
 
 from flexlash.report.layout.report_worksheet import ReportWorksheet
+from flexlash.schema.angle_unit import ARC_MINUTES, AngleUnit
 from flexlash.schema.number_words import places
 
 __all__ = ["GRID", "LINES", "OUTLINE", "PALETTE", "Book", "decimals_of", "literal", "number_code", "percent_of"]
@@ -182,10 +183,16 @@ def literal(text: str) -> str:
 
 
 class Book:
-    """An XlsxWriter workbook with the report's formats and sheets; only those in `shown` can be seen, None for all."""
+    """An XlsxWriter workbook with the report's formats and sheets, its angles in one unit.
 
-    def __init__(self, workbook: xlsxwriter.Workbook, shown: Container[str] | None = None) -> None:
+    Only the sheets in `shown` can be seen, all where it is None.
+    """
+
+    def __init__(
+        self, workbook: xlsxwriter.Workbook, shown: Container[str] | None = None, angles: AngleUnit = ARC_MINUTES
+    ) -> None:
         self.workbook = workbook
+        self.angles = angles
         self._shown = shown
         self._formats: dict[str, Any] = {}
 
@@ -209,6 +216,16 @@ class Book:
                 properties["num_format"] = number_code(number)
             self._formats[key] = self.workbook.add_format(properties)
         return self._formats[key]
+
+    def headings(self, *texts: str) -> list[str]:
+        """Return headings with the name of the unit of angles in place of `{angle}`."""
+        return [text.replace("{angle}", self.angles.name) for text in texts]
+
+    def write_figure(self, sheet: Any, row: int, column: int, value: float, number: str, *, look: str = "text") -> None:
+        """Write a number in a number format by name; `angle`: it is an angle [arcmin], shown in the unit of angles."""
+        if number == "angle":
+            value, number = self.angles.of(value), self.angles.name
+        sheet.write_number(row, column, value, self.format(look, number))
 
     @staticmethod
     def properties(name: str) -> dict[str, Any]:

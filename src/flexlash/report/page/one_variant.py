@@ -33,6 +33,7 @@ from flexlash.report.wording.summary_facts import SummaryFacts, rough
 from flexlash.report.wording.verdict import straddled, verdict_word
 from flexlash.report.wording.verdict_sentences import extremes, judged
 from flexlash.report.wording.wave_generator import BENDING, TWO_LOBES, bending_of, two_lobes_of
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.columns import DIMENSIONS, Column
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import Finding, shown
@@ -80,7 +81,7 @@ def variant_pages(
     facts: SummaryFacts, drawn: Sequence[Drawn], names: Sequence[str], findings: Mapping[int, Sequence[Finding]]
 ) -> Iterator[VariantPage]:
     """Yield the pages of variants of these short names; `findings` are those of each row of Variants."""
-    numbers = _numbers(facts.ranked.head(len(drawn)))
+    numbers = _numbers(facts.ranked.head(len(drawn)), facts.angles)
     for place, (variant, name, own) in enumerate(zip(drawn, names, numbers, strict=True)):
         row = variant.row
         found = findings.get(row[ROW], ())
@@ -92,9 +93,9 @@ def variant_pages(
             settled=not straddled(row, facts.bounds),
             light="" if row["backlash_limit_arcmin"] is None else verdict_word(row, facts.bounds),
             sentences=list(_sentences(facts, variant)),
-            density=density_of(variant),
-            shares=list(shares_of(variant)),
-            segments=list(segments_of(variant)),
+            density=density_of(variant, facts.angles),
+            shares=list(shares_of(variant, facts.angles)),
+            segments=list(segments_of(variant, facts.angles)),
             limits=[limits for _, limits in used_limits(variant)],
             sketch=sketch_facts(variant.computed.variant, name),
             levers=lever_table(facts.levers, row["variant"]),
@@ -119,25 +120,27 @@ def _sentences(facts: SummaryFacts, variant: Drawn) -> Iterator[Sentence]:
             yield Sentence(topic=topic, text=text, kind="advice")
     if drive := " ".join(whole_drive_of(facts, row)):
         yield Sentence(topic=DRIVE, text=drive, kind="verdict")
-    for topic, told in ((BENDING, bending_of(row)), (TWO_LOBES, two_lobes_of(row))):
+    for topic, told in ((BENDING, bending_of(row)), (TWO_LOBES, two_lobes_of(row, facts.angles))):
         if text := " ".join(told):
             yield Sentence(topic=topic, text=text, kind="note")
 
 
-def density_of(variant: Drawn) -> Density:
+def density_of(variant: Drawn, angles: AngleUnit) -> Density:
     """Return the histogram that Explorer draws."""
     curve, row = variant.curve, variant.row
+    limit = row["backlash_limit_arcmin"]
     return Density(
-        start=float(curve.edges[0]) / ARCMIN,
-        width=float(curve.edges[-1] - curve.edges[0]) / HISTOGRAM_BINS / ARCMIN,
+        unit=angles.name,
+        start=angles.of_radians(float(curve.edges[0])),
+        width=angles.of_radians(float(curve.edges[-1] - curve.edges[0]) / HISTOGRAM_BINS),
         heights=[float(f"{height:.5e}") for height in curve.heights.tolist()],
-        nominal=row["backlash_arcmin"],
-        mean=row["mean_arcmin"],
-        limit=row["backlash_limit_arcmin"],
+        nominal=angles.of(row["backlash_arcmin"]),
+        mean=angles.of(row["mean_arcmin"]),
+        limit=None if limit is None else angles.of(limit),
     )
 
 
-def shares_of(variant: Drawn) -> Iterator[Share]:
+def shares_of(variant: Drawn, angles: AngleUnit) -> Iterator[Share]:
     """Yield the dimensions that move the backlash most, by their share of the variance."""
     spread = variant.computed.spread
     about = "≈" if rough(variant.row) else ""
@@ -148,23 +151,23 @@ def shares_of(variant: Drawn) -> Iterator[Share]:
             name=dimension_words(name),
             share=shares[name],
             words=f"{about}{100 * shares[name]:.0f} %",
-            low=None if low is None else low / ARCMIN,
-            high=None if high is None else high / ARCMIN,
+            low=None if low is None else angles.of_radians(low),
+            high=None if high is None else angles.of_radians(high),
         )
 
 
-def segments_of(variant: Drawn) -> Iterator[Segment]:
+def segments_of(variant: Drawn, angles: AngleUnit) -> Iterator[Segment]:
     """Yield the stretches of the part in which the nominal backlash arises, from the open end to the hub."""
     nominal = variant.computed.nominal
     for segment, name in SEGMENTS.items():
         angle = getattr(nominal, f"{segment}_windup")
         if isinstance(angle, float) and angle > 0:
-            share = angle / nominal.windup
+            share, backlash = angle / nominal.windup, angles.of(2 * angle / ARCMIN)
             yield Segment(
                 name=name,
-                backlash=2 * angle / ARCMIN,
+                backlash=backlash,
                 share=share,
-                words=f"{2 * angle / ARCMIN:.4f}′, {100 * share:.1f} %",
+                words=f"{backlash:.{4 - angles.fewer}f}{angles.sign}, {100 * share:.1f} %",
             )
 
 
@@ -204,15 +207,18 @@ def _entry(number: float, size: float) -> str:
     return f"{as_entered(number, size):.10g}"
 
 
-def _numbers(results: pl.DataFrame) -> list[list[Number]]:
-    """Return the numbers of each Results row as the sheet Results shows them."""
+def _numbers(results: pl.DataFrame, angles: AngleUnit) -> list[list[Number]]:
+    """Return the numbers of each Results row as the sheet Results shows them, angles in a unit."""
     pages: list[list[Number]] = [[] for _ in range(results.height)]
+    in_arcmin = [key for key in results.columns if key.endswith("_arcmin") and "_per_" not in key]
+    results = results.with_columns(pl.col(in_arcmin) * angles.per_arcmin)
     for key in (key for key in _NUMBERS if key in results.columns):
-        column = _COLUMNS[key]
+        column = replace(_COLUMNS[key], unit=angles.name) if key in in_arcmin else _COLUMNS[key]
         codes = number_codes(results, column) if column.is_number else [""] * results.height
         name, _, unit = column.label.partition(" [")
+        unit = angles.name if key in in_arcmin else unit.rstrip("]")
         for page, value, code in zip(pages, results[key].to_list(), codes, strict=True):
             if value is not None:
                 text = number_text(value, code) if column.is_number else shown(value, _TEXT)
-                page.append(Number(key=key, label=name, value=text, unit=unit.rstrip("]"), help=column.help))
+                page.append(Number(key=key, label=name, value=text, unit=unit, help=column.help))
     return pages

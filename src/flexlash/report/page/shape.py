@@ -1,8 +1,9 @@
 """The shape of what a page shows of a submission, as it is kept as JSON: whoever shows it loads nothing else.
 
 Every text is short, on one line and without control characters, but may hold anything that a stranger typed: escape
-it. Numbers are in the printed unit, angles in arcmin; what is not there is null. Lists are bounded, and say how many
-there are in all. The facts of a check (`ran` is false) have findings alone: they come first, while rows are computed.
+it. Numbers are in the printed unit, angles in that of the report; what is not there is null. Lists are bounded, and say
+how many there are in all. The facts of a check (`ran` is false) have findings alone: they come first, while rows are
+computed.
 """
 
 from __future__ import annotations
@@ -120,7 +121,7 @@ class Sentence(TypedDict):
 
 
 class Axis(TypedDict):
-    """A round start and step of an axis that shows everything [arcmin], and to how many decimals it is labelled."""
+    """A round start and step of an axis that shows everything, and to how many decimals it is labelled."""
 
     start: float
     step: float
@@ -128,7 +129,7 @@ class Axis(TypedDict):
 
 
 class ChartVariant(TypedDict):
-    """A variant of the chart: its P2.5, median, P97.5, nominal backlash and limit [arcmin]."""
+    """A variant of the chart: its P2.5, median, P97.5, nominal backlash and limit."""
 
     variant: str
     low: float
@@ -188,11 +189,12 @@ class Lost(TypedDict):
 
 
 class Density(TypedDict):
-    """A histogram of the backlash [arcmin]: equal bins from `start` on, each with its share of all units.
+    """A histogram of the backlash in a unit: equal bins from `start` on, each with its share of all units.
 
-    Facts of earlier versions have no `mean`.
+    Facts of earlier versions have no `mean`, and no `unit`: they are in arcmin.
     """
 
+    unit: NotRequired[str]
     start: float
     width: float
     heights: list[float]
@@ -202,7 +204,7 @@ class Density(TypedDict):
 
 
 class Share(TypedDict):
-    """A dimension's share of the variance, and the backlash [arcmin] with it at its lower and upper limit."""
+    """A dimension's share of the variance, and the backlash with it at its lower and upper limit."""
 
     name: str
     share: float
@@ -212,7 +214,7 @@ class Share(TypedDict):
 
 
 class Segment(TypedDict):
-    """A stretch of the part, the nominal backlash that arises there [arcmin], and its share of the whole."""
+    """A stretch of the part, the nominal backlash that arises there, and its share of the whole."""
 
     name: str
     backlash: float

@@ -17,7 +17,7 @@ from flexlash.report.wording.summary_facts import Row, SummaryFacts, main_cause
 from flexlash.report.wording.verdict import straddled, verdict_word
 from flexlash.schema.findings import shown
 from flexlash.schema.limit_verdict import VerdictBounds
-from flexlash.schema.number_words import angle_words, share_words
+from flexlash.schema.number_words import share_words
 
 __all__ = ["chart_of", "lost_variants", "shown_names", "table_rows", "verdict_of"]
 
@@ -41,14 +41,14 @@ def chart_of(facts: SummaryFacts, rows: Sequence[Row], names: Sequence[str], pag
     drawn = rows[:CHARTED]
     if not drawn:
         return None
-    start, step, decimals = chart_axis(drawn)
+    start, step, decimals = chart_axis(drawn, facts.angles)
     total = facts.extent.total
     limits = {row["backlash_limit_arcmin"] for row in drawn} - {None}
     return Chart(
-        title=chart_title(len(drawn), total),
-        unit="arcmin",
+        title=chart_title(len(drawn), total, facts.angles),
+        unit=facts.angles.name,
         axis=Axis(start=start, step=step, decimals=decimals),
-        limits=sorted(limits),
+        limits=sorted(map(facts.angles.of, limits)),
         variants=[
             _bar(facts, row, name, _page(place, paged))
             for place, (row, name) in enumerate(zip(drawn, names, strict=False))
@@ -63,13 +63,14 @@ def _page(place: int, paged: int) -> int | None:
 
 
 def _bar(facts: SummaryFacts, row: Row, name: str, page: int | None) -> ChartVariant:
+    of, limit = facts.angles.of, row["backlash_limit_arcmin"]
     return ChartVariant(
         variant=name,
-        low=row["p2_5_arcmin"],
-        median=row["p50_arcmin"],
-        high=row["p97_5_arcmin"],
-        nominal=row["backlash_arcmin"],
-        limit=row["backlash_limit_arcmin"],
+        low=of(row["p2_5_arcmin"]),
+        median=of(row["p50_arcmin"]),
+        high=of(row["p97_5_arcmin"]),
+        nominal=of(row["backlash_arcmin"]),
+        limit=None if limit is None else of(limit),
         verdict=verdict_of(row, facts.bounds),
         page=page,
     )
@@ -92,12 +93,12 @@ def table_rows(facts: SummaryFacts, rows: Sequence[Row], names: Sequence[str], p
             verdict=verdict_of(row, facts.bounds),
             settled=not straddled(row, facts.bounds),
             light="" if limit is None else verdict_word(row, facts.bounds),
-            nominal=angle_words(row["backlash_arcmin"]),
-            median=_percentile(row, "p50"),
-            p97_5=_percentile(row, "p97_5"),
-            p99_865=_percentile(row, "p99_865"),
-            limit="" if limit is None else f"{limit:g}′",
-            distance="" if limit is None else distance_words(row, "p97_5"),
+            nominal=facts.angles.words(row["backlash_arcmin"]),
+            median=_percentile(facts, row, "p50"),
+            p97_5=_percentile(facts, row, "p97_5"),
+            p99_865=_percentile(facts, row, "p99_865"),
+            limit="" if limit is None else facts.angles.entered(limit),
+            distance="" if limit is None else distance_words(row, "p97_5", facts.angles),
             over_limit="" if limit is None else share_words(row),
             main_cause=main_cause(row),
             page=_page(place, paged),
@@ -105,8 +106,8 @@ def table_rows(facts: SummaryFacts, rows: Sequence[Row], names: Sequence[str], p
         )
 
 
-def _percentile(row: Row, key: str) -> str:
-    return angle_words(row[f"{key}_arcmin"], row[f"{key}_standard_error_arcmin"])
+def _percentile(facts: SummaryFacts, row: Row, key: str) -> str:
+    return facts.angles.words(row[f"{key}_arcmin"], row[f"{key}_standard_error_arcmin"])
 
 
 def lost_variants(outcome: Outcome) -> list[Lost]:

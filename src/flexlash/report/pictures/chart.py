@@ -24,10 +24,7 @@ from flexlash.report.pictures.drawing import (
 )
 from flexlash.schema.number_words import grouped
 
-__all__ = ["UNIT", "Cause", "Spread", "causes_chart", "density_chart", "shares_chart", "spread_chart"]
-
-UNIT = "′"
-"""The sign of an arc minute, in which all angles are."""
+__all__ = ["Cause", "Spread", "causes_chart", "density_chart", "shares_chart", "spread_chart"]
 
 _TOP, _NO_LIMIT, _ROW, _BAR, _BELOW = 26.0, 4.0, 38.0, 11.0, 26.0
 _LEAST = 0.5

@@ -12,6 +12,7 @@ from flexlash.report.report_data import Drawn
 from flexlash.report.summary.relative_bars import KINDS
 from flexlash.report.wording.chart_words import limits_over, spans_of
 from flexlash.report.wording.verdict import NO_VERDICT
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.number_words import grouped
 
 __all__ = ["CHARTED", "chart_axis", "chart_title", "chart_words", "variants_chart"]
@@ -96,18 +97,18 @@ def relative_title(shown: int, total: int, *, is_limited: bool) -> str:
     return f"Backlash less its median (line at 0), in % of the median: P2.5 to P97.5{part}"
 
 
-def chart_title(shown: int, total: int) -> str:
+def chart_title(shown: int, total: int, angles: AngleUnit) -> str:
     """Return the title of the page's chart that shows so many variants of so many."""
     part = f": the {shown} worst of {grouped(total)}" if shown < total else ""
-    return f"Backlash of 95 % of units (P2.5 to P97.5), median and limit [arcmin]{part}"
+    return f"Backlash of 95 % of units (P2.5 to P97.5), median and limit [{angles.name}]{part}"
 
 
-def chart_words(drawn: Sequence[Drawn]) -> str:
+def chart_words(drawn: Sequence[Drawn], angles: AngleUnit) -> str:
     """Return the alternative text of the chart."""
     charted = drawn[:CHARTED]
     base = "median" if all(one.row["backlash_limit_arcmin"] is None for one in drawn) else "limit"
     return (
-        f"Backlash of {len(charted)} variants, worst first: {spans_of(charted)}. {limits_over(charted)} "
+        f"Backlash of {len(charted)} variants, worst first: {spans_of(charted, angles)}. {limits_over(charted)} "
         f"Drawn in per cent of the {base}, which is the line at zero: a bar goes from the backlash that 2.5 % of units "
         "stay below to that which 97.5 % stay below, the median as a diamond, P99.865 as a dash. Bars of variants that "
         "fail are dark red, of marginal ones orange, of those that meet it blue; a triangle with its figure stands "
@@ -124,11 +125,11 @@ def _marker(shape: str, colour: str, size: float, border: str = "") -> dict[str,
     return {"type": shape, "size": size, "fill": {"color": colour}, "border": {"color": border or colour}}
 
 
-def chart_axis(rows: Sequence[dict[str, Any]]) -> tuple[float, float, int]:
+def chart_axis(rows: Sequence[dict[str, Any]], angles: AngleUnit) -> tuple[float, float, int]:
     """Return start, step and digits of an axis that begins at a round number below all that Results rows show."""
     limits = [row["backlash_limit_arcmin"] for row in rows if row["backlash_limit_arcmin"] is not None]
-    low = min([*limits, *(row["p2_5_arcmin"] for row in rows)])
-    high = max([*limits, *(row["p97_5_arcmin"] for row in rows)])
+    low = angles.of(min([*limits, *(row["p2_5_arcmin"] for row in rows)]))
+    high = angles.of(max([*limits, *(row["p97_5_arcmin"] for row in rows)]))
     about = max(high - low, high / 100) / 6
     power = 10.0 ** math.floor(math.log10(about))
     step = power * next(times for times in (1, 2, 5, 10) if about <= times * power * (1 + 1e-9))

@@ -38,6 +38,7 @@ from flexlash.report.wording.verdict import (
     verdict_rules,
     verdict_verb,
 )
+from flexlash.schema.angle_unit import ANGLE_UNITS
 from flexlash.schema.findings import shown
 from flexlash.schema.limit_verdict import VERDICTS, Verdict
 from flexlash.schema.number_words import grouped
@@ -82,7 +83,7 @@ def write_summary(book: Book, outcome: Outcome, data: ReportData, bars: Stored) 
     targets = _targets(data)
     for topic, text in sentences(outcome, data.levers, data.allocation):
         page.sentence(topic, text, targets.get(topic, ""))
-    if swept := summary_sentence(data.studies, outcome.settings.target_percent):
+    if swept := summary_sentence(data.studies, outcome.settings.target_percent, book.angles):
         page.sentence("Sweep", swept, "Sweep!A1")
     unit = None
     if data.drawn:
@@ -179,12 +180,13 @@ class _Page:
         """Write the cell that names the unit of angles, which the reader may change, with its label."""
         row, column = _UNIT
         self.sheet.write_string(row, column - 1, "Angles in ►", self.book.format("label"))
-        cell = fill(self.sheet, row, column, "arcmin", self.book.format("input"))
+        cell = fill(self.sheet, row, column, self.book.angles.name, self.book.format("input"))
         self.sheet.data_validation(row, column, row, column, {
             "validate": "list",
-            "source": ["arcmin", "arcsec"],
+            "source": list(ANGLE_UNITS),
             "input_title": "Unit of angles",
-            "input_message": "The table below and the Explorer follow; other sheets are in arcmin.",
+            "input_message": "The table below and the Explorer follow. All else is in "
+            f"{self.book.angles.name}, by the setting angle_unit; the columns of Results keep their units.",
             "error_title": "Unit of angles",
             "error_message": "arcmin or arcsec, nothing else.",
         })  # fmt: skip
@@ -241,7 +243,7 @@ class _Page:
         rows = math.ceil(height / LINE_HEIGHT)
         size = (round(_CHART_WIDTH), round(rows * LINE_HEIGHT / 0.75) - 4)
         chart = variants_chart(self.book, bars, scale_end(drawn[:CHARTED]), extent_of(self.outcome).total)
-        self.book.insert(self.sheet, self.row, 0, chart, size=size, text=chart_words(drawn))
+        self.book.insert(self.sheet, self.row, 0, chart, size=size, text=chart_words(drawn, self.book.angles))
         for _ in range(rows):
             self._end_row()
 

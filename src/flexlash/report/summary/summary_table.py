@@ -14,6 +14,7 @@ from flexlash.report.wording.distances import distance, distance_format
 from flexlash.report.wording.normal_theory import normal_words
 from flexlash.report.wording.summary_facts import main_cause
 from flexlash.report.wording.verdict import COLOURS, verdict_word
+from flexlash.schema.angle_unit import ANGLE_UNITS
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.number_words import brief_share, glance
 
@@ -26,7 +27,6 @@ _ANGLES = {2: "Limit", 3: "Nominal", 4: "P97.5", 5: "{deciding}", 6: "{deciding}
 _ANGLES |= {7: "Mean + 3 sd, first order", 8: "Worst case"}
 _WORDS = {0: "Variant", 1: "Verdict", 9: "Units over the limit", 10: "By normal theory", 11: "Main contributor"}
 _OVER, _FIRST_ORDER = 6, 7
-_SECONDS = 60.0
 _SIGMAS = 3.0
 _STORED = {"97.5 %": "p97_5", "99 %": "p99", "99.865 %": "p99_865"}
 """Percentiles of Results, by the share of units that are to be within the limit."""
@@ -45,7 +45,7 @@ def deciding_percentile(bounds: VerdictBounds) -> tuple[str, str]:
 
 
 class SummaryTable:
-    """The table of a sheet, whose angles are in the unit that a cell names, arcmin as it is written."""
+    """The table of a sheet, whose angles are in the unit that a cell names, as it is written that of the book."""
 
     def __init__(self, book: Book, sheet: Any, bounds: VerdictBounds, unit: Live) -> None:
         self.book = book
@@ -53,7 +53,7 @@ class SummaryTable:
         self.bounds = bounds
         self.unit = unit
         self.key, self.name = deciding_percentile(bounds)
-        self._factor = IF(unit.equals("arcsec"), _SECONDS, 1.0)
+        self._factor = IF(unit.equals("arcsec"), ANGLE_UNITS["arcsec"].per_arcmin, 1.0)
 
     def write_headings(self, row: int) -> None:
         """Write the headings, angles with the chosen unit."""
@@ -79,29 +79,31 @@ class SummaryTable:
         return max(lines_of(text, merged_width([WIDTHS[column]]) - 1) for column, text in words.items())
 
     def finish(self, first: int, last: int) -> None:
-        """Show arc seconds with one decimal: they are sixty times as many."""
-        for column in _ANGLES:
-            signed = "+0.0;-0.0;0.0" if column == _OVER else "0.0"
-            rule = {"type": "formula", "criteria": f'={self.unit.text}="arcsec"'}
-            look = self.book.workbook.add_format({"num_format": signed})
-            self.sheet.conditional_format(first, column, last, column, {**rule, "format": look})
+        """Show angles in the other unit with digits of its own: arc seconds are sixty times as many."""
+        for unit in ANGLE_UNITS.values():
+            digits = unit.decimals(3)
+            for column in _ANGLES if unit != self.book.angles else ():
+                rule = {"type": "formula", "criteria": f'={self.unit.text}="{unit.name}"'}
+                signed = f"+{digits};-{digits};{digits}" if column == _OVER else digits
+                look = self.book.workbook.add_format({"num_format": signed})
+                self.sheet.conditional_format(first, column, last, column, {**rule, "format": look})
 
     def _angles(self, row: dict[str, Any]) -> dict[int, tuple[float, str]]:
         """Return value [arcmin] and number format of the cells that hold an angle."""
         keys = {2: "backlash_limit", 3: "backlash", 4: "p97_5", 5: self.key, 8: "worst_case_high"}
         cells = {
-            column: (row[f"{key}_arcmin"], _glance(row[f"{key}_arcmin"], row.get(f"{key}_standard_error_arcmin")))
+            column: (row[f"{key}_arcmin"], self._glance(row[f"{key}_arcmin"], row.get(f"{key}_standard_error_arcmin")))
             for column, key in keys.items()
             if row[f"{key}_arcmin"] is not None
         }
         if row["first_order_sd_arcmin"] is not None:
             high = row["mean_arcmin"] + _SIGMAS * row["first_order_sd_arcmin"]
-            cells[_FIRST_ORDER] = high, _glance(high, None)
+            cells[_FIRST_ORDER] = high, self._glance(high, None)
         if row["backlash_limit_arcmin"] is not None:
-            cells[_OVER] = distance(row, self.key), distance_format(row, self.key)
+            cells[_OVER] = distance(row, self.key), distance_format(row, self.key, self.book.angles)
         return cells
 
-
-def _glance(value: float, error: float | None) -> str:
-    """Return the number format of an angle in four digits, or fewer where its standard error is greater."""
-    return decimals_of(max(error or 0.0, glance(value)), "plain")
+    def _glance(self, value: float, error: float | None) -> str:
+        """Return the number format of an angle in four digits, or fewer where its standard error is greater."""
+        of = self.book.angles.of
+        return decimals_of(max(of(error or 0.0), glance(of(value))), "plain")

@@ -18,18 +18,18 @@ __all__ = ["LAST_COLUMN", "SHARE", "STRESS", "VALUE_WIDTH", "WIDTH", "write_poin
 
 VALUE_WIDTH, WIDTH = 24.0, 10.5
 _COLUMNS = (
-    ("backlash_arcmin", "Nominal [arcmin]"),
-    ("p2_5_arcmin", "P2.5 [arcmin]"),
-    ("p50_arcmin", "P50 [arcmin]"),
-    ("p97_5_arcmin", "P97.5 [arcmin]"),
-    ("p99_865_arcmin", "P99.865 [arcmin]"),
+    ("backlash_arcmin", "Nominal [{angle}]"),
+    ("p2_5_arcmin", "P2.5 [{angle}]"),
+    ("p50_arcmin", "P50 [{angle}]"),
+    ("p97_5_arcmin", "P97.5 [{angle}]"),
+    ("p99_865_arcmin", "P99.865 [{angle}]"),
     ("probability_over_limit", "Over limit"),
     ("disk_share", "Disk share"),
     ("von_mises_MPa", "Von Mises [MPa]"),
 )
 """What the table shows of Results."""
 
-_FORMATS = {"probability_over_limit": "0.0000%"}
+_FORMATS = {"probability_over_limit": "0.0000%"} | {key: "angle" for key, _ in _COLUMNS if key.endswith("_arcmin")}
 """Number formats that are not the usual ones; all are alike in all rows, so that numbers can be compared."""
 
 _TOLD = "W423"
@@ -46,7 +46,7 @@ LAST_COLUMN = _FINDINGS + 4
 def write_points(book: Book, sheet: Any, top: int, study: Study, bounds: VerdictBounds) -> int:
     """Write headings and points from a row on; return the row below them. The value as entered is bold."""
     header = book.format("header")
-    sheet.write_row(top, 0, [swept_title(study.first.key), *(label for _, label in _COLUMNS)], header)
+    sheet.write_row(top, 0, [swept_title(study.first.key), *book.headings(*(label for _, label in _COLUMNS))], header)
     sheet.merge_range(top, _FINDINGS, top, LAST_COLUMN, "Findings", header)
     sheet.set_row(top, 32)
     columns = {column.key: column for column in RESULTS}
@@ -60,7 +60,7 @@ def write_points(book: Book, sheet: Any, top: int, study: Study, bounds: Verdict
         for column, key in enumerate(_KEYS, start=1):
             if record[key] is not None:
                 look = COLOURS[verdict_word(record, bounds)] if column == _OVER else "text"
-                sheet.write_number(row, column, record[key], book.format(look, codes[key]))
+                book.write_figure(sheet, row, column, record[key], codes[key], look=look)
         if findings := _findings(record["findings"]):
             sheet.merge_range(row, _FINDINGS, row, LAST_COLUMN, findings, book.format("indented wrap"))
             sheet.set_row(row, LINE_HEIGHT * lines_of(findings, wide))

@@ -11,6 +11,7 @@ from flexlash.report.layout.axes import Axis, axis_over
 from flexlash.report.layout.styles import GRID, PALETTE, Book
 from flexlash.report.sweeps.sweep_curves import LEVELS, crossing_heading, grid_of, heading_of
 from flexlash.report.wording.sweep_words import level_title, swept_title, value_words
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.columns import columns_of
 from flexlash.schema.findings import shown
 
@@ -48,11 +49,13 @@ def backlash_chart(book: Book, study: Study, number: int, stored: Stored) -> Any
     hidden = [0, 5]
     if study.limit is not None:
         limit = {"color": PALETTE["red"], "width": 2}
-        lines.add_series({**series("Limit"), "name": f"Limit {study.limit:.6g}′", "line": limit})
+        lines.add_series(
+            {**series("Limit"), "name": f"Limit {book.angles.of(study.limit):.6g}{book.angles.sign}", "line": limit}
+        )
         _add_crossings(lines, study, series)
     bands.combine(lines)
-    axis = _axis(study)
-    bands.set_y_axis({**axis.options(), **_SMALL, "name": "Backlash [arcmin]", "major_gridlines": GRID})
+    axis = _axis(study, book.angles)
+    bands.set_y_axis({**axis.options(), **_SMALL, "name": f"Backlash [{book.angles.name}]", "major_gridlines": GRID})
     bands.set_x_axis({
         **_SMALL,
         "name": swept_title(study.first.key),
@@ -112,11 +115,12 @@ def _mark(shape: str, colour: str, size: int) -> dict[str, Any]:
     return {"line": {"none": True}, "marker": {"type": shape, "size": size, "fill": fill, "border": {"color": "white"}}}
 
 
-def _axis(study: Study) -> Axis:
+def _axis(study: Study, angles: AngleUnit) -> Axis:
     """Return an axis over all that is drawn."""
     numbers = [study.results[key] for key in (*LEVELS.values(), "backlash_arcmin")]
     ends = [value for column in numbers for value in column.to_list() if value is not None]
-    return axis_over(_without_noise([*ends, *([] if study.limit is None else [study.limit])]))
+    drawn = [*ends, *([] if study.limit is None else [study.limit])]
+    return axis_over(_without_noise([angles.of(angle) for angle in drawn]))
 
 
 def _without_noise(values: Sequence[float]) -> list[float]:

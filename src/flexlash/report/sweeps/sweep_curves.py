@@ -14,6 +14,7 @@ from typing import Any
 
 from flexlash.decisions.sweep import Study
 from flexlash.report.formula.stored import Row, Stored
+from flexlash.schema.angle_unit import AngleUnit
 
 __all__ = ["LEVELS", "SWEPT", "SWEPT_NOTE", "Grid", "crossing_heading", "grid_of", "heading_of", "stored_sweeps"]
 
@@ -66,12 +67,12 @@ def crossing_heading(percent: float | None) -> str:
     return "nominal crosses" if percent is None else f"P{percent:.10g} crosses"
 
 
-def stored_sweeps(studies: Sequence[Study]) -> Stored:
+def stored_sweeps(studies: Sequence[Study], angles: AngleUnit) -> Stored:
     """Return the data sheet of the studies that are drawn, each with columns of its own."""
     columns: dict[str, Sequence[str | float | None]] = {}
     for number, study in enumerate(studies):
         if study.second is None and len(set(study.first.values)) > 1:
-            for what, values in _columns(study):
+            for what, values in _columns(study, angles):
                 columns[heading_of(number, what)] = values
     longest = max(map(len, columns.values()), default=0)
     rows: list[Row] = [
@@ -81,12 +82,15 @@ def stored_sweeps(studies: Sequence[Study]) -> Stored:
     return Stored(SWEPT, rows)
 
 
-def _columns(study: Study) -> Iterator[tuple[str, Sequence[str | float | None]]]:
+def _columns(study: Study, angles: AngleUnit) -> Iterator[tuple[str, Sequence[str | float | None]]]:
     """Yield the columns of a study: its grid, what is stacked, the lines and the marks."""
     grid = grid_of(study)
     places = grid.places
     points = {row[study.first.key]: row for row in study.results.iter_rows(named=True)}
-    course = {name: _along(points, key, places) for name, key in (*LEVELS.items(), ("Nominal", "backlash_arcmin"))}
+    course = {
+        name: [None if angle is None else angles.of(angle) for angle in _along(points, key, places)]
+        for name, key in (*LEVELS.items(), ("Nominal", "backlash_arcmin"))
+    }
     yield "value", places
     yield "label", [f"{value:.10g}" if place % grid.labelled == 0 else "" for place, value in enumerate(places)]
     base = _without_gaps(course["P2.5"])
@@ -97,11 +101,12 @@ def _columns(study: Study) -> Iterator[tuple[str, Sequence[str | float | None]]]
     yield "Nominal", course["Nominal"]
     nearest = {_nearest(places, value) for value, row in points.items() if row["p50_arcmin"] is not None}
     yield "points", [value if place in nearest else None for place, value in enumerate(course["P50"])]
-    if study.limit is not None:
-        yield "Limit", [study.limit] * len(places)
+    limit = None if study.limit is None else angles.of(study.limit)
+    if limit is not None:
+        yield "Limit", [limit] * len(places)
     for percent in dict.fromkeys(one.percent for one in study.crossings):
         marked = {_nearest(places, one.value) for one in study.crossings if one.percent == percent}
-        yield crossing_heading(percent), [study.limit if place in marked else None for place in range(len(places))]
+        yield crossing_heading(percent), [limit if place in marked else None for place in range(len(places))]
 
 
 def _along(points: dict[float, dict[str, Any]], key: str, places: Sequence[float]) -> list[float | None]:

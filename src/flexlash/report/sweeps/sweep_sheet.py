@@ -89,7 +89,7 @@ class _Blocks:
         title = study_title(study)
         self._write_across(row, title, "section")
         row += 1
-        for sentence in study_sentences(study, self.target):
+        for sentence in study_sentences(study, self.target, self.book.angles):
             self._write_sentence(row, sentence)
             row += 1
         if study.second is not None:
@@ -105,8 +105,10 @@ class _Blocks:
         """Put the charts of a study, whose points stand in these rows, side by side."""
         title = study_title(study)
         chart = backlash_chart(self.book, study, number, self.stored)
+        angles = self.book.angles
+        nominal = [None if angle is None else angles.of(angle) for angle in study.results["backlash_arcmin"]]
         text = f"{title}: band of 95 % of units, P50, nominal, limit and crossings; "
-        text += f"the nominal backlash goes {ends_of(study.results['backlash_arcmin'].to_list())}"
+        text += f"the nominal backlash goes {ends_of(nominal, angles.sign)}"
         self.book.insert(self.sheet, row, 0, chart, size=(_WIDTHS[0], _HEIGHT), text=text)
         chart = share_chart(self.book, study, rows, (SHARE, STRESS))
         text = f"{title}: share of the disk in the backlash, and von Mises stress; "

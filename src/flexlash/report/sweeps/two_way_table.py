@@ -76,6 +76,11 @@ class _Table:
         return VerdictBounds.of(self.target)
 
     @property
+    def limit(self) -> float | None:
+        """The limit in the unit of angles."""
+        return None if self.study.limit is None else self.book.angles.of(self.study.limit)
+
+    @property
     def level(self) -> float:
         """The level that the cells show."""
         return shown_level(self.target)
@@ -97,17 +102,19 @@ class _Table:
         row = self.rows[1] + 1
         if self.study.limit is not None:
             row = self._write_allowed(row)
-        numbers = self.study.results[self.key].drop_nulls().to_list()
+        numbers = [self.book.angles.of(angle) for angle in self.study.results[self.key].drop_nulls()]
         if len(self.firsts) == 1 or not numbers:
             return row
         title, first, second = level_title(self.level), swept_title(self.study.first.key), swept_title(self.second)
-        text = f"{title} over {first}, a line for each {second}: between {min(numbers):.4g} and {max(numbers):.4g}′"
+        sign = self.book.angles.sign
+        text = f"{title} over {first}, a line for each {second}: "
+        text += f"between {min(numbers):.4g} and {max(numbers):.4g}{sign}"
         self.book.insert(self.sheet, row + 1, 0, self._chart(numbers), size=(_WIDTH, _HEIGHT), text=text)
         return row + 1 + _CHART_ROWS
 
     def _write_headings(self) -> None:
         header, width = self.book.format("header"), len(self.seconds)
-        text = f"{level_title(self.level)} [arcmin] at {swept_title(self.second)}"
+        text = f"{level_title(self.level)} [{self.book.angles.name}] at {swept_title(self.second)}"
         if width > 1:
             self.sheet.merge_range(self.top, 1, self.top, width, text, header)
         else:
@@ -115,7 +122,7 @@ class _Table:
         self.sheet.write_row(self.top + 1, 0, [swept_title(self.study.first.key), *self.seconds], header)
         self.sheet.set_row(self.top + 1, 32)
         if self.study.limit is not None:
-            self.sheet.write_string(self.top + 1, width + 1, "Limit [arcmin]", header)
+            self.sheet.write_string(self.top + 1, width + 1, f"Limit [{self.book.angles.name}]", header)
 
     def _write_cells(self) -> None:
         """Write the numbers, each in the colour of its verdict; without a limit by how great they are."""
@@ -127,10 +134,10 @@ class _Table:
                 if point[self.key] is None:
                     self.sheet.write_string(first + row, column + 1, "–", look)
                 else:
-                    self.sheet.write_number(first + row, column + 1, point[self.key], look)
-            if self.study.limit is not None:
+                    self.sheet.write_number(first + row, column + 1, self.book.angles.of(point[self.key]), look)
+            if self.limit is not None:
                 quiet = self.book.format("quiet", "general")
-                self.sheet.write_number(first + row, len(self.seconds) + 1, self.study.limit, quiet)
+                self.sheet.write_number(first + row, len(self.seconds) + 1, self.limit, quiet)
         if self.study.limit is None:
             self.sheet.conditional_format(first, 1, last, len(self.seconds), _SCALE)
 
@@ -139,7 +146,7 @@ class _Table:
         point = self.cells[row][column]
         look = self.book.properties(COLOURS[verdict_word(point, self.bounds)]) | {
             "align": "center",
-            "num_format": "0.000",
+            "num_format": self.book.angles.decimals(3),
         }
         meets = self._meets(point)
         for side, (down, right) in _SIDES.items():
@@ -180,16 +187,19 @@ class _Table:
             label = f"{second.plain_name} {self.seconds[place]:.10g}{second.unit_behind}"
             marker = {"type": "circle", "size": 4, "fill": ink, "border": ink}
             chart.add_series({**self._series(place + 1, label), "line": {**ink, "width": 1.75}, "marker": marker})
-        limit = self.study.limit
+        limit = self.limit
         if limit is not None:
             look = {"line": {"color": PALETTE["red"], "width": 2, "dash_type": "dash"}, "marker": {"type": "none"}}
-            chart.add_series({**self._series(len(self.seconds) + 1, f"Limit {limit:.6g}′"), **look})
+            chart.add_series(
+                {**self._series(len(self.seconds) + 1, f"Limit {limit:.6g}{self.book.angles.sign}"), **look}
+            )
         below = axis_over(self.firsts)
         ends = {"min": below.low, "max": below.high, "major_unit": below.step, "major_gridlines": {"visible": False}}
         name = swept_title(self.study.first.key)
         chart.set_x_axis({**_SMALL, **ends, "name": name, "num_format": "General"})
         axis = axis_over([*numbers, *([] if limit is None else [limit])])
-        chart.set_y_axis({**axis.options(), **_SMALL, "name": "Backlash [arcmin]", "major_gridlines": GRID})
+        name = f"Backlash [{self.book.angles.name}]"
+        chart.set_y_axis({**axis.options(), **_SMALL, "name": name, "major_gridlines": GRID})
         chart.set_legend({"position": "right", "font": {"size": SMALLEST}})
         return chart
 

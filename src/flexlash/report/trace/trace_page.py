@@ -44,7 +44,6 @@ _LOOKS = {
     "share": '0.00%;-0.00%;"none"',
 }
 _SHAPES = {_UNIT: "indented"}
-_ARCMIN_LOOK = '"rad = "0.0000"′";"rad = "-0.0000"′";"rad"'
 
 _PART_LOOK = '"a part";;"no part"'
 
@@ -129,13 +128,23 @@ class Page(Lines):
         self.lines[key] = put(self.sheet, self.row, VALUE, self.of_part(value), style)
         self.rows[key] = self.row
         if look == "angle":
-            unit = self.book.format("indented", _ARCMIN_LOOK)
-            arcmin = self.of_part(self.lines[key] / (PI / 10800), "rad")
-            put(self.sheet, self.row, _UNIT, arcmin, unit)
+            angle = self.of_part(self.lines[key] / self.radians, "rad")
+            put(self.sheet, self.row, _UNIT, angle, self.book.format("indented", self._angle_look))
         self._grey()
         if key in PROGRAM:
             self._write_program(self.lines[key], PROGRAM[key][0], style, is_word=look == "plain")
         return self.lines[key]
+
+    @property
+    def radians(self) -> Live:
+        """The unit of angles in radians."""
+        return PI / (10800 * self.book.angles.per_arcmin)
+
+    @property
+    def _angle_look(self) -> str:
+        """The number format of an angle behind its value in radians."""
+        digits, sign = self.book.angles.decimals(4), self.book.angles.sign
+        return f'"rad = "{digits}"{sign}";"rad = "-{digits}"{sign}";"rad"'
 
     def _write_words(self, words: Words) -> None:
         for column, text in zip((_NAME, _SYMBOL, _UNIT, _EQUATION), words, strict=True):

@@ -11,7 +11,7 @@ from typing import Any
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 
-from flexlash.report.formula.functions import CONCATENATE, COUNTA, FIXED, IF, MAX, MIN, OR, PI, match_exactly
+from flexlash.report.formula.functions import CONCATENATE, COUNTA, FIXED, IF, MAX, MIN, OR, match_exactly
 from flexlash.report.formula.live import Live, Range, fill, put
 from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.paper import Listed, print_one_page
@@ -128,8 +128,8 @@ def _write_verdict(page: Page, changes: Range) -> Live:
 
 def _write_headline(page: Page, fault: Live, verdict: Live) -> None:
     """Write the backlash beside the drop-down, or why there is none."""
-    backlash = page["backlash"]
-    answer = CONCATENATE("◄ backlash ", FIXED(backlash / (PI / 10800), 4), "′, ", verdict)
+    backlash, angles = page["backlash"], page.book.angles
+    answer = CONCATENATE("◄ backlash ", FIXED(backlash / page.radians, 4 - angles.fewer), f"{angles.sign}, ", verdict)
     is_unreal = OR(backlash <= _LEAST, backlash >= _MOST)
     told = IF(fault.equals(""), IF(is_unreal, UNREAL, answer), CONCATENATE(NO_PART, fault))
     said = IF(page.number.equals(0.0), NOT_LISTED, told)

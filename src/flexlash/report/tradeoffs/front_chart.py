@@ -9,7 +9,6 @@ from flexlash.report.layout.axes import axis_over
 from flexlash.report.layout.styles import GRID, OUTLINE, PALETTE, Book, literal
 from flexlash.report.tradeoffs.front_table import Figure, FrontTable
 from flexlash.report.wording.verdict import NO_VERDICT
-from flexlash.schema.units import ARCMIN
 
 __all__ = ["front_chart"]
 
@@ -62,6 +61,8 @@ def _set_axes(chart: Any, table: FrontTable, figure: Figure) -> None:
     """Set both axes near what is drawn."""
     places = [place for place, offer in enumerate(table.offers) if getattr(offer, figure) is not None]
     across = axis_over([table.figure(figure, place) for place in places])
-    up = axis_over([table.offers[place].quantile / ARCMIN for place in places])
+    up = axis_over([table.book.angles.of_radians(table.offers[place].quantile) for place in places])
     chart.set_x_axis({**across.options(), **_SMALL, "name": _AXES[figure], "major_gridlines": GRID})
-    chart.set_y_axis({**up.options(), **_SMALL, "name": f"{table.percentile} [arcmin]", "major_gridlines": GRID})
+    chart.set_y_axis(
+        {**up.options(), **_SMALL, "name": f"{table.percentile} [{table.book.angles.name}]", "major_gridlines": GRID}
+    )

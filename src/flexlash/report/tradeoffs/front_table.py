@@ -67,27 +67,28 @@ class FrontTable:
 
     def write(self) -> None:
         """Write headings and rows."""
-        headings = ["Variant", "Verdict", "Torque T [N·m]", "Nominal [arcmin]", f"{self.percentile} [arcmin]"]
-        headings += ["Limit [arcmin]", "Mass [kg]", "On the front of mass"]
+        headings = ["Variant", "Verdict", "Torque T [N·m]", "Nominal [{angle}]", f"{self.percentile} [{{angle}}]"]
+        headings += ["Limit [{angle}]", "Mass [kg]", "On the front of mass"]
         headings += ["Relative cost", "On the front of cost"] if self.has_cost else []
-        self.sheet.write_row(self.top, 0, headings, self.book.format("header"))
+        self.sheet.write_row(self.top, 0, self.book.headings(*headings), self.book.format("header"))
         self.sheet.set_row(self.top, 32)
         for row, (variant, offer, label, verdict) in enumerate(
             zip(self.drawn, self.offers, self.labels, self.verdicts, strict=True), start=self.top + 1
         ):
             self.sheet.write_string(row, 0, label, self.book.format("text"))
             self.sheet.write_string(row, 1, verdict, self.book.format(COLOURS[verdict]))
+            limit = variant.row["backlash_limit_arcmin"]
             numbers = {
                 2: (variant.computed.variant.dimensions["torque"], "general"),
-                3: (variant.row["backlash_arcmin"], "arcmin"),
-                4: (offer.quantile / ARCMIN, "arcmin"),
-                5: (variant.row["backlash_limit_arcmin"], "general"),
+                3: (variant.row["backlash_arcmin"], "angle"),
+                4: (offer.quantile / ARCMIN, "angle"),
+                5: (limit and self.book.angles.of(limit), "general"),
                 6: (offer.mass, "plain"),
                 8: (offer.cost, "#,##0.0"),
             }
             for column, (number, code) in numbers.items():
                 if number is not None and column <= self.last_column:
-                    self.sheet.write_number(row, column, number, self.book.format("text", code))
+                    self.book.write_figure(self.sheet, row, column, number, code)
             for column, is_on in ((7, offer.light), (9, offer.cheap)):
                 if column <= self.last_column:
                     style = self.book.format("ok" if is_on else "indented")
@@ -97,7 +98,7 @@ class FrontTable:
     def _write_helper(self, row: int, verdict: str, offer: TradeOff) -> None:
         """Write the backlash into the column of its verdict."""
         column = _FIRST_HELPER + list(_COLUMNS).index(firm(verdict))
-        self.sheet.write_number(row, column, offer.quantile / ARCMIN, self.book.format("quiet", "arcmin"))
+        self.book.write_figure(self.sheet, row, column, offer.quantile / ARCMIN, "angle", look="quiet")
 
     def write_helpers(self) -> None:
         """Write what the columns beside the page are."""
@@ -147,7 +148,7 @@ class FrontTable:
         first = self.top + 1 + start
         for row, place in enumerate(places, start=first):
             self.sheet.write_number(row, column, self.figure(figure, place), number)
-            self.sheet.write_number(row, column + 1, self.offers[place].quantile / ARCMIN, number)
+            self.sheet.write_number(row, column + 1, self.book.angles.of_radians(self.offers[place].quantile), number)
         last, name = first + len(places) - 1, self.sheet.name
         return {
             "categories": [name, first, column, last, column],

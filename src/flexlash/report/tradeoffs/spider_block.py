@@ -14,7 +14,6 @@ from flexlash.report.report_data import Drawn
 from flexlash.report.wording.chart_words import largest_of
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.limit_verdict import VerdictBounds
-from flexlash.schema.number_words import angle_words
 from flexlash.schema.units import ARCMIN
 
 __all__ = ["SPIDER_ROWS", "SpiderBlock"]
@@ -78,7 +77,8 @@ class SpiderBlock:
     def write(self, last_column: int) -> None:
         """Write title, chart and tables."""
         nominal, limit = self.variant.row["backlash_arcmin"], self.variant.row["backlash_limit_arcmin"]
-        told = f"nominal {angle_words(nominal)}" + ("" if limit is None else f", limit {limit:g}′")
+        angles = self.book.angles
+        told = f"nominal {angles.words(nominal)}" + ("" if limit is None else f", limit {angles.entered(limit)}")
         if len(self._near) < len(self.limits):
             told += ", too far off to be drawn"
         title = f"Each dimension of “{self.label}” alone: {told}"

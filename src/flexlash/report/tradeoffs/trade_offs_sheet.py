@@ -14,7 +14,7 @@ from flexlash.report.tradeoffs.front_chart import front_chart
 from flexlash.report.tradeoffs.front_table import WIDTHS, Figure, FrontTable
 from flexlash.report.tradeoffs.spider_block import SPIDER_ROWS, SpiderBlock
 from flexlash.report.wording.labels import distinct_labels
-from flexlash.schema.units import ARCMIN
+from flexlash.schema.angle_unit import AngleUnit
 
 __all__ = ["SHEET", "write_trade_offs"]
 
@@ -66,19 +66,19 @@ def write_trade_offs(book: Book, outcome: Outcome, drawn: Sequence[Drawn]) -> No
     table.write_helpers()
     for place, figure in enumerate(figures if charted else ()):
         text = f"{table.percentile} of the backlash of each variant over its {figure}, with the front: "
-        text += _ends(offers, figure)
+        text += _ends(offers, figure, book.angles)
         size = _WHOLE if len(figures) == 1 else _HALF, _HEIGHT
         book.insert(sheet, _FIRST_CHART, _RIGHT * place, front_chart(book, table, figure), size=size, text=text)
     last = _write_spiders(table, spiders)
     sheet.print_area(0, 0, last, len(WIDTHS) - 1)
 
 
-def _ends(offers: Sequence[TradeOff], figure: Figure) -> str:
+def _ends(offers: Sequence[TradeOff], figure: Figure, unit: AngleUnit) -> str:
     """Return between which numbers the variants lie, of the percentile and of a figure."""
     numbers = [value for value in (getattr(offer, figure) for offer in offers) if value is not None]
-    angles = [offer.quantile / ARCMIN for offer in offers]
-    unit = " kg" if figure == "mass" else ""
-    return f"{min(angles):.4g} to {max(angles):.4g}′, {min(numbers):.4g} to {max(numbers):.4g}{unit}"
+    angles = [unit.of_radians(offer.quantile) for offer in offers]
+    behind = " kg" if figure == "mass" else ""
+    return f"{min(angles):.4g} to {max(angles):.4g}{unit.sign}, {min(numbers):.4g} to {max(numbers):.4g}{behind}"
 
 
 _FIGURES: tuple[Figure, ...] = ("mass", "cost")

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from flexlash.report.layout.styles import decimals_of
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.number_words import glance, rounded
 
 __all__ = ["distance", "distance_format", "distance_words"]
@@ -22,33 +23,34 @@ def distance(row: dict[str, Any], key: str) -> float:
     return float(row[f"{key}_arcmin"] - row["backlash_limit_arcmin"])
 
 
-def distance_words(row: dict[str, Any], key: str) -> str:
+def distance_words(row: dict[str, Any], key: str, angles: AngleUnit) -> str:
     """Return how far a percentile is from its limit, in words.
 
+    >>> from flexlash.schema.angle_unit import ARC_MINUTES
     >>> distance_words({"p97_5_arcmin": 6.262, "p97_5_standard_error_arcmin": 1e-6, "backlash_limit_arcmin": 3.8},
-    ...                "p97_5")
+    ...                "p97_5", ARC_MINUTES)
     '2.462′ over'
     """
-    off = distance(row, key)
+    off = angles.of(distance(row, key))
     if off == 0:
         return "right at"
-    least = _decade(_step(row, key))
+    least = _decade(_step(row, key, angles))
     words = rounded(abs(off), least)
     side = "over" if off > 0 else "under"
-    return f"{words}′ {side}" if float(words) else f"less than {rounded(least, least)}′ {side}"
+    return f"{words}{angles.sign} {side}" if float(words) else f"less than {rounded(least, least)}{angles.sign} {side}"
 
 
-def distance_format(row: dict[str, Any], key: str) -> str:
+def distance_format(row: dict[str, Any], key: str, angles: AngleUnit) -> str:
     """Return the number format that shows a distance with its sign and in the digits of the words."""
-    places = decimals_of(_step(row, key), "plain")
+    places = decimals_of(_step(row, key, angles), "plain")
     return f"+{places};-{places};{places}"
 
 
-def _step(row: dict[str, Any], key: str) -> float:
-    """Return the least difference that is told: two digits or as fine as the percentile, no finer than is known."""
-    value, off = row[f"{key}_arcmin"], abs(distance(row, key))
+def _step(row: dict[str, Any], key: str, angles: AngleUnit) -> float:
+    """Return the least difference told, in a unit: two digits or as fine as the percentile, no finer than is known."""
+    value, off = angles.of(row[f"{key}_arcmin"]), angles.of(abs(distance(row, key)))
     fine = min(glance(value), _decade(off) * 10.0 ** (1 - _DIGITS) if off else math.inf)
-    return float(max(row[f"{key}_standard_error_arcmin"] or 0.0, fine, value * _FINEST))
+    return float(max(angles.of(row[f"{key}_standard_error_arcmin"] or 0.0), fine, value * _FINEST))
 
 
 def _decade(value: float) -> float:

@@ -10,8 +10,8 @@ from flexlash.analysis.drive_budget import budget_of, drive_shares
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_summary import are, counted, grouped
 from flexlash.report.wording.summary_facts import Row, SummaryFacts, first_rows
-from flexlash.schema.findings import shown, spelled_out
-from flexlash.schema.number_words import INTERVAL, angle_words, share_words
+from flexlash.schema.findings import shown
+from flexlash.schema.number_words import INTERVAL, share_words
 from flexlash.schema.units import ARCMIN
 
 __all__ = ["DRIVE", "drives_over_limit", "whole_drive", "whole_drive_of"]
@@ -45,14 +45,15 @@ def whole_drive_of(facts: SummaryFacts, row: Row, whose: str = "") -> Iterator[s
     parts = _parts(facts.outcome, row)
     if not parts:
         return
-    mean, most = (spelled_out(row[f"system_{key}_arcmin"], _DIGITS) for key in ("mean", "worst_case_high"))
-    made = f"make {mean}′ on average and at most {most}′"
+    angles = facts.angles
+    mean, most = (angles.spelled_out(row[f"system_{key}_arcmin"], _DIGITS) for key in ("mean", "worst_case_high"))
+    made = f"make {mean} on average and at most {most}"
     yield f"The entered sources and the wind-up{whose} {made}: {parts} of the average."
-    high = angle_words(row["system_p99_865_arcmin"], row["system_p99_865_standard_error_arcmin"])
+    high = angles.words(row["system_p99_865_arcmin"], row["system_p99_865_standard_error_arcmin"])
     limit = row["system_limit_arcmin"]
     judged = "no system limit is given"
     if limit is not None:
-        judged = f"over the system limit of {limit:g}′: {drives_over_limit(row)}"
+        judged = f"over the system limit of {angles.entered(limit)}: {drives_over_limit(row)}"
     yield f"99.865 % of such drives stay below {high}; {judged}."
 
 

@@ -21,7 +21,6 @@ from flexlash.report.wording.lever_words import (
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts
 from flexlash.schema.columns import DIMENSIONS
 from flexlash.schema.findings import shown, spelled_out
-from flexlash.schema.number_words import angle_words
 
 __all__ = [
     "CHANGE",
@@ -141,7 +140,7 @@ def _cheapest(facts: SummaryFacts, lever: Lever) -> str:
     """Return the cheapest change with what it brings and what it does besides."""
     row = _row(facts, lever["variant"])
     effects = [
-        f"{within_words(lever['probability_over_limit_after'])} of units are then within {_limit(row)}",
+        f"{within_words(lever['probability_over_limit_after'])} of units are then within {_limit(facts, row)}",
         *_effects(facts, row, lever),
     ]
     note = f" Note: {lever['range_note']}." if lever["range_note"] else ""
@@ -192,12 +191,12 @@ def _stuck(facts: SummaryFacts, variant: str) -> str:
     row = _row(facts, variant)
     own = facts.levers.filter(pl.col("variant") == variant)
     outside = own.filter((pl.col("possible") == "yes") & (pl.col("what") != "material")).head(1)
-    start = f"No single change can bring {facts.named(variant)} within {_limit(row)}"
+    start = f"No single change can bring {facts.named(variant)} within {_limit(facts, row)}"
     if outside.height:
         lever = outside.row(0, named=True)
         return f"{start} and stay in range: {change_words(lever)} would, but {lever['range_note']}."
     reasons = own.filter(pl.col("what") == "nominal")["reason"].drop_nulls().unique(maintain_order=True).to_list()
-    median = angle_words(row["p50_arcmin"], row["p50_standard_error_arcmin"])
+    median = facts.angles.words(row["p50_arcmin"], row["p50_standard_error_arcmin"])
     why = f": {reasons[0]}" if len(reasons) == 1 else f", half of its units being over {median}; Levers says why"
     return f"{start}{why}."
 
@@ -213,7 +212,7 @@ def _relaxed(facts: SummaryFacts, row: Row, lever: Lever, shares: Mapping[str, f
     """Return how far a tolerance may be relaxed, and whether it buys anything as it is."""
     name, unit = facts.named(lever["variant"]), shown_unit(lever)
     now, then = f"± {_told(lever, 'from_value')}{unit}", f"± {_told(lever, 'drawing_value')}{unit}"
-    kept = f"{facts.outcome.settings.target_percent:.10g} % within {_limit(row)}"
+    kept = f"{facts.outcome.settings.target_percent:.10g} % within {_limit(facts, row)}"
     of_material = sum(share for cause, share in shares.items() if DIMENSIONS[cause].sheet == "Materials")
     why = f"; {min(100 * of_material, 100):.1f} % of the spread comes from the material" if of_material >= _MOST else ""
     what = lever_name(lever)
@@ -242,8 +241,8 @@ def _row(facts: SummaryFacts, variant: str) -> Row:
     return facts.ranked.row(by_predicate=pl.col("variant") == variant, named=True)
 
 
-def _limit(row: Row) -> str:
-    return f"{row['backlash_limit_arcmin']:g}′"
+def _limit(facts: SummaryFacts, row: Row) -> str:
+    return facts.angles.entered(row["backlash_limit_arcmin"])
 
 
 def _told(lever: Lever, key: str) -> str:

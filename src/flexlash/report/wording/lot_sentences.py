@@ -60,7 +60,9 @@ def lots_of(facts: SummaryFacts, row: Row) -> Iterator[str]:
 
 def _scatter(facts: SummaryFacts, row: Row) -> Iterator[str]:
     """Yield how far the parts of a lot and the lots scatter, and how many lots fail."""
-    within, between = (reach_words(row[f"{name}_arcmin"]) for name in ("within_lot_sd", "between_lots_sd"))
+    within, between = (
+        reach_words(row[f"{name}_arcmin"], facts.angles) for name in ("within_lot_sd", "between_lots_sd")
+    )
     ppm = _acceptable(facts)
     has_limit = row["lots_failing"] is not None
     if not scatters_between_lots(row):

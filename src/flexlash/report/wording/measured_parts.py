@@ -13,7 +13,7 @@ from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, firs
 from flexlash.report.wording.verdict import firm, verdict_word
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.limit_verdict import VERDICTS, VerdictBounds
-from flexlash.schema.number_words import angle_words, brief_share, range_words
+from flexlash.schema.number_words import brief_share, range_words
 
 __all__ = ["PARTS", "how_left_open", "left_open_by", "left_open_words", "measured_parts"]
 
@@ -94,8 +94,8 @@ def _interval(facts: SummaryFacts, row: Row) -> str:
     """Return what is computed of a row and what its measured parts leave open of that."""
     parts = _parts(facts, row)
     if row["backlash_limit_arcmin"] is None:
-        tail = angle_words(row["p99_865_arcmin"], row["p99_865_standard_error_arcmin"])
-        low, high = (angle_words(row[f"p99_865_sample_{end}_arcmin"]) for end in ("low", "high"))
+        tail = facts.angles.words(row["p99_865_arcmin"], row["p99_865_standard_error_arcmin"])
+        low, high = (facts.angles.words(row[f"p99_865_sample_{end}_arcmin"]) for end in ("low", "high"))
         return f"99.865 % of units stay below {tail} by calculation; {parts} leave open {low} to {high} (95 %)"
     told, wide = brief_share(row), left_open_words(row)
     if wide == told:

@@ -31,7 +31,7 @@ from flexlash.report.wording.verdict_sentences import WORST_CASE, extremes_of_wo
 from flexlash.report.wording.wave_generator import bending, two_lobes
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import CATALOGUE, spelled_out
-from flexlash.schema.number_words import INTERVAL, angle_words
+from flexlash.schema.number_words import INTERVAL
 from flexlash.tolerance.spread_statistics import SpreadStatistics
 
 __all__ = ["FINDINGS", "cause_of", "sentences"]
@@ -182,7 +182,7 @@ def _classical(facts: SummaryFacts) -> Iterator[str]:
         return
     (worst,) = first_rows(with_disk, 1)
     classical, own = worst["cylinder_only_backlash_arcmin"], worst["backlash_arcmin"]
-    said, meant = angle_words(classical), angle_words(own)
+    said, meant = facts.angles.words(classical), facts.angles.words(own)
     yield (
         f"The classical formula, without the disk, would have given {said} for {facts.named(worst['variant'])} "
         f"instead of {meant}: {_off(classical / own)}."

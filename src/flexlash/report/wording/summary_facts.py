@@ -18,6 +18,7 @@ from flexlash.report.extent import Extent, extent_of
 from flexlash.report.report_data import DRAWN, ROW, ranked
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.lever_words import hats_of, shown_levers
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.entry_words import dimension_words
 from flexlash.schema.findings import shown
 from flexlash.schema.limit_verdict import VERDICTS, VerdictBounds
@@ -55,6 +56,11 @@ class SummaryFacts:
     def bounds(self) -> VerdictBounds:
         """Which share of units over the limit each verdict allows."""
         return self.outcome.settings.verdict_bounds
+
+    @property
+    def angles(self) -> AngleUnit:
+        """The unit in which angles are told."""
+        return self.outcome.settings.angles
 
     @cached_property
     def worst(self) -> Row | None:

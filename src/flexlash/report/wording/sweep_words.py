@@ -7,9 +7,9 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 
 from flexlash.decisions.allowed_spans import AllowedSpan, allowed_spans, computed_values
 from flexlash.decisions.sweep import Study, percentile_key, sweep_levels
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.columns import columns_of
 from flexlash.schema.entry_words import inner_name
-from flexlash.schema.findings import spelled_out
 from flexlash.schema.limit_verdict import VerdictBounds
 
 __all__ = [
@@ -68,24 +68,24 @@ def shown_level(target: float) -> float:
     return target if percentile_key(target) else _CAPABLE
 
 
-def study_sentences(study: Study, target: float) -> list[str]:
+def study_sentences(study: Study, target: float, angles: AngleUnit) -> list[str]:
     """Return what a study shows: what is allowed, where levels cross, the course, what is missing.
 
     Of two dimensions it is how the table is to be read.
     """
     if study.second is not None:
-        return [_table_sentence(study, target), *missing(study)]
-    sentences = [allowed_sentence(study, target), _crossing_sentence(study, target), *_course(study), *missing(study)]
-    return [sentence for sentence in sentences if sentence]
+        return [_table_sentence(study, target, angles), *missing(study)]
+    allowed, crossed = allowed_sentence(study, target, angles), _crossing_sentence(study, target, angles)
+    return [sentence for sentence in (allowed, crossed, *_course(study, angles), *missing(study)) if sentence]
 
 
-def told_sentences(study: Study, target: float) -> list[str]:
+def told_sentences(study: Study, target: float, angles: AngleUnit) -> list[str]:
     """Return what a screen says of a study, which has no table: of two dimensions what is allowed beside each value."""
     if study.second is None or study.limit is None:
-        return study_sentences(study, target) if study.second is None else list(missing(study))
+        return study_sentences(study, target, angles) if study.second is None else list(missing(study))
     first, second = (columns_of("Variants")[key] for key in study.keys)
     values = list(dict.fromkeys(study.second.values))
-    lines = [f"{_capital(inner_name(first))} with {target:.10g} % of units within {_limit(study)}, beside"]
+    lines = [f"{_capital(inner_name(first))} with {target:.10g} % of units within {_limit(study, angles)}, beside"]
     for value in values[:_SHOWN]:
         words = allowed_words(study, target, value)
         lines.append(f"{inner_name(second)} {value:.10g}{second.unit_behind}: {words}")
@@ -94,9 +94,10 @@ def told_sentences(study: Study, target: float) -> list[str]:
     return [*lines, *missing(study)]
 
 
-def summary_sentence(studies: Sequence[Study], target: float) -> str:
+def summary_sentence(studies: Sequence[Study], target: float, angles: AngleUnit) -> str:
     """Return what the first studies allow, and how many there are beside them; an empty text without a study."""
-    told = [(study, sentence) for study in studies if (sentence := allowed_sentence(study, target))][:_SUMMARISED]
+    allowed = [(study, allowed_sentence(study, target, angles)) for study in studies]
+    told = [(study, sentence) for study, sentence in allowed if sentence][:_SUMMARISED]
     sentences = [f"{study.variant}: {sentence}" for study, sentence in told]
     if more := len(studies) - len(told):
         others = " more" if told else ""
@@ -104,7 +105,7 @@ def summary_sentence(studies: Sequence[Study], target: float) -> str:
     return " ".join(sentences)
 
 
-def allowed_sentence(study: Study, target: float) -> str:
+def allowed_sentence(study: Study, target: float, angles: AngleUnit) -> str:
     """Return how far the first dimension may go with the target share of units within the limit.
 
     An empty text without a limit or a computed point, and for two dimensions.
@@ -117,14 +118,14 @@ def allowed_sentence(study: Study, target: float) -> str:
     swept = _range(study.first.key, values)
     if len(values) == 1:
         few = "" if spans else "fewer than "
-        return f"With {swept.replace(' of ', ' ')}, {few}{share} are within {_limit(study)}."
+        return f"With {swept.replace(' of ', ' ')}, {few}{share} are within {_limit(study, angles)}."
     if not spans:
-        return f"No computed {swept} keeps {share} within {_limit(study)}."
+        return f"No computed {swept} keeps {share} within {_limit(study, angles)}."
     if spans == [AllowedSpan(low=values[0], high=values[-1])]:
-        return f"Every computed {swept} keeps {share} within {_limit(study)}."
+        return f"Every computed {swept} keeps {share} within {_limit(study, angles)}."
     verb = _verb(study, spans, values)
     unit = columns_of("Variants")[study.first.key].unit_behind
-    return f"{_capital(name)} {verb}{unit} for {share} within {_limit(study)}."
+    return f"{_capital(name)} {verb}{unit} for {share} within {_limit(study, angles)}."
 
 
 def _verb(study: Study, spans: Sequence[AllowedSpan], values: Sequence[float]) -> str:
@@ -180,7 +181,7 @@ def _span(one: AllowedSpan, between: str) -> str:
     return f"{value_words(one.low, ROUND_CEILING)}{between}{value_words(one.high, ROUND_FLOOR)}"
 
 
-def _crossing_sentence(study: Study, target: float) -> str:
+def _crossing_sentence(study: Study, target: float, angles: AngleUnit) -> str:
     """Return at which values each level is just the limit."""
     if study.limit is None:
         return ""
@@ -195,13 +196,15 @@ def _crossing_sentence(study: Study, target: float) -> str:
             never.append(name)
     if not crossed:
         return (
-            f"No crossing of {_limit(study)} was found between the computed points." if computed_values(study) else ""
+            f"No crossing of {_limit(study, angles)} was found between the computed points."
+            if computed_values(study)
+            else ""
         )
     nor = f"; {', '.join(never)} not" if never else ""
-    return f"{_limit(study)} is crossed by {', '.join(crossed)}{nor}."
+    return f"{_limit(study, angles)} is crossed by {', '.join(crossed)}{nor}."
 
 
-def _table_sentence(study: Study, target: float) -> str:
+def _table_sentence(study: Study, target: float, angles: AngleUnit) -> str:
     """Return which number a table of two dimensions holds, and what its colours and borders say."""
     level, second = shown_level(target), columns_of("Variants")[study.second.key if study.second else ""]
     what = f"Each cell is {level_title(level)}, the backlash that {level:.10g} % of units stay below"
@@ -210,13 +213,13 @@ def _table_sentence(study: Study, target: float) -> str:
     bounds = VerdictBounds.of(target)
     marginal = f"; amber, marginal: at least {100 - 100 * bounds.marginal:.10g} %" if bounds.any_marginal else ""
     return (
-        f"{what}. Green, meets: at least {target:.10g} % of units are within {_limit(study)}{marginal}; red, fails: "
-        f"fewer. The thick line is the contour of green. Below stands, for each {inner_name(second)}, which "
+        f"{what}. Green, meets: at least {target:.10g} % of units are within {_limit(study, angles)}{marginal}; red, "
+        f"fails: fewer. The thick line is the contour of green. Below stands, for each {inner_name(second)}, which "
         f"{inner_name(columns_of('Variants')[study.first.key])} keeps each level within the limit."
     )
 
 
-def _course(study: Study) -> Iterator[str]:
+def _course(study: Study, angles: AngleUnit) -> Iterator[str]:
     """Yield how nominal backlash and disk share run from the first computed value to the last."""
     rows = study.results.filter(study.results["backlash_arcmin"].is_not_null())
     if rows.height < 2:  # noqa: PLR2004
@@ -224,10 +227,10 @@ def _course(study: Study) -> Iterator[str]:
     first, last = rows.row(0, named=True), rows.row(-1, named=True)
     unit = columns_of("Variants")[study.first.key].unit_behind
     ends = f"From {first[study.first.key]:.10g} to {last[study.first.key]:.10g}{unit}"
-    angles = [f"{row['backlash_arcmin']:.3f}′" for row in (first, last)]
+    nominal = [f"{angles.of(row['backlash_arcmin']):.{3 - angles.fewer}f}{angles.sign}" for row in (first, last)]
     shares = [f"{100 * row['disk_share']:.1f} %" for row in (first, last) if row["disk_share"] is not None]
     disk = f", the disk's share of it from {shares[0]} to {shares[1]}" if shares[0] != shares[-1] else ""
-    yield f"{ends} the nominal backlash goes from {angles[0]} to {angles[1]}{disk}."
+    yield f"{ends} the nominal backlash goes from {nominal[0]} to {nominal[1]}{disk}."
 
 
 def missing(study: Study) -> Iterator[str]:
@@ -239,8 +242,8 @@ def missing(study: Study) -> Iterator[str]:
         yield f"{faulty.height:,} of {study.results.height:,} {what} not computed: {why}"
 
 
-def _limit(study: Study) -> str:
-    return f"{spelled_out(study.limit or 0.0, 6)}′"
+def _limit(study: Study, angles: AngleUnit) -> str:
+    return angles.spelled_out(study.limit or 0.0, 6)
 
 
 def _range(key: str, values: Sequence[float]) -> str:

@@ -20,7 +20,7 @@ from flexlash.report.wording.verdict import (
     verdict_word,
 )
 from flexlash.schema.limit_verdict import VERDICTS, Verdict
-from flexlash.schema.number_words import angle_words, brief_share, share_words
+from flexlash.schema.number_words import brief_share, share_words
 
 WORST_CASE = "Worst case"
 """The topic of what the tolerances allow at worst, whatever the calculation's own error is."""
@@ -41,7 +41,8 @@ def failing(facts: SummaryFacts) -> Iterator[str]:
     if not (judged := counts.total() - counts[NO_VERDICT]):
         greatest = ", the greatest backlash of all" if facts.extent.total > 1 else ""
         yield "No limit was given, so nothing is judged."
-        yield f"97.5 % of the units of {facts.named(worst['variant'])} stay below {_tail(worst, 'p97_5')}{greatest}."
+        tail = _tail(facts, worst, "p97_5")
+        yield f"97.5 % of the units of {facts.named(worst['variant'])} stay below {tail}{greatest}."
         return
     with_limit, doubts = counted(judged, "variant"), {verdict: counts[f"{verdict}{UNSETTLED}"] for verdict in VERDICTS}
     numbers = {verdict: counts[verdict] + doubts[verdict] for verdict in VERDICTS}
@@ -86,10 +87,10 @@ def extremes_of_worst(facts: SummaryFacts) -> Iterator[str]:
         return
     yield from extremes(facts, row)
     if row["first_order_sd_arcmin"] is not None:
-        high = angle_words(row["mean_arcmin"] + 3 * row["first_order_sd_arcmin"])
+        high = facts.angles.words(row["mean_arcmin"] + 3 * row["first_order_sd_arcmin"])
         yield (
             f"Mean + 3 first-order standard deviations (RSS) give {high}; by Monte Carlo 99.865 % of units stay below "
-            f"{_tail(row, 'p99_865')}, from a nominal {angle_words(row['backlash_arcmin'])}."
+            f"{_tail(facts, row, 'p99_865')}, from a nominal {facts.angles.words(row['backlash_arcmin'])}."
         )
 
 
@@ -97,21 +98,21 @@ def extremes(facts: SummaryFacts, row: Row) -> Iterator[str]:
     """Yield between which bounds the backlash of a variant lies whatever the parts are, where it scatters."""
     low, high = row["worst_case_low_arcmin"], row["worst_case_high_arcmin"]
     if low < high:
-        low, high = angle_words(low), angle_words(high)
+        low, high = facts.angles.words(low), facts.angles.words(high)
         name = facts.named(row["variant"])
         yield f"With every dimension at its worst limits the backlash of {name} lies between {low} and {high}."
 
 
 def judged(facts: SummaryFacts, row: Row) -> Iterator[str]:
     """Yield of one variant how far its percentiles are from its limit, its verdict, and the share over the limit."""
-    tails = {words: _tail(row, key) for key, words in _PERCENTILES.items()}
+    tails = {words: _tail(facts, row, key) for key, words in _PERCENTILES.items()}
     (first, low), (second, high) = tails.items()
     if row["backlash_limit_arcmin"] is None:
         yield f"{first} of its units stay below {low}, {second} below {high}."
         yield "No limit was given, so nothing is judged."
         return
-    near, far = (distance_words(row, key) for key in _PERCENTILES)
-    limit, verdict = f"{row['backlash_limit_arcmin']:g}′", verdict_word(row, facts.bounds)
+    near, far = (distance_words(row, key, facts.angles) for key in _PERCENTILES)
+    limit, verdict = facts.angles.entered(row["backlash_limit_arcmin"]), verdict_word(row, facts.bounds)
     yield f"{first} of its units stay below {low}, {near} its limit of {limit}; {second} below {high}, {far} it."
     doubt = " (not settled)" if verdict.endswith(UNSETTLED) else ""
     yield f"{_VERDICTS[firm(verdict)]}{doubt}: {verdict_rules(facts.bounds)[firm(verdict)]}."
@@ -153,19 +154,19 @@ def _unsettled(facts: SummaryFacts) -> Iterator[str]:
     )
 
 
-def _tail(row: Row, key: str) -> str:
+def _tail(facts: SummaryFacts, row: Row, key: str) -> str:
     """Return a percentile in words, with no more digits than are known or needed."""
-    return angle_words(row[f"{key}_arcmin"], row[f"{key}_standard_error_arcmin"])
+    return facts.angles.words(row[f"{key}_arcmin"], row[f"{key}_standard_error_arcmin"])
 
 
 def _excess(facts: SummaryFacts, row: Row, *, first: bool) -> str:
     """Return a variant with the percentile that its verdict hangs on and its distance from the limit."""
     fails = facts.bounds.verdict(row["probability_over_limit"]) == "fails"
-    name, limit = facts.named(row["variant"]), f"{row['backlash_limit_arcmin']:g}′"
+    name, limit = facts.named(row["variant"]), facts.angles.entered(row["backlash_limit_arcmin"])
     if not fails and facts.bounds.target_words != _PERCENTILES["p99_865"]:
         return f"{name} (units over its limit of {limit}: {brief_share(row)})"
     key = "p97_5" if fails else "p99_865"
-    tail, off = _tail(row, key), distance_words(row, key)
+    tail, off = _tail(facts, row, key), distance_words(row, key, facts.angles)
     if first:
         return f"{name} ({_PERCENTILES[key]} of its units stay below {tail}, {off} its limit of {limit})"
     return f"{name} ({tail}, {off} {limit})"

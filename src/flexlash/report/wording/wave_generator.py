@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import polars as pl
 
 from flexlash.report.wording.summary_facts import Row, SummaryFacts, first_rows
+from flexlash.schema.angle_unit import AngleUnit
 from flexlash.schema.findings import spelled_out
 
 __all__ = ["BENDING", "TWO_LOBES", "bending", "bending_of", "two_lobes", "two_lobes_of"]
@@ -42,14 +43,14 @@ def two_lobes(facts: SummaryFacts) -> Iterator[str]:
     if "two_lobe_low_arcmin" in facts.ranked.columns:
         bounded = facts.ranked.filter(pl.col("two_lobe_low_arcmin").is_not_null())
         for row in first_rows(bounded, 1):
-            yield from two_lobes_of(row, f" for {facts.named(row['variant'])}")
+            yield from two_lobes_of(row, facts.angles, f" for {facts.named(row['variant'])}")
 
 
-def two_lobes_of(row: Row, whose: str = "") -> Iterator[str]:
+def two_lobes_of(row: Row, angles: AngleUnit, whose: str = "") -> Iterator[str]:
     """Yield the bounds of a variant under two lobes, nothing where it has none."""
     if row.get("two_lobe_low_arcmin") is not None:
-        low, high = (spelled_out(row[f"two_lobe_{end}_arcmin"], _DIGITS) for end in ("low", "high"))
+        low, high = (angles.spelled_out(row[f"two_lobe_{end}_arcmin"], _DIGITS) for end in ("low", "high"))
         yield (
-            f"Two lobes on a rigid, tight wave generator: {low}′ to {high}′{whose}; "
+            f"Two lobes on a rigid, tight wave generator: {low} to {high}{whose}; "
             "the wave generator's fit is not included."
         )

@@ -9,7 +9,8 @@ from typing import Any, Literal
 from markupsafe import Markup
 
 from flexlash.report.page.shape import Card, PageFacts, Tile
-from flexlash.report.pictures.chart import UNIT, Spread, spread_chart
+from flexlash.report.pictures.chart import Spread, spread_chart
+from flexlash.schema.angle_unit import ANGLE_UNITS
 from flexlash.schema.number_words import grouped
 from flexlash.service.records import StoredFile, StoredSubmission
 from flexlash.service.web.offers import Download, offered
@@ -222,9 +223,10 @@ def _charts(facts: PageFacts | None) -> Sequence[Markup]:
                verdict=one["verdict"])
         for one in chart["variants"]
     ]  # fmt: skip
+    sign = ANGLE_UNITS[chart["unit"]].sign
     first, others = spreads[:_DRAWN], spreads[_DRAWN:]
-    charts = [spread_chart("spread", first, UNIT, of=chart["of"], beside=others)]
-    charts += [spread_chart("spread-others", others, UNIT, beside=first)] if others else []
+    charts = [spread_chart("spread", first, sign, of=chart["of"], beside=others)]
+    charts += [spread_chart("spread-others", others, sign, beside=first)] if others else []
     return [Markup(picture.inline()) for picture in charts]  # noqa: S704
 
 
