@@ -129,11 +129,12 @@ def test_settings_and_system_limit_are_told(between):
     """The target, the mean shift factor and the system's limit are compared like every other entry."""
     new = drive(
         variants=[CASE_3 | {"system_limit_arcmin": 6.0}, CYLINDER],
-        settings={"target_percent": 97.5, "mean_shift_factor": 0.2},
+        settings={"target_percent": 97.5, "mean_shift_factor": 0.2, "angle_unit": "arcsec"},
     )
     lines = between(drive(), new)
     assert f"Settings, target_percent: 99.865 → 97.5 %, {BOTH}" in lines
     assert f"Settings, mean_shift_factor: 0.3 → 0.2, {BOTH}" in lines
+    assert f"Settings, angle_unit: arcmin → arcsec, {BOTH}" in lines
     assert "    System backlash limit: 5.5 → 6 arcmin (+9.09 %)" in lines
 
 

@@ -125,7 +125,7 @@ def test_version_one_gains_its_columns_and_keeps_its_meaning(tmp_path):
     _assert_same(old, new)
     assert (upgrade.version, upgrade.rows, upgrade.remarks) == (1, 3, (FORMATS,))
     assert [cell.value for cell in _cells(new)[4]][: len(VARIANTS)] == [column.label for column in VARIANTS]
-    settings_ = {row[0].value: row[1].value for row in _cells(new, "Settings")["A5:B14"]}
+    settings_ = {row[0].value: row[1].value for row in _cells(new, "Settings")["A5:B15"]}
     assert settings_ == {column.key: column.default for column in SETTINGS} | {
         "seed": 7,
         "coverage_percent": 90,
