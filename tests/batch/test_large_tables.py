@@ -186,13 +186,14 @@ def test_the_screen_says_the_same(tmp_path):
 
 
 def test_the_screen_tells_of_lots(tmp_path):
-    """Of a variant over its limit the lots that fail are told as of one piece."""
+    """Of a variant over its limit the lots that fail are told as of one piece, angles in the unit that is asked for."""
     rows = [{**SOUND, "variant": f"v{number}", "backlash_limit_arcmin": 3.7 + number / 100} for number in range(9)]
     path = _written(tmp_path / "gears.csv", rows)
-    answer, _ = _in_chunks(path, tmp_path / "out.csv", 4)
-    expected = answer_of(run(path, **FEW), ran=True)
+    answer, _ = _in_chunks(path, tmp_path / "out.csv", 4, angle_unit="arcsec")
+    expected = answer_of(run(path, **FEW, angle_unit="arcsec"), ran=True)
     assert list(answer.details) == list(expected.details)
     assert "% of lots fail" in answer.details[1]
+    assert "over 222″" in answer.details[1]
 
 
 def test_cross_check_and_tables_beside(tmp_path):

@@ -8,7 +8,7 @@ from flexlash.schema.findings import spelled_out
 from flexlash.schema.number_words import glance, rounded
 from flexlash.schema.units import ARCMIN
 
-__all__ = ["ANGLE_UNITS", "ARC_MINUTES", "AngleUnit"]
+__all__ = ["ANGLE_UNITS", "ARC_MINUTES", "AngleUnit", "angle_sign"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,3 +71,12 @@ class AngleUnit:
 ARC_MINUTES = AngleUnit(name="arcmin", sign="′", per_arcmin=1.0, fewer=0)
 ANGLE_UNITS = {unit.name: unit for unit in (ARC_MINUTES, AngleUnit(name="arcsec", sign="″", per_arcmin=60.0, fewer=2))}
 """Units by the name that the setting `angle_unit` has for them."""
+
+
+def angle_sign(name: str) -> str:
+    """Return the sign behind angles in a unit by name, that of arc minutes for a name of none.
+
+    >>> angle_sign("arcsec"), angle_sign("arcmin"), angle_sign("furlong")
+    ('″', '′', '′')
+    """
+    return ANGLE_UNITS.get(name, ARC_MINUTES).sign

@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from flexlash.report.page.shape import Density, Segment, Share
 from flexlash.report.pictures.chart import Cause, causes_chart, density_chart, shares_chart
 from flexlash.report.pictures.drawing import Picture
-from flexlash.schema.angle_unit import ANGLE_UNITS, ARC_MINUTES
+from flexlash.schema.angle_unit import angle_sign
 
 __all__ = ["variant_charts"]
 
 
 def variant_charts(density: Density, shares: Sequence[Share], segments: Sequence[Segment]) -> dict[str, Picture]:
     """Return the charts of a variant by name: `density`, and `causes` and `segments` where there are any."""
-    sign = ANGLE_UNITS[density.get("unit", ARC_MINUTES.name)].sign
+    sign = angle_sign(density.get("unit", ""))
     charts = {"density": density_chart("density", density, sign)}
     if shares:
         causes = [

@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from flexlash.report.page.shape import Card, PageFacts, Tile
 from flexlash.report.pictures.chart import Spread, spread_chart
-from flexlash.schema.angle_unit import ANGLE_UNITS
+from flexlash.schema.angle_unit import angle_sign
 from flexlash.schema.number_words import grouped
 from flexlash.service.records import StoredFile, StoredSubmission
 from flexlash.service.web.offers import Download, offered
@@ -223,7 +223,7 @@ def _charts(facts: PageFacts | None) -> Sequence[Markup]:
                verdict=one["verdict"])
         for one in chart["variants"]
     ]  # fmt: skip
-    sign = ANGLE_UNITS[chart["unit"]].sign
+    sign = angle_sign(chart["unit"])
     first, others = spreads[:_DRAWN], spreads[_DRAWN:]
     charts = [spread_chart("spread", first, sign, of=chart["of"], beside=others)]
     charts += [spread_chart("spread-others", others, sign, beside=first)] if others else []
