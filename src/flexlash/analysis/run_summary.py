@@ -24,6 +24,7 @@ from flexlash.validation.blocking_errors import Waiting, waiting_rows
 if TYPE_CHECKING:
     import polars as pl
 
+    from flexlash.schema.angle_unit import AngleUnit
     from flexlash.schema.variant import Settings
 
 __all__ = [
@@ -291,7 +292,7 @@ def lines_of_limits(
     """Yield the same of counts and of the worst rows of Results, worst first."""
     judged, bounds = sum(counts[verdict] for verdict in VERDICTS), settings.verdict_bounds
     if not judged:
-        yield from _without_limits(worst)
+        yield from _without_limits(worst, settings.angles)
         return
     most_over, most_marginal = (f"{100 * share:.10g} %" for share in (bounds.meets, bounds.marginal))
     marginal = f"marginal: {counts['marginal']} (at most {most_marginal}); " if bounds.any_marginal else ""
@@ -308,12 +309,12 @@ def lines_of_limits(
         yield f"  {variant}: {units} are over {limit}{lots}{_left_open(row)}."
 
 
-def _without_limits(worst: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+def _without_limits(worst: Iterable[Mapping[str, Any]], angles: AngleUnit) -> Iterator[str]:
     """Yield that nothing is judged, and what the variant with most backlash has."""
     for row in islice(worst, 1):
         yield "No variant has a backlash limit, so there is no verdict. The most backlash:"
-        nominal = angle_words(row["backlash_arcmin"])
-        most = angle_words(row["p97_5_arcmin"], row["p97_5_standard_error_arcmin"])
+        nominal = angles.words(row["backlash_arcmin"])
+        most = angles.words(row["p97_5_arcmin"], row["p97_5_standard_error_arcmin"])
         yield f"  {shown(row['variant'], longest=200)}: nominal {nominal}; 97.5 % of units stay below {most}."
 
 
