@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Outcome", "__version__", "check", "distribution", "fix", "levers", "run", "sweep"]
 
-__version__ = "0.9.0"
+__version__ = "0.10.0"
 
 
 def __getattr__(name: str) -> Any:

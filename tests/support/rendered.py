@@ -45,7 +45,7 @@ def submission(**known):
 def render(name, path="/", **context):
     """Return a page as the service renders it."""
     template = page_templates().env.get_template(f"{name}.html")
-    return template.render(version="0.9.0", path=path, token=path, **context)
+    return template.render(version="0.10.0", path=path, token=path, **context)
 
 
 FILES = {role: StoredFile(role=role, sha256="a" * 64, size=9, name=f"x{ending}") for role, ending in {
