@@ -113,8 +113,8 @@ def test_limit_lines_name_the_worst(table, sound):
     outcome = run(table(rows), method="random", samples=2**12)
     lines = list(limit_lines(outcome))
     assert lines[0] == (
-        "Backlash limit met by 0 of 5 variants with a limit (at most 0.135 % of units over it); marginal: 0 (at most "
-        "2.5 %); not met: 5."
+        "Of 5 variants with a limit 5 fail, 0 are marginal and 0 meet it: 2U at full torque, with at most 0.135 % of "
+        "units over the limit; marginal: at most 2.5 %."
     )
     assert [line.split(":")[0] for line in lines[1:]] == ["  v0", "  v1", "  v2"]
     for line in lines[1:]:

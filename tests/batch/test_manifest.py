@@ -37,7 +37,7 @@ def _ended(outputs, **changed):
         "told": {"submission": "a.xlsx", "counts": {"rows": 3}, "findings": [{"code": "E201", "value": "0,1 “x”"}]},
         "finding_lines": (("error", "error E201"), ("", "    Variants!D7")),
         "words": "2 of 3 rows computed",
-        "details": ("Backlash limit met by 1 of 2",),
+        "details": ("Of 2 variants with a limit 1 fails",),
         "by_rule": {"E201": 1},
         "worst": (WorstVariant(variant="v", p99_865_arcmin=0.1 + 0.2, backlash_limit_arcmin=None,
                                probability_over_limit=None),),

@@ -127,7 +127,10 @@ def test_run_names_the_worst_variants(table, sound, capsys, main_in):
     rows = [{**sound, "variant": f"v{number}", "backlash_limit_arcmin": 3.0 + number / 2} for number in range(4)]
     assert main_in("run", table(rows)) == 0
     out = capsys.readouterr().out
-    assert "Backlash limit met by 2 of 4 variants with a limit (at most 0.135 % of units over it); " in out
+    assert (
+        "Of 4 variants with a limit 2 fail, 0 are marginal and 2 meet it: 2U at full torque, with at most 0.135 %"
+        in out
+    )
     assert "  v0: practically all units are over 3′." in out
     assert "  v1: practically all units are over 3.5′." in out
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import zipfile
 
 import numpy as np
@@ -12,12 +13,14 @@ from libreoffice import convert_all, needs_libreoffice
 from report_entries import error_cells, typed, values_of, without_charts
 from scipy.special import ndtri
 
+from flexlash.analysis.used_tolerances import used_rows
 from flexlash.pipeline import run
 from flexlash.report.explorer.curves_sheet import CURVES_NOTE, stored_curves
 from flexlash.report.explorer.explorer_sheet import write_explorer
 from flexlash.report.extent import extent_of
 from flexlash.report.layout.styles import Book
 from flexlash.report.report_data import drawn_variants
+from flexlash.report.trace.scatter import SCATTER_NOTE, stored_scatter
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.units import ARCMIN
 from flexlash.tolerance.distribution_curves import CURVE_SCORES
@@ -40,9 +43,11 @@ def _explorer_alone(outcome, path):
     """Write the Explorer without charts and its data sheet alone, recalculated sooner than a whole report."""
     drawn = path.with_name(f"drawn {path.name}")
     with xlsxwriter.Workbook(drawn) as workbook:
-        book, curves = Book(workbook), stored_curves(drawn_variants(outcome))
-        write_explorer(book, curves, extent_of(outcome), outcome.settings.verdict_bounds)
+        book, variants = Book(workbook), drawn_variants(outcome)
+        curves, (scatter, _) = stored_curves(variants), stored_scatter([variant.computed for variant in variants])
+        write_explorer(book, (curves, scatter), extent_of(outcome), outcome.settings.verdict_bounds)
         curves.write(book, CURVES_NOTE)
+        scatter.write(book, SCATTER_NOTE)
     return without_charts(drawn, path)
 
 
@@ -53,6 +58,13 @@ def _number(cell):
 
 def _decimals(cell):
     return len(cell.removesuffix(" %").partition(".")[2])
+
+
+def _limits(values):
+    """Return lower and upper limit of each line below the charts."""
+    first = next(int(cell[1:]) for cell, value in values.items() if cell[0] == "A" and value == "Dimension")
+    rows = itertools.takewhile(lambda row: values.get(f"A{row}"), itertools.count(first + 1))
+    return [(pytest.approx(values[f"B{row}"]), pytest.approx(values[f"C{row}"])) for row in rows]
 
 
 def _rows(outcome):
@@ -126,7 +138,9 @@ def test_any_variant_and_any_limit_agree_with_the_program(table, sound, tmp_path
     rows = _five(sound)
     outcome = run(table(rows), tmp_path / "report.xlsx", **given)
     report = _explorer_alone(outcome, tmp_path / "alone.xlsx")
-    curves = {one.row["variant"]: one.curve for one in drawn_variants(outcome)}
+    drawn = drawn_variants(outcome)
+    curves = {one.row["variant"]: one.curve for one in drawn}
+    used = {one.row["variant"]: list(used_rows(one.computed)) for one in drawn}
     asked = [
         (row, float(f"{_at(curves[row['variant']], share):.9g}"))
         for row in rows
@@ -152,6 +166,8 @@ def test_any_variant_and_any_limit_agree_with_the_program(table, sound, tmp_path
         assert _number(values[PPM]) == pytest.approx(program["ppm_over_limit"], rel=0, abs=1e6 * room)
         assert _number(values["F14"]) == pytest.approx(program["ppk"], abs=0.51 * 10.0 ** -_decimals(values["F14"]))
         seen.add((values["F4"], values[VERDICT].removesuffix("?")))
+        assert _limits(values) == [(one["lower"], one["upper"]) for one in used[asked[number][0]["variant"]]]
+        assert values["F18"] == f"{program['von_mises_MPa']:.1f}"
         error = (program["probability_over_limit_high"] - program["probability_over_limit_low"]) / 3.92
         if values[LOW] == values[HIGH] == "–":
             assert error < 1.6 * step
@@ -257,13 +273,14 @@ def test_lots_follow_the_variant_and_its_own_limit(study, tmp_path):
 
 def test_lots_that_are_alike_may_not_be_settled(study, tmp_path):
     """Where it is not known whether lots fail that are all alike, neither none nor all is told."""
-    curves = stored_curves(drawn_variants(study[0])[:1])
+    variants = drawn_variants(study[0])[:1]
+    curves, (scatter, _) = stored_curves(variants), stored_scatter([variants[0].computed])
     for error, words in ((0.4, "not settled"), (0.001, "practically none")):
         curves.rows[0].update({"Lots failing": 0.0, "error of Lots failing": error})
         path = tmp_path / f"{error}.xlsx"
         with xlsxwriter.Workbook(path) as workbook:
             book = Book(workbook)
-            write_explorer(book, curves, extent_of(study[0]), VerdictBounds())
+            write_explorer(book, (curves, scatter), extent_of(study[0]), VerdictBounds())
             curves.write(book, CURVES_NOTE)
         assert values_of(path, "Explorer")[LOTS[2]] == words
 

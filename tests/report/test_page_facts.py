@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 from dataclasses import replace
@@ -34,24 +35,38 @@ def worst(study):
     return ranked(study[0]).to_dicts()
 
 
+def _told_rows(sheet):
+    """Return the rows of the Summary with a topic and its sentence: that above the key figures, and those below."""
+    first = next(row for row in range(1, 20) if sheet.cell(row, 1).value == "What is compared")
+    below = next(row for row in range(1, 20) if sheet.cell(row, 1).value == "Which fail")
+    return [first, *itertools.takewhile(lambda row: sheet.cell(row, 1).value, range(below, 60))]
+
+
 def test_the_sentences_are_those_of_the_summary(facts, study):
     """Topic and sentence of each row of the Summary sheet stand on the page in the same order, on one line each."""
     sheet = opened(study[1])["Summary"]
-    first = next(row for row in range(1, 20) if sheet.cell(row, 1).value == "Computed")
-    count = next(row for row in range(first, 60) if not sheet.cell(row, 1).value) - first
-    said = [(sheet.cell(row, 1).value, sheet.cell(row, 2).value) for row in range(first, first + count)]
+    said = [(sheet.cell(row, 1).value, sheet.cell(row, 2).value) for row in _told_rows(sheet)]
     said = [(topic, " ".join(text.split("\n"))) for topic, text in said]
     assert [(one["topic"], one["text"]) for one in facts["sentences"]] == said
-    assert {one["kind"] for one in facts["sentences"]} >= {"computed", "verdict", "cause", "advice", "findings"}
+    assert {one["kind"] for one in facts["sentences"]} >= {"verdict", "note", "cause", "advice", "findings"}
+
+
+def _distance_words(cell):
+    """Return in words how far the Summary's table shows a percentile over its limit."""
+    decimals = len(cell.number_format.split(";")[0].partition(".")[2])
+    return f"{abs(cell.value):.{decimals}f}′ {'over' if cell.value > 0 else 'under'}"
 
 
 def test_the_table_is_that_of_the_summary(facts, study):
-    """Verdict, angles and main cause of each variant are the Summary's, in its order."""
+    """Verdict, angles, distance, share over the limit and main contributor of each listed variant are the Summary's."""
     sheet = openpyxl.load_workbook(study[1], data_only=True)["Summary"]
     header = next(row for row in range(1, 60) if sheet.cell(row, 1).value == "Variant")
-    for place, told in enumerate(facts["table"][:4], start=header + 1):
-        shown = [sheet.cell(place, column).value for column in (1, 2, 12)]
-        assert shown == [told["variant"], told["light"], told["main_cause"]]
+    listed = list(itertools.takewhile(lambda row: sheet.cell(row, 2).value, range(header + 1, 60)))
+    assert len(listed) >= 3
+    for place, told in zip(listed, facts["table"], strict=False):
+        shown = [sheet.cell(place, column).value for column in (1, 2, 10, 12)]
+        assert shown == [told["variant"], told["light"], told["over_limit"], told["main_cause"]]
+        assert told["distance"] == _distance_words(sheet.cell(place, 7))
         for column, text in ((3, "limit"), (4, "nominal"), (5, "p97_5"), (6, "p99_865")):
             cell = sheet.cell(place, column)
             digits = len(cell.number_format.partition(".")[2])
@@ -164,7 +179,9 @@ def test_a_variant_without_a_limit_is_not_judged(table, sound):
     told = page_facts(outcome, Found.of(outcome, ran=True), ran=True, data=report_data(outcome))
     (row,), (page,) = told["table"], told["variants"]
     assert {row[key] for key in ("verdict", "light", "limit", "distance", "over_limit")} == {""}
-    assert [one["topic"] for one in page["sentences"]] == ["Verdict", "Lots and parts", "Why"]
+    assert [one["topic"] for one in page["sentences"]] == [
+        "Verdict", "Lots and parts", "Why", "Another limit", "Strength",
+    ]  # fmt: skip
     assert "No limit was given" in page["sentences"][0]["text"]
     assert [(tile["number"], tile["words"]) for tile in told["verdict_tiles"]] == [
         ("1", "without a limit"),

@@ -34,11 +34,10 @@ def _check(path):
 
 
 def test_ten_tabs_at_most_and_no_link_to_a_hidden_sheet(study):
-    """The study shows its failing variants, Levers and Submission, whose cells have warnings, and no working sheet."""
+    """The study shows its failing variants, Levers and Trace, and no working sheet."""
     seen = _check(study[1])
     assert seen == [
-        "Summary", "Failing variants", "Results", "Explorer", "Levers", "Contributions", "Findings", "Submission",
-        "About",
+        "Summary", "Failing variants", "Results", "Explorer", "Levers", "Contributions", "Trace", "Findings", "About",
     ]  # fmt: skip
 
 

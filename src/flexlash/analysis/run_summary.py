@@ -295,10 +295,12 @@ def lines_of_limits(
         yield from _without_limits(worst, settings.angles)
         return
     most_over, most_marginal = (f"{100 * share:.10g} %" for share in (bounds.meets, bounds.marginal))
-    marginal = f"marginal: {counts['marginal']} (at most {most_marginal}); " if bounds.any_marginal else ""
+    marginal = f", {counts['marginal']} {are(counts['marginal'])} marginal" if bounds.any_marginal else ""
+    rule = f"; marginal: at most {most_marginal}" if bounds.any_marginal else ""
+    fail, meet = ("fails" if counts["fails"] == 1 else "fail"), ("meets" if counts["meets"] == 1 else "meet")
     yield (
-        f"Backlash limit met by {counts['meets']} of {counted(judged, 'variant')} with a limit (at most {most_over} "
-        f"of units over it); {marginal}not met: {counts['fails']}."
+        f"Of {counted(judged, 'variant')} with a limit {counts['fails']} {fail}{marginal} and {counts['meets']} {meet} "
+        f"it: 2U at full torque, with at most {most_over} of units over the limit{rule}."
     )
     over = [row for row in worst if bounds.misses(row["probability_over_limit"])]
     for row in over[:most]:

@@ -14,6 +14,7 @@ from flexlash.report.layout.styles import Book
 from flexlash.report.results_sheet import AS_SUBMITTED, ERROR_DIGITS, SHARE_DECIMALS
 from flexlash.report.wording.correlation_words import correlation_sentences, first_order_sentence, share_sentence
 from flexlash.report.wording.measured_parts import how_left_open
+from flexlash.report.wording.review_sentences import FINITE_ELEMENTS, TWO_TERMS, WITH_FILLETS_AND_RIM
 from flexlash.report.wording.verdict import NO_VERDICT, verdict_rules
 from flexlash.schema.column import Column
 from flexlash.schema.columns import DIMENSIONS, SETTINGS
@@ -33,9 +34,14 @@ __all__ = [
     "HOW_TO_SHOW",
     "LEFT_OUT",
     "MODEL",
+    "PRESENT",
     "PROOF",
     "SHEETS",
+    "SPREAD",
     "TABS",
+    "TRUST",
+    "VERDICT",
+    "about_places",
     "about_sheet",
     "write_about",
 ]
@@ -121,10 +127,11 @@ MODEL = (
     "A blank disk thickness is the wall thickness and a blank disk radius the mean radius: one dimension, one scatter.",
 )
 PROOF = (
-    "B3-160, published finite elements with fillets and tooth rim: 2U = 3.390′.",
-    "Two-term formula as published: 3.687′; at the true mean radius 80.8 mm: 3.635′, by elasticity 3.636′.",
+    f"B3-160, published finite elements with fillets and tooth rim: 2U = {FINITE_ELEMENTS:.3f}′.",
+    f"Two-term formula as published: {TWO_TERMS:.3f}′; at the true mean radius 80.8 mm: 3.635′, by elasticity 3.636′.",
     "With its fillets R 3.5 mm: meridian integral 3.537′, elasticity 3.537′.",
-    "With a tooth rim of 20 mm × 3.2 mm too: meridian integral 3.405′, elasticity 3.411′; of 30 mm: 3.339′ and 3.345′.",
+    f"With a tooth rim of 20 mm × 3.2 mm too: meridian integral {WITH_FILLETS_AND_RIM:.3f}′, elasticity 3.411′; of "
+    "30 mm: 3.339′ and 3.345′.",
     "So the gap to finite elements is mean radius 1.4 %, fillets 3 %, tooth rim 4 to 6 % (its size is not published).",
     "Against an independent finite-element program usual cups and hats of 1 to 3 % wall were within 1.3 % of the "
     "meridian integral; short thick hats with a rim, cones and strongly thinning disks up to 3 %. The option "
@@ -298,6 +305,12 @@ def _result_columns(outcome: Outcome) -> tuple[Column, ...]:
     return tuple(column for column in every if column.key in outcome.results.columns)
 
 
+PRESENT, SPREAD, TRUST, VERDICT = "Sheets", "Spread", "How good the formula is", "Verdict"
+"""Titles of sections to which other sheets lead."""
+
+_FIRST_ROW, _BETWEEN = 2, 2
+"""Row of the first title, and rows between the end of a section and the next title, counted from 0."""
+
 _LINES = (30, 88, 114)
 """Widths of both columns, and how many characters fit on a line across both."""
 
@@ -313,31 +326,45 @@ def write_about(book: Book, sheet: Any, outcome: Outcome, later: Sequence[str] =
     sheet.set_column(1, 1, _LINES[1])
     sheet.write_string(0, 0, "About this report", book.format("title"))
     sheet.set_row(0, 28)
-    row = 2
     extent = extent_of(outcome)
     sheets = SHEETS | (_of_large(extent) if extent.large else {})
     present = [worksheet.get_name() for worksheet in book.workbook.worksheets()] + list(later)
-    sections: tuple[tuple[str, list[tuple[str, str]]], ...] = (
-        ("Provenance and settings", list(_identity(outcome).items())),
-        ("Sheets", [(name, sheets.get(name, "")) for name in present if book.shows(name)]),
-        ("Verdict", [("", text) for text in _verdict(outcome.settings.verdict_bounds)]),
-        ("Hidden sheets", [("", HOW_TO_SHOW), ("", TABS), *_hidden(book, present, sheets)]),
-        ("Digits and columns", [("", text) for text in _digits()]),
-        ("Spread", [("", text) for text in _statistics(outcome)]),
-        ("Model", [("", text) for text in MODEL]),
-        ("How good the formula is", [("", text) for text in PROOF]),
-        ("Not covered", [("", text) for text in LEFT_OUT]),
-        ("Errata of the published study", [("", text) for text in ERRATA]),
-        ("Columns of Results", [(column.label, column.help) for column in _result_columns(outcome)]),
-        ("Columns of Tolerances used", [(column.label, column.help) for column in TOLERANCES_USED]),
-        ("Columns of Allocation", [(column.label, column.help) for column in ALLOCATION if ALLOCATED in present]),
-        ("Dimensions", [(name, f"{column.sheet}: {column.label}") for name, column in DIMENSIONS.items()]),
-    )
-    ends = []
-    for title, entries in sections:
+    sections: dict[str, list[tuple[str, str]]] = {
+        **_first_sections(outcome),
+        PRESENT: [(name, sheets.get(name, "")) for name in present if book.shows(name)],
+        "Hidden sheets": [("", HOW_TO_SHOW), ("", TABS), *_hidden(book, present, sheets)],
+        "Digits and columns": [("", text) for text in _digits()],
+        "Model": [("", text) for text in MODEL],
+        "Errata of the published study": [("", text) for text in ERRATA],
+        "Columns of Results": [(column.label, column.help) for column in _result_columns(outcome)],
+        "Columns of Tolerances used": [(column.label, column.help) for column in TOLERANCES_USED],
+        "Columns of Allocation": [(column.label, column.help) for column in ALLOCATION if ALLOCATED in present],
+        "Dimensions": [(name, f"{column.sheet}: {column.label}") for name, column in DIMENSIONS.items()],
+    }
+    row, ends = _FIRST_ROW, []
+    for title, entries in sections.items():
         row = _write_section(book, sheet, row, title, entries)
         ends.append(row - 2)
     print_one_page(sheet, _LINES[:2], ends[-1], upright=True, ends=ends[:-1], listed=Listed(noun="sections"))
+
+
+def _first_sections(outcome: Outcome) -> dict[str, list[tuple[str, str]]]:
+    """Return what a reviewer wants first, whatever sheets there are: the first of it is printed."""
+    texts = {
+        VERDICT: _verdict(outcome.settings.verdict_bounds), TRUST: PROOF, "Not covered": LEFT_OUT,
+        SPREAD: _statistics(outcome),
+    }  # fmt: skip
+    settings = {"Provenance and settings": list(_identity(outcome).items())}
+    return settings | {title: [("", text) for text in lines] for title, lines in texts.items()}
+
+
+def about_places(outcome: Outcome) -> dict[str, str]:
+    """Return the cells of About at which its first sections begin, by their titles."""
+    row, places = _FIRST_ROW, {}
+    for title, entries in [*_first_sections(outcome).items(), (PRESENT, [])]:
+        places[title] = f"About!A{row + 1}"
+        row += len(entries) + _BETWEEN
+    return places
 
 
 def _hidden(book: Book, present: Sequence[str], sheets: Mapping[str, str]) -> list[tuple[str, str]]:
@@ -367,7 +394,7 @@ def _write_section(book: Book, sheet: Any, row: int, title: str, entries: Sequen
         row += 1
         if not name:
             sheet.merge_range(row, 0, row, 1, f"•  {text}", book.format("wrap"))
-        elif title == "Sheets":
+        elif title == PRESENT:
             write_link(sheet, row, 0, f"{name}!A1", name, style=book.format("link"))
         else:
             sheet.write_string(row, 0, name, book.format("wrap"))
@@ -375,7 +402,7 @@ def _write_section(book: Book, sheet: Any, row: int, title: str, entries: Sequen
             sheet.write_string(row, 1, text, book.format("wrap"))
         lines = max(1 + len(text) // _LINES[1 if name else 2], 1 + len(name) // _LINES[0])
         sheet.set_row(row, 15.5 * lines)
-    return row + 2
+    return row + _BETWEEN
 
 
 def _identity(outcome: Outcome) -> dict[str, str]:

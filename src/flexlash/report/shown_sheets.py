@@ -28,7 +28,8 @@ def shown_sheets(outcome: Outcome, data: ReportData) -> frozenset[str]:
     """
     failing = failing_variants(data.drawn, outcome.settings.verdict_bounds)
     asked = [DRIVE] * _has_drive(outcome) + [SWEEP] * bool(data.studies)
-    ranked = [*ALWAYS, *asked, *[LEVERS] * bool(data.levers.height), *_guilty(outcome), "Trace"]
+    levers = [LEVERS] * bool(data.levers.height)
+    ranked = [*ALWAYS, *asked, *levers, *_guilty(outcome, "error"), "Trace", *_guilty(outcome, "warning")]
     return frozenset([*ranked[:ROOM], *[FAILING] * bool(failing)])
 
 
@@ -36,12 +37,12 @@ def _has_drive(outcome: Outcome) -> bool:
     return outcome.validated is not None and bool(outcome.validated.other_sources)
 
 
-def _guilty(outcome: Outcome) -> list[str]:
-    """Return the sheets as read of which a cell has an error or a warning, to which its finding leads."""
+def _guilty(outcome: Outcome, level: str) -> list[str]:
+    """Return the sheets as read of which a cell has a finding of a level, which leads there."""
     titles = titles_of(outcome.submission)
     guilty = {
         titles[finding.sheet]
         for finding in outcome.findings
-        if finding.level != "info" and finding.address is not None and finding.sheet in titles
+        if finding.level == level and finding.address is not None and finding.sheet in titles
     }
     return sorted(guilty, key=lambda title: (title != SUBMISSION, title))

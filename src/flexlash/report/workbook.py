@@ -67,10 +67,12 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     extent, compared, curves = extent_of(outcome), compared_variants(drawn, book.angles), stored_curves(drawn)
     bars = relative_bars(drawn, outcome.settings.verdict_bounds, CHARTED)
     swept = stored_sweeps(data.studies[:MOST_STUDIES], book.angles)
+    computed = [variant.computed for variant in drawn]
+    scatter, tied = stored_scatter(computed)
     unit = write_summary(book, outcome, data, bars)
     pages = write_failing(book, outcome, data)
     write_results(book, outcome, drawn)
-    write_explorer(book, curves, extent, outcome.settings.verdict_bounds, unit)
+    write_explorer(book, (curves, scatter), extent, outcome.settings.verdict_bounds, unit)
     write_levers(book, outcome, data)
     write_contributions(book, outcome, drawn, compared)
     drives = write_drive(book, outcome, drawn)
@@ -81,9 +83,7 @@ def report_bytes(outcome: Outcome, data: ReportData | None = None) -> bytes:
     about = about_sheet(book)
     trace_spread = trace_spread_sheet(book)
     _write_further(book, outcome, data, compared)
-    computed = [variant.computed for variant in drawn]
     inputs = stored_inputs(computed, outcome.settings.lost_motion_percent)
-    scatter, tied = stored_scatter(computed)
     noted = _noted({
         CURVES_NOTE: curves, COMPARED_NOTE: compared, BARS_NOTE: bars if bars.rows else None, PAGES_NOTE: pages,
         SWEPT_NOTE: swept if swept.rows else None, DRIVES_NOTE: drives, INPUTS_NOTE: inputs,

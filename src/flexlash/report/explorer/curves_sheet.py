@@ -48,6 +48,7 @@ _RESULTS = {
     "Within-lot sd": "within_lot_sd_arcmin",
     "Between-lots sd": "between_lots_sd_arcmin",
 }
+"""Heading and Results key of each angle."""
 
 FIGURE_ERRORS = {
     heading: (f"error of {heading}", f"{stem}_standard_error_arcmin")
@@ -95,6 +96,9 @@ def _entries(variant: Drawn, label: str) -> Iterator[tuple[str, str | float | No
     yield from ((heading, row[key]) for heading, key in FIGURE_ERRORS.values())
     yield "Lots failing", row["lots_failing"]
     yield "error of Lots failing", row["lots_failing_standard_error"]
+    yield "Von Mises", row["von_mises_MPa"]
+    limit = row["elastic_limit_torque_Nm"]
+    yield "Times to yield", None if limit is None else limit / variant.computed.variant.dimensions["torque"]
     yield "Left open", left_open_words(row) or None
     yield "Rarest share", curve.rarest
     outputs = _rounded(curve.outputs / ARCMIN, _OUTPUT_DIGITS)

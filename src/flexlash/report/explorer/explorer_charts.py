@@ -14,7 +14,7 @@ from flexlash.report.wording.chart_words import largest_of
 from flexlash.schema.findings import shown
 from flexlash.tolerance.distribution_curves import CURVE_SCORES, HISTOGRAM_BINS
 
-__all__ = ["write_charts"]
+__all__ = ["CHART_ROWS", "FIRST_CHART", "write_charts"]
 
 _BINS = COLUMN + 11
 _BAR_ROW = CURVE_ROW
@@ -24,9 +24,11 @@ _DRAWN_SCORE = 3.41
 """The cumulative curve is drawn as far as this score on both sides, from 0.03 to 99.97 % of units."""
 
 _BINS_PER_LABEL = 5
-_FIRST_CHART, _CHART_ROWS = 19, 21
+FIRST_CHART, CHART_ROWS = 20, 16
+"""Row, from 0, of the upper charts, and rows from one chart to that below it."""
+
 _COLOURS = ("ink", "grey", "blue", "sky", "orange", "red")
-_WIDTHS, _HEIGHT = (560, 440), 410
+_WIDTHS, _HEIGHT = (560, 440), 312
 _RIGHT = 3
 _NAME = 40
 
@@ -48,7 +50,7 @@ def write_charts(book: Book, sheet: Any, choice: Choice, working: Working, limit
         (_segments(book, sheet, choice), f"Nominal backlash by segment of the {when}: {arise})"),
     )
     for number, (chart, text) in enumerate(charts):
-        row, right = _FIRST_CHART + number // 2 * _CHART_ROWS, number % 2
+        row, right = FIRST_CHART + number // 2 * CHART_ROWS, number % 2
         book.insert(sheet, row, _RIGHT if right else 0, chart, size=(_WIDTHS[right], _HEIGHT), text=text)
 
 
@@ -58,9 +60,9 @@ def _write_notes(book: Book, sheet: Any, choice: Choice, working: Working, limit
     Titles do not follow in all programs, so that they name no unit.
     """
     quiet, none = book.format("quiet"), limit.equals("")
-    put(sheet, _FIRST_CHART - 1, 0, IF(choice.known, CONCATENATE("Charts in ", choice.unit), "Nothing to draw"), quiet)
+    put(sheet, FIRST_CHART - 1, 0, IF(choice.known, CONCATENATE("Charts in ", choice.unit), "Nothing to draw"), quiet)
     beyond = CONCATENATE("The limit ", FIXED(IF(none, 0.0, limit), 2), " lies outside the pictures.")
-    put(sheet, _FIRST_CHART - 1, 4, IF(none, "", IF(_in_picture(working, limit), "", beyond)), quiet)
+    put(sheet, FIRST_CHART - 1, 4, IF(none, "", IF(_in_picture(working, limit), "", beyond)), quiet)
 
 
 def _drawn(working: Working) -> tuple[int, int]:
@@ -93,12 +95,16 @@ def _density(book: Book, sheet: Any, choice: Choice, limit: Live) -> Any:
         put(sheet, row, _BINS + 2, height - within, plain)
     last = _BAR_ROW + HISTOGRAM_BINS - 1
     chart = book.chart("column", "Density of the backlash", subtype="stacked")
-    for offset, name, colour in ((1, "within the limit", "blue"), (2, "over the limit", "red")):
+    hatched = {"pattern": "dark_upward_diagonal", "fg_color": PALETTE["red"], "bg_color": "#FFFFFF"}
+    for offset, name, look in (
+        (1, "within the limit", {"fill": {"color": PALETTE["blue"]}}),
+        (2, "over the limit (hatched)", {"pattern": hatched}),
+    ):
         chart.add_series({
             "name": name,
             "categories": ["Explorer", _BAR_ROW, _BINS, last, _BINS],
             "values": ["Explorer", _BAR_ROW, _BINS + offset, last, _BINS + offset],
-            "fill": {"color": PALETTE[colour]},
+            **look,
             "border": {"none": True},
             "gap": 4,
         })  # fmt: skip

@@ -26,9 +26,10 @@ _LABELS = ("Variant", "Angle unit", "Another limit", "Wanted share over a limit"
 class Choice:
     """The reader's cells, as references, with the picked variant's entries of Curves.
 
-    `known` is whether variant and unit are of their lists; without, nothing is shown. `other` is the typed limit, an
-    empty text where none is to be used; `wanted` is the share to find the limit of, at first what the target
-    allows, `wants` whether it is one; `allowed` is the share over the limit with which a variant meets it.
+    `rank` is the number of the variant among the stored ones. `known` is whether variant and unit are of their lists;
+    without, nothing is shown. `other` is the typed limit, an empty text where none is to be used; `wanted` is the share
+    to find the limit of, at first what the target allows, `wants` whether it is one; `allowed` is the share over the
+    limit with which a variant meets it.
     """
 
     def __init__(self, book: Book, sheet: Any, curves: Stored, bounds: VerdictBounds, unit: Live | None) -> None:
@@ -55,7 +56,7 @@ class Choice:
         factor = IF(unit.equals("arcsec"), ANGLE_UNITS["arcsec"].per_arcmin, IF(unit.equals("arcmin"), 1.0, 0.0))
         factor = put(sheet, _FIRST_ROW + 1, 2, factor, book.format("hint", words))
         self.known = AND(rank > 0.0, factor > 0.0)
-        self._rank, self._factor = MAX(rank, 1.0), MAX(factor, 1.0)
+        self.rank, self._factor = MAX(rank, 1.0), MAX(factor, 1.0)
         self.unit = IF(factor > 0.0, unit, live(""))
         self._write_limit(sheet, hint, typed)
         sound = IF(ISNUMBER(wanted), AND(wanted >= _RAREST, wanted <= _COMMONEST), Live("FALSE", value=False))
@@ -85,11 +86,11 @@ class Choice:
 
     def text(self, heading: str) -> Live:
         """Return what Curves holds for the variant; an empty text where it holds nothing."""
-        return self._curves.pick(self._rank, heading)
+        return self._curves.pick(self.rank, heading)
 
     def angle(self, heading: str) -> Live:
         """Return an angle of Curves in the chosen unit; an empty text where there is none."""
-        return self._curves.pick(self._rank, heading, self._factor)
+        return self._curves.pick(self.rank, heading, self._factor)
 
     def figure(self, value: Live) -> Live:
         """Return a figure, or that there is none where variant or unit are not of their lists."""

@@ -9,8 +9,9 @@ from __future__ import annotations
 from typing import Any
 
 from flexlash.report.explorer.curves_sheet import FIGURE_ERRORS
-from flexlash.report.explorer.explorer_charts import write_charts
+from flexlash.report.explorer.explorer_charts import CHART_ROWS, FIRST_CHART, write_charts
 from flexlash.report.explorer.explorer_choice import NONE, Choice
+from flexlash.report.explorer.explorer_limits import write_limits
 from flexlash.report.explorer.explorer_working import Read, Working
 from flexlash.report.extent import Extent
 from flexlash.report.formula.functions import (
@@ -32,7 +33,7 @@ from flexlash.report.layout.styles import Book
 from flexlash.schema.limit_verdict import MARGINAL, VerdictBounds
 from flexlash.schema.number_words import INTERVAL
 
-__all__ = ["write_explorer"]
+__all__ = ["EXPLORER_PLACES", "write_explorer"]
 
 _WIDTHS = (29, 19, 30, 3, 31, 15, 11)
 _USUAL = 4.0
@@ -53,7 +54,6 @@ _PPM_DECIMALS = 4.0
 _NEARLY = 1.000001
 """Room for rounding where a share meets the rarest that is told."""
 
-_LAST_ROW = 61
 _SECTIONS = ((2, 0, "Your choice"), (8, 0, "Answer"), (2, 4, "Figures of this variant"))
 _ANSWERS = (
     "Limit",
@@ -95,9 +95,35 @@ _UNSETTLED_LOTS = 5.0
 _LOTS = ("Within-lot sd", "Between-lots sd")
 """Figures of lots and parts, below the others."""
 
+_CAPABILITY = _FIRST_FIGURE + len(_FIGURES)
+_FIRST_LOTS, _FAILING_LOTS = _CAPABILITY + 1, _CAPABILITY + 1 + len(_LOTS)
+_STRENGTH = _FAILING_LOTS + 1
+"""Rows, from 0, of what stands below the figures."""
 
-def write_explorer(book: Book, curves: Stored, extent: Extent, bounds: VerdictBounds, unit: Live | None = None) -> None:
-    """Write the Explorer of the stored variants, the worst one picked, in the unit of another cell if one is given."""
+_LIMITS_ROW = FIRST_CHART + 2 * CHART_ROWS + 1
+
+EXPLORER_PLACES = {
+    "another limit": "Explorer!B6",
+    "verdict": f"Explorer!B{_VERDICT + 1}",
+    "interval": f"Explorer!B{_SHARE + 1}",
+    "left open": f"Explorer!B{_LEFT_OPEN + 1}",
+    "worst case": f"Explorer!F{_FIRST_FIGURE + list(_FIGURES).index('Worst case high') + 1}",
+    "cylinder only": f"Explorer!F{_FIRST_FIGURE + list(_FIGURES).index('Cylinder only') + 1}",
+    "lots": f"Explorer!F{_FIRST_LOTS + 1}",
+    "strength": f"Explorer!F{_STRENGTH + 1}",
+    "limits": f"Explorer!A{_LIMITS_ROW + 1}",
+}
+"""The cells that answer a reviewer's questions about the picked variant."""
+
+
+def write_explorer(
+    book: Book, stored: tuple[Stored, Stored], extent: Extent, bounds: VerdictBounds, unit: Live | None = None
+) -> None:
+    """Write the Explorer of the stored variants, the worst one picked, in the unit of another cell if one is given.
+
+    Its figures come from the sheets Curves and Scatter.
+    """
+    curves, scatter = stored
     sheet = book.sheet("Explorer", landscape=False, pages_tall=1, tab="entry")
     for column, width in enumerate(_WIDTHS):
         sheet.set_column(column, column, width)
@@ -119,7 +145,8 @@ def write_explorer(book: Book, curves: Stored, extent: Extent, bounds: VerdictBo
     limit = _write_answers(book, sheet, choice, working)
     _write_figures(book, sheet, choice, working, limit)
     write_charts(book, sheet, choice, working, limit)
-    sheet.print_area(0, 0, _LAST_ROW, len(_WIDTHS) - 1)
+    last = write_limits(book, sheet, (choice, working), scatter, _LIMITS_ROW)
+    sheet.print_area(0, 0, last, len(_WIDTHS) - 1)
     sheet.freeze_panes(_FIRST_ANSWER - 1, 0)
 
 
@@ -193,9 +220,8 @@ def _settled(allowed: Live, share: Live, low: Live, high: Live) -> Live:
 def _write_figures(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:
     """Write the figures of the picked variant beside the answers."""
     figure, quiet = book.format("figure", "arcmin"), book.format("quiet")
-    capability = _FIRST_FIGURE + len(_FIGURES)
     rows = dict(enumerate(_FIGURES.items(), start=_FIRST_FIGURE))
-    rows |= dict(enumerate(zip(_LOTS, _LOTS, strict=True), start=capability + 1))
+    rows |= dict(enumerate(zip(_LOTS, _LOTS, strict=True), start=_FIRST_LOTS))
     for row, (heading, words) in rows.items():
         sheet.write_string(row, 4, words, book.format("label"))
         value, shown = choice.angle(heading), figure
@@ -206,11 +232,12 @@ def _write_figures(book: Book, sheet: Any, choice: Choice, working: Working, lim
         put(sheet, row, 6, choice.unit, quiet)
     _write_capability(book, sheet, choice, working, limit)
     _write_failing_lots(book, sheet, choice, working)
+    _write_strength(book, sheet, choice)
 
 
 def _write_capability(book: Book, sheet: Any, choice: Choice, working: Working, limit: Live) -> None:
     """Write the Ppk at the limit that counts, below the figures."""
-    row, quiet = _FIRST_FIGURE + len(_FIGURES), book.format("quiet")
+    row, quiet = _CAPABILITY, book.format("quiet")
     sheet.write_string(row, 4, "Ppk upper at this limit", book.format("label"))
     median = choice.angle("P50")
     reach = working.cell("P99.865 - P50", choice.angle("P99.865") - median)
@@ -226,7 +253,7 @@ def _write_capability(book: Book, sheet: Any, choice: Choice, working: Working, 
 
 def _write_failing_lots(book: Book, sheet: Any, choice: Choice, working: Working) -> None:
     """Write how many lots fail at the variant's own limit, the only one of which that is known."""
-    row = _FIRST_FIGURE + len(_FIGURES) + 1 + len(_LOTS)
+    row = _FAILING_LOTS
     sheet.write_string(row, 4, "Lots failing at its own limit", book.format("label"))
     share, error = choice.text("Lots failing"), choice.text("error of Lots failing")
     has = ISNUMBER(share)
@@ -239,3 +266,16 @@ def _write_failing_lots(book: Book, sheet: Any, choice: Choice, working: Working
     words = IF(rest < _RAREST_LOTS, IF(unsure > _UNSETTLED_LOTS, "not settled", end), counted)
     put(sheet, row, 5, choice.figure(IF(has, words, NONE)), book.format("figure"))
     sheet.write_string(row, 6, "of lots", book.format("quiet"))
+
+
+def _write_strength(book: Book, sheet: Any, choice: Choice) -> None:
+    """Write the greatest stress of torsion and how far it is from yield; nothing of it follows the limit."""
+    for row, words, heading, unit, decimals in (
+        (_STRENGTH, "Von Mises, torsion only", "Von Mises", "MPa", 1),
+        (_STRENGTH + 1, "Yields at", "Times to yield", "× the torque", 2),
+    ):
+        value = choice.text(heading)
+        known = AND(choice.known, ISNUMBER(value))
+        sheet.write_string(row, 4, words, book.format("label"))
+        put(sheet, row, 5, IF(known, FIXED(IF(known, value, 0.0), decimals), NONE), book.format("figure"))
+        sheet.write_string(row, 6, unit, book.format("quiet"))

@@ -28,6 +28,7 @@ from flexlash.report.wording.drive_sentences import DRIVE, whole_drive_of
 from flexlash.report.wording.lever_sentences import CHANGE, LENGTH, RELAX, lengths, relaxing, what_to_change
 from flexlash.report.wording.lot_sentences import LOTS, lots_of
 from flexlash.report.wording.measured_parts import PARTS, left_open_by
+from flexlash.report.wording.review_sentences import ANOTHER, another_limit_of, strength_of
 from flexlash.report.wording.sentences import cause_of
 from flexlash.report.wording.summary_facts import SummaryFacts, rough
 from flexlash.report.wording.verdict import straddled, verdict_word
@@ -114,6 +115,10 @@ def _sentences(facts: SummaryFacts, variant: Drawn) -> Iterator[Sentence]:
     if lots := " ".join(lots_of(facts, row)):
         yield Sentence(topic=LOTS, text=lots, kind="verdict")
     yield Sentence(topic="Why", text=" ".join(cause_of(facts, row)), kind="cause")
+    if other := " ".join(another_limit_of(facts, row)):
+        yield Sentence(topic=ANOTHER, text=other, kind="verdict")
+    if strength := " ".join(strength_of(facts, row)):
+        yield Sentence(topic="Strength", text=strength, kind="note")
     its_own = replace(facts, levers=facts.levers.filter(pl.col("variant") == row["variant"]))
     for topic, advice in ((CHANGE, what_to_change), (RELAX, relaxing), (LENGTH, lengths)):
         if text := " ".join(advice(its_own)):

@@ -25,6 +25,7 @@ from flexlash.report.wording.lever_sentences import LEVER_TOPICS
 from flexlash.report.wording.lot_sentences import LOTS
 from flexlash.report.wording.measured_parts import PARTS
 from flexlash.report.wording.normal_theory import NORMAL
+from flexlash.report.wording.review_sentences import ANOTHER
 from flexlash.report.wording.sentences import sentences
 from flexlash.report.wording.summary_facts import summary_facts
 from flexlash.report.wording.verdict_sentences import WORST_CASE
@@ -41,6 +42,7 @@ _NAME = 120
 _KINDS: Mapping[str, str] = {
     "Computed": "computed",
     "Which fail": "verdict",
+    ANOTHER: "verdict",
     "How sure": "verdict",
     NORMAL: "verdict",
     WORST_CASE: "verdict",

@@ -11,13 +11,13 @@ from flexlash.report.page.lever_cells import cheapest_changes
 from flexlash.report.page.shape import Axis, Chart, ChartVariant, Lost, TableRow
 from flexlash.report.report_data import ROW
 from flexlash.report.summary.summary_chart import CHARTED, chart_axis, chart_title
-from flexlash.report.wording.distances import distance_words
+from flexlash.report.wording.distances import deciding_percentile, distance_words
 from flexlash.report.wording.labels import distinct_labels
 from flexlash.report.wording.summary_facts import Row, SummaryFacts, main_cause
 from flexlash.report.wording.verdict import straddled, verdict_word
 from flexlash.schema.findings import shown
 from flexlash.schema.limit_verdict import VerdictBounds
-from flexlash.schema.number_words import share_words
+from flexlash.schema.number_words import brief_share
 
 __all__ = ["chart_of", "lost_variants", "shown_names", "table_rows", "verdict_of"]
 
@@ -98,8 +98,8 @@ def table_rows(facts: SummaryFacts, rows: Sequence[Row], names: Sequence[str], p
             p97_5=_percentile(facts, row, "p97_5"),
             p99_865=_percentile(facts, row, "p99_865"),
             limit="" if limit is None else facts.angles.entered(limit),
-            distance="" if limit is None else distance_words(row, "p97_5", facts.angles),
-            over_limit="" if limit is None else share_words(row),
+            distance="" if limit is None else distance_words(row, deciding_percentile(facts.bounds)[0], facts.angles),
+            over_limit="" if limit is None else brief_share(row),
             main_cause=main_cause(row),
             page=_page(place, paged),
             cheapest=cheapest.get(row["variant"], ""),

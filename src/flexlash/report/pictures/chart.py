@@ -195,7 +195,7 @@ def causes_chart(name: str, causes: Sequence[Cause], nominal: float, unit: str) 
         picture.line(scale.per_cent(nominal), 0, bottom, INK, width=1.5)
     for index, cause in enumerate(causes):
         top = _ROW * index
-        for end, colour in ((cause.low, BLUE), (cause.high, SKY)):
+        for end, colour in ((cause.low, SKY), (cause.high, BLUE)):
             if finite(end) and finite(nominal):
                 first, last = sorted((scale.per_cent(end), scale.per_cent(nominal)))
                 picture.bar(first, last, top + 21, _BAR, colour)

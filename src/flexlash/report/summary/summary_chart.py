@@ -23,6 +23,9 @@ CHARTED = 60
 _COLOURS = {"fails": "dark red", "marginal": "amber", "meets": "blue", NO_VERDICT: "grey"}
 """Bars have no outline, so that each colour stands out from white by itself."""
 
+_SHAPES = {"fails": "diamond", "marginal": "plus", "meets": "circle", NO_VERDICT: "x"}
+"""Marks of medians, so that a print without colours tells verdicts apart."""
+
 _FONT = 11
 """Size of letters [pt]: more than 7 when the page is printed."""
 
@@ -51,7 +54,7 @@ def variants_chart(book: Book, bars: Stored, reach: float, total: int) -> Any:
             chart.add_series({
                 "name": "no limit" if kind == NO_VERDICT else kind,
                 "categories": names, "values": bars.series(kind), "line": {"none": True},
-                "marker": _marker("diamond", ink, look["mark"], "#FFFFFF"),
+                "marker": _marker(_SHAPES[kind], ink, look["mark"], "#FFFFFF"),
                 "y_error_bars": {
                     "type": "custom", "end_style": 0, "direction": "both",
                     "line": {"color": ink, "width": look["bar"]},
@@ -110,9 +113,9 @@ def chart_words(drawn: Sequence[Drawn], angles: AngleUnit) -> str:
     return (
         f"Backlash of {len(charted)} variants, worst first: {spans_of(charted, angles)}. {limits_over(charted)} "
         f"Drawn in per cent of the {base}, which is the line at zero: a bar goes from the backlash that 2.5 % of units "
-        "stay below to that which 97.5 % stay below, the median as a diamond, P99.865 as a dash. Bars of variants that "
-        "fail are dark red, of marginal ones orange, of those that meet it blue; a triangle with its figure stands "
-        "for one beyond the scale."
+        "stay below to that which 97.5 % stay below, P99.865 as a dash. Bars of variants that fail are dark red with "
+        "a diamond at the median, of marginal ones orange with a plus, of those that meet it blue with a circle; a "
+        "triangle or a square with its figure stands for one beyond the scale."
     )
 
 

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from flexlash.analysis.outcome import Outcome
 from flexlash.analysis.run_summary import counted, points_words
-from flexlash.report.allocation_sheet import ALLOCATED
-from flexlash.report.drive.drive_page import SHEET as DRIVE_SHEET
 from flexlash.report.extent import extent_of
 from flexlash.report.failing.failing_places import variant_targets
 from flexlash.report.formula.live import Live, fill
@@ -18,16 +16,13 @@ from flexlash.report.formula.stored import Stored
 from flexlash.report.layout.links import write_link
 from flexlash.report.layout.styles import Book
 from flexlash.report.layout.wrapping import LINE_HEIGHT, fitted, lines_of, merged_width
-from flexlash.report.levers_sheet import LEVERS, lever_places
 from flexlash.report.report_data import ROW, Drawn, ReportData
 from flexlash.report.summary.relative_bars import scale_end
 from flexlash.report.summary.summary_chart import CHARTED, chart_words, variants_chart
+from flexlash.report.summary.summary_links import topic_targets
 from flexlash.report.summary.summary_table import WIDTHS, SummaryTable
-from flexlash.report.wording.allocation_sentences import CLASSES
-from flexlash.report.wording.drive_sentences import DRIVE
-from flexlash.report.wording.lever_sentences import CHANGE, LENGTH, RELAX
-from flexlash.report.wording.lever_words import shown_levers
-from flexlash.report.wording.sentences import FINDINGS, sentences
+from flexlash.report.wording.review_sentences import COMPARED
+from flexlash.report.wording.sentences import sentences
 from flexlash.report.wording.summary_facts import labels_of
 from flexlash.report.wording.sweep_words import summary_sentence
 from flexlash.report.wording.verdict import (
@@ -57,18 +52,13 @@ _UNIT = (1, 11)
 _PAGE = 1085.0
 """Height [pt] of what fits on a Letter page in letters of 7 pt; A4 is higher."""
 
-_CHART, _USUAL_CHART = (170.0, 340.0), 200.0
+_CHART, _USUAL_CHART = (185.0, 340.0), 215.0
 """Least and greatest height [pt] of the chart, and what the table leaves it where sentences are not too long."""
 
 _CHART_WIDTH = sum(7 * width + 5 for width in WIDTHS)
 _LINES = 5
 """Lines below the chart: provenance, and one to sign above which there is room to write."""
 
-_COMPARED = (
-    "What is compared with the limit is 2U, the elastic lag of the flexspline when its whole torque reverses; no "
-    "catalogue defines backlash this way. Clearances and hysteresis come on top; sheet Drive combines those that are "
-    "entered."
-)
 _SIGNED = "Reviewed by ______________________________   Date ____________________"
 
 
@@ -79,12 +69,13 @@ def write_summary(book: Book, outcome: Outcome, data: ReportData, bars: Stored) 
     """
     page = _Page(book, outcome)
     page.heading()
+    said = dict(sentences(outcome, data.levers, data.allocation))
+    said["Sweep"] = summary_sentence(data.studies, outcome.settings.target_percent, book.angles)
+    targets = topic_targets(book, outcome, data)
+    page.sentence(COMPARED, said.pop(COMPARED, ""), targets)
     page.key_figures()
-    targets = _targets(data)
-    for topic, text in sentences(outcome, data.levers, data.allocation):
-        page.sentence(topic, text, targets.get(topic, ""))
-    if swept := summary_sentence(data.studies, outcome.settings.target_percent, book.angles):
-        page.sentence("Sweep", swept, "Sweep!A1")
+    for topic, text in said.items():
+        page.sentence(topic, text, targets)
     unit = None
     if data.drawn:
         unit = page.unit()
@@ -130,12 +121,10 @@ class _Page:
         name = shown(self.outcome.submission.name, longest=100)
         self.sheet.write_string(self.row, 0, f"Submission {name}", self.book.format("quiet"))
         self._end_row()
-        self._across(0, len(WIDTHS) - 1, _COMPARED, self.book.format("said"))
-        self._end_row(LINE_HEIGHT * lines_of(_COMPARED, merged_width(WIDTHS)) + 2)
-        self._end_row(6)
 
     def key_figures(self) -> None:
         """Write how many were computed, have which verdict by which rule, and how much was found."""
+        self._end_row(6)
         counts, verdicts = self.outcome.counts, verdict_counts(self.outcome)
         judged = sum(verdicts.values()) - verdicts[NO_VERDICT]
         rules = verdict_rules(self.outcome.settings.verdict_bounds)
@@ -167,10 +156,12 @@ class _Page:
         self._end_row(lines * LINE_HEIGHT)
         self._end_row(8)
 
-    def sentence(self, topic: str, text: str, target: str) -> None:
-        """Write the answer to a question beside it, wrapped; a topic with a target leads there."""
-        if target:
-            write_link(self.sheet, self.row, 0, target, topic, style=self.book.format("topic link"))
+    def sentence(self, topic: str, text: str, targets: Mapping[str, str]) -> None:
+        """Write the answer to a question, if there is one, beside it, wrapped; a topic with a target leads there."""
+        if not text:
+            return
+        if topic in targets:
+            write_link(self.sheet, self.row, 0, targets[topic], topic, style=self.book.format("topic link"))
         else:
             self.sheet.write_string(self.row, 0, topic, self.book.format("topic"))
         self._across(1, len(WIDTHS) - 1, text, self.book.format("said"))
@@ -197,7 +188,7 @@ class _Page:
         self._end_row(8)
         table = SummaryTable(self.book, self.sheet, self.outcome.settings.verdict_bounds, unit)
         table.write_headings(self.row)
-        self._end_row(4 * LINE_HEIGHT + 2)
+        self._end_row(3 * LINE_HEIGHT + 2)
         targets = variant_targets(drawn, self.outcome.settings.verdict_bounds)
         labels = labels_of(self.outcome, [variant.row["variant"] for variant in drawn])
         room = _PAGE - self.height - _USUAL_CHART - (_LINES + 5) * LINE_HEIGHT
@@ -207,21 +198,21 @@ class _Page:
             target = targets[variant.row[ROW]]
             self._end_row(LINE_HEIGHT * table.write(self.row, variant.row, name, target))
         table.finish(first, self.row - 1)
-        self._notes(len(listed), len(drawn))
+        self._notes(len(listed), drawn)
         self._further()
 
-    def _notes(self, listed: int, drawn: int) -> None:
+    def _notes(self, listed: int, drawn: Sequence[Drawn]) -> None:
         """Write what the table lists and what its columns say."""
         extent = extent_of(self.outcome)
         more = f"The {listed} worst of {grouped(extent.total)} are listed; {extent.elsewhere}. "
-        note = (
-            "Worst first: by share over the limit. The verdict judges the backlash alone, over the units of all lots."
-        )
+        is_judged = any(one.row["backlash_limit_arcmin"] is not None for one in drawn)
+        order = "share over the limit" if is_judged else "P99.865"
+        note = f"Worst first: by {order}. The verdict judges the backlash alone, over the units of all lots."
         columns = (
             "Beside the computed percentiles: mean + 3 sd by first order (RSS), and every dimension at its worst "
             "limit; by normal theory: from mean and sd alone."
         )
-        for text in ((more if drawn > listed else "") + note, columns):
+        for text in ((more if len(drawn) > listed else "") + note, columns):
             self.sheet.write_string(self.row, 0, text, self.book.format("quiet"))
             self._end_row()
 
@@ -269,17 +260,6 @@ class _Page:
         self._end_row()
         self.sheet.write_string(self.row, 0, _SIGNED, self.book.format("text"))
         self._end_row()
-
-
-def _targets(data: ReportData) -> dict[str, str]:
-    """Return the cells to which topics lead: sheets of their own, and the changes that a sentence tells first."""
-    levers = shown_levers(data.levers)
-    places, first = lever_places(levers), {CHANGE: "meet", RELAX: "relax", LENGTH: "relax"}
-    targets = {FINDINGS: f"{FINDINGS}!A1", CLASSES: f"{ALLOCATED}!A1", DRIVE: f"{DRIVE_SHEET}!A1"}
-    for topic, direction in first.items():
-        for variant in levers.filter(levers["direction"] == direction)["variant"].head(1):
-            targets[topic] = f"{LEVERS}!A{places[variant] + 1}"
-    return targets
 
 
 def _verdict_figure(verdict: Verdict, rule: str, counts: Counter[str]) -> tuple[str, str, str]:

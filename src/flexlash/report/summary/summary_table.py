@@ -10,7 +10,7 @@ from flexlash.report.formula.live import Live, put
 from flexlash.report.layout.links import write_link
 from flexlash.report.layout.styles import Book, decimals_of
 from flexlash.report.layout.wrapping import lines_of, merged_width
-from flexlash.report.wording.distances import distance, distance_format
+from flexlash.report.wording.distances import deciding_percentile, distance, distance_format
 from flexlash.report.wording.normal_theory import normal_words
 from flexlash.report.wording.summary_facts import main_cause
 from flexlash.report.wording.verdict import COLOURS, verdict_word
@@ -18,30 +18,16 @@ from flexlash.schema.angle_unit import ANGLE_UNITS
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.number_words import brief_share, glance
 
-__all__ = ["WIDTHS", "SummaryTable", "deciding_percentile"]
+__all__ = ["WIDTHS", "SummaryTable"]
 
-WIDTHS = (22, 8.5, 8.5, 9, 8.5, 9, 9, 9.5, 9, 16, 14.5, 24.5)
+WIDTHS = (22, 8.5, 8.5, 9, 8.5, 9, 9.5, 9, 9, 16, 14.5, 24.5)
 """Widths of the page's columns: together so wide that letters of 11 pt are more than 7 pt on A4."""
 
-_ANGLES = {2: "Limit", 3: "Nominal", 4: "P97.5", 5: "{deciding}", 6: "{deciding} over limit by"}
-_ANGLES |= {7: "Mean + 3 sd, first order", 8: "Worst case"}
+_ANGLES = {2: "Limit", 3: "Nominal", 4: "P97.5", 5: "{deciding}", 6: "{deciding} over limit"}
+_ANGLES |= {7: "Mean + 3 sd", 8: "Worst case"}
 _WORDS = {0: "Variant", 1: "Verdict", 9: "Units over the limit", 10: "By normal theory", 11: "Main contributor"}
 _OVER, _FIRST_ORDER = 6, 7
 _SIGMAS = 3.0
-_STORED = {"97.5 %": "p97_5", "99 %": "p99", "99.865 %": "p99_865"}
-"""Percentiles of Results, by the share of units that are to be within the limit."""
-
-
-def deciding_percentile(bounds: VerdictBounds) -> tuple[str, str]:
-    """Return key and name of the percentile that decides the verdict, P99.865 where that of the target is not stored.
-
-    >>> deciding_percentile(VerdictBounds()), deciding_percentile(VerdictBounds.of(99.9))
-    (('p99_865', 'P99.865'), ('p99_865', 'P99.865'))
-    >>> deciding_percentile(VerdictBounds.of(99))
-    ('p99', 'P99')
-    """
-    key = _STORED.get(bounds.target_words, "p99_865")
-    return key, f"P{key[1:].replace('_', '.')}"
 
 
 class SummaryTable:

@@ -36,9 +36,11 @@ def class_tolerances(allocation: pl.DataFrame | None, target_percent: float) -> 
     first = allocation.with_columns(cost.alias("_cost")).sort("_cost", descending=True, maintain_order=True)
     names = allocation["tolerance_class"].unique(maintain_order=True).to_list()
     rows = allocation.filter(pl.col("tolerance_class") == first["tolerance_class"][0])
-    yield _line(rows, f"{target_percent:.10g} %", _BRIEFLY, without="; Allocation lists which stay over")
+    yield _line(
+        rows, f"{target_percent:.10g} %", _BRIEFLY, without="; the hidden sheet Allocation lists which stay over"
+    )
     if (more := len(names) - 1) > 0:
-        yield f"{grouped(more)} more {'class is' if more == 1 else 'classes are'} on Allocation."
+        yield f"{grouped(more)} more {'class is' if more == 1 else 'classes are'} on the hidden sheet Allocation."
 
 
 def allocation_lines(allocation: pl.DataFrame, target_percent: float, most: int) -> Iterator[str]:

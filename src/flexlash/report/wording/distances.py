@@ -7,15 +7,31 @@ from typing import Any
 
 from flexlash.report.layout.styles import decimals_of
 from flexlash.schema.angle_unit import AngleUnit
+from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.number_words import glance, rounded
 
-__all__ = ["distance", "distance_format", "distance_words"]
+__all__ = ["STORED", "deciding_percentile", "distance", "distance_format", "distance_words"]
 
 _DIGITS = 2
 """Digits in which a distance is told, where the percentile's own digits leave fewer."""
 
 _FINEST = 1e-6
 """Part of a percentile below which no distance from its limit is told."""
+
+STORED = {"97.5 %": "p97_5", "99 %": "p99", "99.865 %": "p99_865"}
+"""Percentiles of Results, by the share of units that are to be within the limit."""
+
+
+def deciding_percentile(bounds: VerdictBounds) -> tuple[str, str]:
+    """Return key and name of the percentile that decides the verdict, P99.865 where that of the target is not stored.
+
+    >>> deciding_percentile(VerdictBounds()), deciding_percentile(VerdictBounds.of(99.9))
+    (('p99_865', 'P99.865'), ('p99_865', 'P99.865'))
+    >>> deciding_percentile(VerdictBounds.of(99))
+    ('p99', 'P99')
+    """
+    key = STORED.get(bounds.target_words, "p99_865")
+    return key, f"P{key[1:].replace('_', '.')}"
 
 
 def distance(row: dict[str, Any], key: str) -> float:

@@ -38,7 +38,7 @@ CHANGE, RELAX, LENGTH = "What to change", "What may be relaxed", "Length allowed
 LEVER_TOPICS = (CHANGE, RELAX, LENGTH)
 """Topics of the sentences that lead to the sheet Levers: the three questions of who decides."""
 
-_TOLD, _CHANGED = 2, 5
+_TOLD, _CHANGED = 2, 3
 """Most variants of which a topic tells, and most whose change is told: the sheet has all."""
 
 _IDLE = 0.01

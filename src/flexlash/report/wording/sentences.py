@@ -26,6 +26,16 @@ from flexlash.report.wording.lever_sentences import (
 from flexlash.report.wording.lot_sentences import LOTS, lots_and_parts
 from flexlash.report.wording.measured_parts import PARTS, measured_parts
 from flexlash.report.wording.normal_theory import NORMAL, normal_theory
+from flexlash.report.wording.review_sentences import (
+    ANOTHER,
+    COMPARED,
+    LIMITS,
+    MODEL,
+    another_limit,
+    limits_used,
+    model_trust,
+    what_is_compared,
+)
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows, rough, summary_facts
 from flexlash.report.wording.verdict_sentences import WORST_CASE, extremes_of_worst, failing, sureness
 from flexlash.report.wording.wave_generator import bending, two_lobes
@@ -74,14 +84,17 @@ def sentences(
     """
     facts = summary_facts(outcome, levers)
     topics = {
+        COMPARED: what_is_compared(facts),
         "Computed": _computed(facts),
         "Which fail": failing(facts),
+        ANOTHER: another_limit(facts),
         "How sure": sureness(facts),
         NORMAL: normal_theory(facts),
         WORST_CASE: extremes_of_worst(facts),
         PARTS: measured_parts(facts),
         LOTS: lots_and_parts(facts),
         "Why": _causes(facts),
+        LIMITS: limits_used(facts),
         CHANGE: what_to_change(facts),
         RELAX: relaxing(facts),
         LENGTH: lengths(facts),
@@ -89,6 +102,7 @@ def sentences(
         DRIVE: whole_drive(facts),
         "Cylinder-only formula": _classical(facts),
         "Strength": _strength(facts),
+        MODEL: model_trust(facts),
         "Of the calculation": _calculation(facts),
         FINDINGS: _findings(outcome),
     }
@@ -100,10 +114,12 @@ def sentences(
 
 
 def _computed(facts: SummaryFacts) -> Iterator[str]:
-    """Yield how many variants were computed, and the first of those that were not, with its reason."""
+    """Yield how many variants were computed and which were not, with the first reason; nothing where all are shown."""
     outcome = facts.outcome
     counts = outcome.counts
     rows, computed = counts["rows"], counts["computed"]
+    if rows == computed and not facts.extent.large:
+        return
     yield f"{grouped(computed)} of {counted(rows, 'variant')} {'was' if computed == 1 else 'were'} computed."
     yield from _shown(facts)
     lost = outcome.results.filter(outcome.results["status"] == "error")["variant"].to_list()
@@ -176,7 +192,7 @@ def _parts(row: Row, shares: dict[str, float]) -> str:
 
 
 def _classical(facts: SummaryFacts) -> Iterator[str]:
-    """Yield what the classical formula would have given for the worst cup or hat, and its range over all of them."""
+    """Yield what the classical formula says of the worst cup or hat, and its range over all of them."""
     with_disk = facts.ranked.filter(pl.col("hub_shear_MPa").is_not_null())
     if with_disk.is_empty():
         return
@@ -184,7 +200,7 @@ def _classical(facts: SummaryFacts) -> Iterator[str]:
     classical, own = worst["cylinder_only_backlash_arcmin"], worst["backlash_arcmin"]
     said, meant = facts.angles.words(classical), facts.angles.words(own)
     yield (
-        f"The classical formula, without the disk, would have given {said} for {facts.named(worst['variant'])} "
+        f"The classical formula, without the disk, gives {said} for {facts.named(worst['variant'])} "
         f"instead of {meant}: {_off(classical / own)}."
     )
     ratios = (with_disk["cylinder_only_backlash_arcmin"] / with_disk["backlash_arcmin"]).to_list()

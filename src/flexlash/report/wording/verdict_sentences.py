@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import polars as pl
 
 from flexlash.analysis.run_summary import are, counted, grouped, listed, points_range
-from flexlash.report.wording.distances import distance_words
+from flexlash.report.wording.distances import STORED, deciding_percentile, distance_words
 from flexlash.report.wording.summary_facts import NAMED, Row, SummaryFacts, first_rows
 from flexlash.report.wording.verdict import (
     NO_VERDICT,
@@ -59,7 +59,7 @@ def failing(facts: SummaryFacts) -> Iterator[str]:
         which = "all" if meeting > 1 else "the"
         verb = f"{verdict_verb('meets', meeting)} it"
         yield f"None: {which} {with_limit} with a limit {verb}{_doubt(doubts['meets'], meeting)}."
-        reach = pl.col("p99_865_arcmin") / pl.col("backlash_limit_arcmin")
+        reach = pl.col(f"{deciding_percentile(facts.bounds)[0]}_arcmin") / pl.col("backlash_limit_arcmin")
         nearest = facts.judged.row(facts.judged.select(reach.arg_max()).item(), named=True)
         whose = f" of the {facts.extent.drawn} worst" if facts.outcome.whole else ""
         yield f"Nearest to its limit{whose} is {_excess(facts, nearest, first=True)}."
@@ -160,13 +160,13 @@ def _tail(facts: SummaryFacts, row: Row, key: str) -> str:
 
 
 def _excess(facts: SummaryFacts, row: Row, *, first: bool) -> str:
-    """Return a variant with the percentile that its verdict hangs on and its distance from the limit."""
-    fails = facts.bounds.verdict(row["probability_over_limit"]) == "fails"
+    """Return a variant with the percentile that decides whether it meets its limit, and its distance from the limit."""
+    bounds = facts.bounds
     name, limit = facts.named(row["variant"]), facts.angles.entered(row["backlash_limit_arcmin"])
-    if not fails and facts.bounds.target_words != _PERCENTILES["p99_865"]:
+    if bounds.verdict(row["probability_over_limit"]) == "marginal" and bounds.target_words not in STORED:
         return f"{name} (units over its limit of {limit}: {brief_share(row)})"
-    key = "p97_5" if fails else "p99_865"
+    key, percentile = deciding_percentile(bounds)
     tail, off = _tail(facts, row, key), distance_words(row, key, facts.angles)
     if first:
-        return f"{name} ({_PERCENTILES[key]} of its units stay below {tail}, {off} its limit of {limit})"
+        return f"{name} ({percentile.removeprefix('P')} % of its units stay below {tail}, {off} its limit of {limit})"
     return f"{name} ({tail}, {off} {limit})"
