@@ -396,7 +396,9 @@ def test_narrow_hat_approaches_the_cylinder(hat, flange):
     """A hat whose bolt circle approaches its mean radius winds up as its cylinder, and by its flange more."""
     hat = without(hat, "disk_inner_radius")
     mean = mean_radius(hat)
-    narrow = windup("hat", hat | {"disk_outer_radius": mean * (1 + flange)})
+    outer = mean * (1 + flange)
+    narrow = windup("hat", hat | {"disk_outer_radius": outer})
+    flange = (outer - mean) / mean
     angles = windups("cylinder", without(hat, "disk_outer_radius", "disk_thickness", "disk_calibration"))
     tube = sum(float(angle) for angle in angles.values())
     ring = flange * mean / (mean**3 * hat.get("disk_thickness", hat["wall_thickness"]))
