@@ -59,7 +59,7 @@ def _rows(count=ROWS, *, faulty=True):
         | {
             "variant": f"V-{number}",
             "torque_Nm": 500 + 7 * number,
-            "backlash_limit_arcmin": "" if number % 9 == 4 else round(2.5 + number % 7 / 4, 2),
+            "backlash_limit_arcmin": round(2.5 + number % 7 / 4, 2) if number % 4 == 0 else "",
             "Drawing": f"D{number % 5}",
             "Lot": number,
             "Mass [kg]": f"{number / 8}",

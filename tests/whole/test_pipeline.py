@@ -97,7 +97,7 @@ def test_worker_processes_change_no_bit(table, sound, monkeypatch, how):
 def test_the_number_of_jobs_changes_nothing(table, sound, tmp_path, monkeypatch):
     """Computed here or by three worker processes, the report has the same bytes."""
     monkeypatch.setattr(tolerance_spread, "ROWS_PER_WORKER", 1)
-    path = table(_many(sound))
+    path = table(_many(sound)[:25])
     for jobs in (1, 3):
         run(path, tmp_path / f"{jobs}.xlsx", samples=SAMPLES, jobs=jobs)
     assert (tmp_path / "1.xlsx").read_bytes() == (tmp_path / "3.xlsx").read_bytes()
