@@ -14,6 +14,7 @@ import pytest
 import regenerate
 from batch_runs import ENVIRONMENT
 from dask_cluster import dask_cluster
+from filled import SOUND, filled
 from in_order import in_order
 from worker_tasks import doubled, random_bytes, read_within, told
 
@@ -56,13 +57,11 @@ def executor(cluster):
 
 
 def _tasks():
-    """Return four submissions as tasks: the study with several seeds, and one that is none."""
-    study = (regenerate.ROOT / "data" / "b3-160-study.xlsx").read_bytes()
+    """Return four submissions as tasks: two variants with several seeds, and one that is none."""
+    two = filled([SOUND, {**SOUND, "variant": "thin", "wall_thickness_mm": 1.4}])
     for seed in range(3):
         options = Options(seed=seed, samples=128)
-        yield Task(
-            command="run", source=Source(name="study.xlsx", data=study), options=options, report=".xlsx"
-        ).as_bytes()
+        yield Task(command="run", source=Source(name="two.xlsx", data=two), options=options, report=".xlsx").as_bytes()
     yield Task(command="check", source=Source(name="a.xlsx", data=b"PK\3\4nothing"), options=Options()).as_bytes()
 
 

@@ -21,7 +21,8 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform == "win32", reas
 
 FEW = Options(samples=16, method="random")
 ROWS = 3_000
-LARGE = table(*(500 + number % 400 if number != 77 else "much" for number in range(ROWS)))
+TORQUES = (500 + number % 400 if number != 77 else "much" for number in range(ROWS))
+LARGE = table(*TORQUES, limited=30)
 _LEAST = 20_000
 """Bytes that make a table a large one in these tests."""
 

@@ -38,9 +38,16 @@ DATA = Path(__file__).resolve().parents[2] / "data"
 QUICK = Options(samples=64)
 
 
-def table(*torques, mark=""):
-    """Return a table of variants of these torques; `mark` makes its bytes unlike those of others."""
-    rows = [{**SOUND, "variant": f"v{number}{mark}", "torque_Nm": one} for number, one in enumerate(torques)]
+def table(*torques, mark="", limited=1):
+    """Return a table of variants of these torques; `mark` makes its bytes unlike those of others.
+
+    Each variant has a limit, or one of every `limited`.
+    """
+    free = {"backlash_limit_arcmin": ""}
+    rows = [
+        {**SOUND, "variant": f"v{number}{mark}", "torque_Nm": one} | (free if number % limited else {})
+        for number, one in enumerate(torques)
+    ]
     lines = [",".join(SOUND), *(",".join(map(str, row.values())) for row in rows), ""]
     return "\n".join(lines).encode()
 
