@@ -219,7 +219,7 @@ def test_a_lot_dimension_is_not_tied_to_one_of_a_part(settled):
     lots = {"scatters_between": "lots"}
     _, ledger = settled({"shop": [_row(WALL, sample=None), _row(YOUNG, **lots)]}, (YOUNG, WALL, 0.5))
     assert _told(ledger) == [("E349", "Correlations!C2")]
-    assert "Young's modulus scatters between lots, wall thickness between parts." in ledger.findings[0].message
+    assert "Young's modulus scatters between lots and wall thickness between parts." in ledger.findings[0].message
     assert ledger.classes == {"shop"}
     found, ledger = settled({"shop": [_row(WALL, **lots), _row(DISK)]})
     assert (found, _told(ledger)) == ({}, [("W449", "Tolerances!A2")])

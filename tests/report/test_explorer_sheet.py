@@ -252,7 +252,7 @@ def test_the_unit_is_switched_in_one_cell(study, tmp_path):
     unchanged = (SHARE, LOW, HIGH, PPM, "F14")
     assert [one[cell] for cell in unchanged] == [other[cell] for cell in unchanged]
     assert one["G4"] == one["C10"] == "arcsec"
-    assert (one["A19"], other["A19"]) == ("Charts in arcsec", "Charts in arcmin")
+    assert (one["A20"], other["A20"]) == ("Charts in arcsec", "Charts in arcmin")
     assert "arcsec" in one["C6"]
 
 
@@ -318,7 +318,7 @@ def test_without_limit_or_scatter_nothing_is_an_error(table, sound, tmp_path):
     assert far["C11"].startswith("at most")
     assert near["C11"].startswith("at least")
     assert (_number(far[LOW]), _number(near[HIGH])) == (0, 1)
-    assert far["E19"] == "The limit 99.00 lies outside the pictures."
+    assert far["E20"] == "The limit 99.00 lies outside the pictures."
     assert (under[SHARE], over[SHARE]) == ("0.0000 %", "100.0000 %")
     assert (under[VERDICT], over[VERDICT]) == ("meets", "fails")
 
@@ -390,7 +390,7 @@ def test_nonsense_is_told_and_gives_no_number(study, tmp_path):
             assert values[VERDICT] == "–"
         if cell in {VARIANT, UNIT}:
             assert values["F4"] == values[FOUND] == "none"
-            assert values["A19"] == "Nothing to draw"
+            assert values["A20"] == "Nothing to draw"
             assert values[hints[words]] == 0
         else:
             assert words in values[hints[words]], name

@@ -114,14 +114,14 @@ def test_nothing_is_said_without_a_lever(told):
 
 
 def test_many_failing_variants_are_told_in_part(study, told):
-    """Of many failing variants the worst five are told, a line each, with how many more the sheet has."""
+    """Of many failing variants the worst three are told, a line each, with how many more the sheet has."""
     names = study[0].results["variant"].to_list()
     rows = [lever(*_HUB) | {"variant": name} for name in names]
     said = told(levers_table(*rows))[CHANGE]
     first, *others, _, last = said.split("\n")
     assert first.startswith(f"Cheapest single change for “{names[0]}”: ")
-    assert [line.split(": ")[0] for line in others] == [f"For “{name}”" for name in names[1:5]]
-    assert last == f"{len(names) - 5} more on Levers."
+    assert [line.split(": ")[0] for line in others] == [f"For “{name}”" for name in names[1:3]]
+    assert last == f"{len(names) - 3} more on Levers."
 
 
 def test_the_screen_names_the_cheapest_change():

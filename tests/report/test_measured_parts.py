@@ -18,6 +18,7 @@ from flexlash.report.page.page_facts import Found, page_facts
 from flexlash.report.report_data import report_data
 from flexlash.report.results_sheet import FIRST_ROW
 from flexlash.report.wording.measured_parts import PARTS, how_left_open, left_open_by, left_open_words
+from flexlash.schema.angle_unit import ARC_MINUTES
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.variant import Limits, MeasuredDimension
 
@@ -55,7 +56,9 @@ def facts_of(*counts):
             sample="s", dimension=name, values=tuple(map(float, range(count))), parts=tuple(range(count))
         )
         limits[name] = Limits(low=0.0, high=1.0, sd=1.0, sample=sample)
-    return SimpleNamespace(computed=lambda _: SimpleNamespace(limits=limits), bounds=VerdictBounds())
+    return SimpleNamespace(
+        computed=lambda _: SimpleNamespace(limits=limits), bounds=VerdictBounds(), angles=ARC_MINUTES
+    )
 
 
 def row(share, low, high, limit=3.8):
