@@ -306,6 +306,7 @@ def test_a_report_of_the_worst_says_so_wherever_it_is_read(tmp_path, monkeypatch
     assert found.as_dictionary()["old"]["worst_of"] == 18
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_report_of_rows_beyond_a_worksheet_is_made_anew(tmp_path):
     """Of a table longer than any worksheet a report can be made anew: its rows then stand close below each other."""
@@ -655,6 +656,7 @@ def _children(number):
     return [line.split()[0] for line in listed.stdout.splitlines() if "spawn_main" in line]
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_over_dask_with_a_worker_and_then_the_scheduler_killed(tmp_path):

@@ -384,7 +384,7 @@ def _beside(many, tmp_path):
 
 @POSIX
 @pytest.mark.slow
-@pytest.mark.parametrize("after", [0, 2, 5])
+@pytest.mark.parametrize("after", [pytest.param(0, marks=pytest.mark.long), 2, pytest.param(5, marks=pytest.mark.long)])
 def test_a_killed_run_is_taken_up(many, tmp_path, after):
     """Killed without warning: what is there is whole, no process stays, and --resume gives the undisturbed bytes."""
     folder = _beside(many, tmp_path)

@@ -223,7 +223,8 @@ ODD = st.lists(st.sampled_from(PIECES), min_size=1, max_size=5).map("".join)
 @example(["a_x000D_b", "x005F_", " a ", "A", "aA", "a_x0041_", "a  b", "a\x01b", "=1+1", "#N/A"])
 def test_numbers_of_odd_names_are_compared_with_their_own(tmp_path, table, sound, names):
     """Whatever the names, the numbers computed anew are those of the report, and each variant's row is found."""
-    run(table([{**sound, "variant": name} for name in [*names, "plain"]]), tmp_path / "r.xlsx", samples=64)
+    free = sound | {"backlash_limit_arcmin": ""}
+    run(table([{**free, "variant": name} for name in [*names, "plain"]]), tmp_path / "r.xlsx", samples=64)
     found = recreate(tmp_path / "r.xlsx", tmp_path / "anew.xlsx")
     assert (found.different, found.numbers > 30) == (0, True)
     assert (tmp_path / "anew.xlsx").read_bytes() == (tmp_path / "r.xlsx").read_bytes()

@@ -117,7 +117,7 @@ def test_an_old_template_with_a_budget_of_its_own_keeps_it(tmp_path, version):
     assert _column(upgrade.data, "Other sources", "Source")[:2] == ["bearing", "key"]
     assert _column(upgrade.data, "Other sources", "Value")[:2] == [0.4, "0,2"]
     assert _column(upgrade.data, "Other sources", "Supplier")[:2] == ["S2", None]
-    assert _column(upgrade.data, "Settings", "Value")[-2:] == [99.865, 0.3]
+    assert _column(upgrade.data, "Settings", "Value")[-3:] == [99.865, 0.3, "arcmin"]
 
 
 def test_the_marked_copy_marks_them(faulty, tmp_path):

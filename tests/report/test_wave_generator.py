@@ -101,11 +101,8 @@ def test_results_say_which_stresses_are_of_torsion_only():
 def test_about_says_what_is_counted_bracketed_and_not_known(straight):
     """About tells face width, bracket and bending under Model, the wave generator's fit under what is not covered."""
     rows = [row[0] for row in opened(straight[1])["About"].iter_rows(values_only=True)]
-    titles = ("Model", "How good the formula is", "Not covered", "Errata of the published study")
-    model, proof, left_out, errata = map(rows.index, titles)
-    counted, unknown = (
-        " ".join(filter(None, rows[first:last])) for first, last in ((model, proof), (left_out, errata))
-    )
+    starts = map(rows.index, ("Model", "Not covered"))
+    counted, unknown = (" ".join(rows[start : rows.index(None, start)]) for start in starts)
     for said in ("counts a third", "Low: all engaged teeth", "High: two single teeth", "no factor", "Bending: "):
         assert said in counted
     assert "fit: radial play of a few µm, or a soft bearing, can add 20 to 130 %" in unknown

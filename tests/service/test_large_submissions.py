@@ -74,7 +74,7 @@ def test_small_ones_are_done_meanwhile_and_files_are_those_of_the_command(store,
     """Submissions that come in during a large table end before it, another large one waits; no byte differs."""
     with dispatching(store, lambda: nullcontext(processes), FEW):
         large = hand_in(store, LARGE)
-        second = hand_in(store, table(*range(500, 1000)), "b.csv")
+        second = hand_in(store, table(*range(500, 1000), limited=30), "b.csv")
         _until_rows(store, large, 1000)
         small = ended(store, *(hand_in(store, table(800, mark=str(number)), "s.csv") for number in range(3)))
         assert {store.submission(large).state, store.submission(second).state} == {"working", "waiting"}
