@@ -92,5 +92,5 @@ def test_the_summary_tells_of_the_class_that_changes_most():
     small = ROW | {"tolerance_class": "other", "relative_cost": -0.1}
     told = list(class_tolerances(_table(small, {}), 99.865))
     assert told[0].startswith("Class shop may have")
-    assert told[1] == "1 more class is on Allocation."
+    assert told[1] == "1 more class is on the hidden sheet Allocation."
     assert list(class_tolerances(no_allocation(), 99.865)) == []

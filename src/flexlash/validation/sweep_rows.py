@@ -192,8 +192,5 @@ def _words(rule: PartRule, swept: Sequence[str]) -> str:
     others = [name for name in _RADII if name not in swept]
     if rule.code != "E302" or len(others) != 1:
         return rule.words
-    (entered,), (asked,) = others, [name for name in swept if name in _RADII]
-    return (
-        f"it is entered by its {dimension_words(entered)}, to which a {dimension_words(asked)} would be a second one; "
-        f"sweep {DIMENSIONS[entered].key}, or enter the {dimension_words(asked)} instead"
-    )
+    (entered,) = others
+    return f"its {dimension_words(entered)} is entered; sweep {DIMENSIONS[entered].key} instead"
