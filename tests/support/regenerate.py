@@ -18,7 +18,9 @@ from pathlib import Path
 from finding_examples import examples
 from made_up_parts import measured_parts
 
+from flexlash.feedback.template.sketch_sheet import sketches
 from flexlash.feedback.template.template_workbook import Filling, study, template_bytes
+from flexlash.mechanics.sketch.sketch_svg import svg
 from flexlash.pipeline import run
 from flexlash.reading.raw import ErrorCell, Unstored
 from flexlash.reading.reading_limits import ReadingLimits
@@ -310,6 +312,7 @@ def generated() -> dict[str, bytes]:
         ),
         f"src/flexlash/schema/tables/{EXAMPLES}.csv": _as_table(messages()),
         "docs/findings.md": findings_page(messages()).encode(),
+        **{f"docs/{name}.svg": f"{svg(drawing)}\n".encode() for name, drawing in sketches().items()},
     }
 
 
