@@ -10,7 +10,7 @@ import pytest
 from filled import SOUND, filled
 
 from flexlash.pipeline import run
-from flexlash.report.about_sheet import CHECKSUMS, SHEETS, TABS
+from flexlash.report.wording.about_texts import CHECKSUMS, SHEETS, TABS
 from flexlash.report.wording.verdict import verdict_rules
 from flexlash.schema.limit_verdict import VerdictBounds
 from flexlash.schema.result_columns import RESULTS

@@ -12,8 +12,8 @@ from report_entries import opened
 
 from flexlash.pipeline import run
 from flexlash.report import report_data
-from flexlash.report.about_sheet import PROOF
 from flexlash.report.failing.failing_places import FAILING
+from flexlash.report.wording.about_texts import PROOF
 from flexlash.report.workbook import report_bytes
 from flexlash.schema.columns import DIMENSIONS, ENTRY_SHEETS
 from flexlash.schema.entry_words import dimension_words
