@@ -694,6 +694,7 @@ def _page(path, output, *, ran=True):
     return answer, json.loads(answer.page)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.parametrize("ending", [".csv", ".parquet"])
 def test_the_page_of_chunks_is_that_of_one_piece(ending, tmp_path):

@@ -204,6 +204,7 @@ def test_a_large_report_is_valid(large):
     assert faults_of(large[1]) == []
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @needs_libreoffice
 def test_formulas_of_a_large_report_give_their_stored_values(large, tmp_path):

@@ -226,6 +226,7 @@ def test_variants_that_were_not_computed_say_why(table, sound):
     assert told["computed"] == 1
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_many_variants_stay_within_bounds(table, sound):
     """Of 700 variants the worst are drawn and have pages with sketches, in less than 3 MiB; names stay apart."""

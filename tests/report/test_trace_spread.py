@@ -180,6 +180,7 @@ SHAPES = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_every_slope_of_many_shapes_comes_out_of_the_formulas(tmp_path):
     """Whatever the shape and the dimension, the slope by the formulas of Trace is the program's."""

@@ -89,6 +89,7 @@ def test_small_ones_are_done_meanwhile_and_files_are_those_of_the_command(store,
     assert list((store.folder / "work").iterdir()) == []
 
 
+@pytest.mark.long
 def test_what_is_done_of_a_killed_one_is_taken_up(store, processes, expected):
     """When its process is killed, or the service stops, the chunks that are done are not done again."""
     with dispatching(store, lambda: nullcontext(processes), FEW) as dispatcher:

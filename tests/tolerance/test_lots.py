@@ -289,6 +289,7 @@ def random_case(generator):
     return model, inputs, between
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @thorough
 @given(seed=st.integers(0, 10_000))

@@ -168,6 +168,7 @@ def test_however_a_text_is_written(name, how, tmp_path):
     _same(path, SIZES[:2])
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_random_rows(seed, tmp_path):
@@ -239,6 +240,7 @@ def test_a_column_of_every_kind_in_groups_of_rows(kind, tmp_path):
     _same(path)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_groups_of_rows_with_gaps_doubles_and_remarks(tmp_path):
     """Rows that are blank, remarks, of one name or without a number are judged alike in every group of rows."""
