@@ -206,6 +206,7 @@ def test_a_name_that_is_no_utf_8_is_computed_like_any_other(table, workbook, sou
 
 
 @pytest.mark.long
+@pytest.mark.slow
 @no_utf_8
 def test_the_other_commands_take_such_names_too(table, sound, tmp_path):
     """Marked, fixed, upgraded, compared, computed anew: a name that is no UTF-8 stops nothing."""

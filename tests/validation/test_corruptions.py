@@ -15,7 +15,7 @@ from flexlash.reading.read import Source
 from flexlash.schema.findings import Finding
 
 pytestmark = pytest.mark.slow
-CORRUPTIONS = 100
+CORRUPTIONS = 200
 MOST_AT_ONCE = 5
 RIGHT = 0.99
 """Share of the corrupted cells that must be found where they are."""
